@@ -1,0 +1,205 @@
+//! What is derived from a spec: kernels in symbols, and the claims that were proved. The border between derivation and output.
+
+use crate::expr::{Expr, Rational, Symbol};
+use crate::matrix::Matrix;
+use crate::model::JointSpec;
+
+/// The kernels of a joint, in the order in which they are emitted: one method each of the runtime's `Joint` trait.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum KernelKind {
+    /// The stored scalars of the home configuration.
+    Home,
+    /// H(Q).
+    Pose,
+    /// X(Q).
+    TwistMap,
+    /// X^c(Q).
+    TwistMapChild,
+    /// ∂X^c/∂ϕ.
+    TwistMapChildGradient,
+    /// S₀(Q).
+    VelocityMap,
+    /// S₀⁻¹(Q).
+    VelocityMapInverse,
+    /// ∂S/∂ϕ.
+    VelocityMapGradient,
+    /// Σ_k γ_k v_k.
+    Gamma,
+    /// J22(Q, p).
+    J22,
+    /// A(Q).
+    Constraint,
+    /// S̄(Q).
+    SpeedBasis,
+    /// ∂S̄/∂ϕ.
+    SpeedBasisGradient,
+    /// Q̇(Q, v).
+    ConfigurationRate,
+    /// Φ(Q, ϕ) at finite ϕ.
+    Retract,
+    /// ϕ(Q, Q′).
+    Local,
+    /// Inverse differential of Φ at finite ϕ.
+    RetractDifferentialInverse,
+    /// Projection onto the manifold.
+    Project,
+    /// Residual of the manifold's relations.
+    Residual,
+    /// c = Ẋ̄^c v̄.
+    BiasAcceleration,
+    /// Ẋ̄^cᵀ h.
+    BiasMomentum,
+}
+
+/// What is known of a kernel's value at compile time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Structure {
+    /// Identically zero.
+    Zero,
+    /// The identity matrix or map.
+    Identity,
+    /// Independent of the configuration.
+    Constant,
+    /// Depends on the configuration.
+    General,
+}
+
+/// A function of the runtime that a kernel calls where no formula serves at every argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Primitive {
+    /// 3×3 rotation matrix to its rotation vector (3 outputs): `Scalar::rotation_vector`.
+    RotationVector,
+    /// 3×3 matrix near SO(3) to the nearest rotation matrix (9 outputs, row by row): `spatial::nearest_rotation`.
+    NearestRotation,
+}
+
+/// One line of a kernel before its result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Binds a name (`Role::Intermediate`) to a value.
+    Let(Symbol, Expr),
+    /// Binds names to the results of a runtime function.
+    Call {
+        /// The function.
+        primitive: Primitive,
+        /// Its argument.
+        argument: Matrix,
+        /// Its results.
+        outputs: Vec<Symbol>,
+    },
+}
+
+/// One kernel.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    /// Which one.
+    pub kind: KernelKind,
+    /// Lines before the result, in order.
+    pub steps: Vec<Step>,
+    /// The result: one matrix; for [`KernelKind::Pose`] rotation and translation; for gradients one slice for each ϕ_k;
+    /// for [`KernelKind::Residual`] the column of relations, whose Euclidean norm is the kernel's value.
+    pub outputs: Vec<Matrix>,
+    /// What is known at compile time.
+    pub structure: Structure,
+}
+
+/// Sizes of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// N: stored scalars of Q.
+    pub configuration: usize,
+    /// K: freedoms, size of v and ϕ.
+    pub freedoms: usize,
+    /// S: speeds v̄.
+    pub speeds: usize,
+    /// C: nonholonomic constraints.
+    pub constraints: usize,
+}
+
+/// The symbols that stand for the arguments of the kernels.
+#[derive(Clone, Debug)]
+pub struct Arguments {
+    /// Q.
+    pub configuration: Vec<Symbol>,
+    /// Q′ of [`KernelKind::Local`].
+    pub target: Vec<Symbol>,
+    /// ϕ.
+    pub local: Vec<Symbol>,
+    /// v; also the `rate` of [`KernelKind::RetractDifferentialInverse`].
+    pub velocity: Vec<Symbol>,
+    /// v̄.
+    pub speeds: Vec<Symbol>,
+    /// p.
+    pub momentum: Vec<Symbol>,
+    /// h, six of them, moment first.
+    pub wrench: Vec<Symbol>,
+}
+
+/// How a claim was proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Proof {
+    /// The difference of both sides has normal form 0.
+    NormalForm,
+    /// A certificate: a minor or determinant whose normal form is a constant other than 0, or a polynomial inverse.
+    Certificate,
+    /// Evaluation at random points of the manifold in high precision.
+    Numeric,
+}
+
+impl Proof {
+    /// Name in machine-readable output.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NormalForm => "normal_form",
+            Self::Certificate => "certificate",
+            Self::Numeric => "numeric",
+        }
+    }
+}
+
+/// Something that was proved of a joint.
+#[derive(Clone, Debug)]
+pub struct Claim {
+    /// Stable name, `pose_in_se3` and the like.
+    pub name: &'static str,
+    /// The claim in the notation of the paper.
+    pub statement: String,
+    /// How it was proved.
+    pub proof: Proof,
+    /// The certificate, where there is one, or what was evaluated.
+    pub detail: String,
+    /// Largest residual met: 0 for symbolic proofs.
+    pub residual: f64,
+    /// Random points evaluated: 0 for symbolic proofs.
+    pub points: usize,
+    /// Precision of the evaluation in bits: 0 for symbolic proofs.
+    pub bits: usize,
+}
+
+/// A joint with all that follows from its spec.
+#[derive(Clone, Debug)]
+pub struct Derived {
+    /// The spec.
+    pub spec: JointSpec,
+    /// Sizes.
+    pub shape: Shape,
+    /// Names of the speeds.
+    pub speed_names: Vec<String>,
+    /// Symbols of the kernels' arguments.
+    pub arguments: Arguments,
+    /// All kernels, in the order of [`KernelKind`].
+    pub kernels: Vec<Kernel>,
+    /// S to first order in ϕ, (32): S₀ + Σ S_k ϕ_k, in S₀-factored form where that is shorter: `(left, right)` with `S = left · right`.
+    pub velocity_map_series: (Matrix, Matrix),
+    /// N_X: basis of the inertias that the joint cannot feel, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
+    pub imperceptible: Vec<[Rational; 10]>,
+    /// All that was proved.
+    pub claims: Vec<Claim>,
+}
+
+impl Derived {
+    /// The kernel of that kind.
+    pub fn kernel(&self, kind: KernelKind) -> Option<&Kernel> {
+        self.kernels.iter().find(|kernel| kernel.kind == kind)
+    }
+}

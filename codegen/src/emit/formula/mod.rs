@@ -1,0 +1,247 @@
+//! Formulas as they are written: sums, products and quotients in reading order, common factors outside.
+//!
+//! An [`Expr`](crate::expr::Expr) is a sorted sum of terms; a [`Node`] is one way to write its value. Code and pages are
+//! both written from nodes, so that what is counted is what is emitted and what is shown.
+
+mod count;
+mod factor;
+mod pairs;
+mod share;
+#[cfg(test)]
+mod tests;
+
+pub use count::Counts;
+pub use factor::{factored, factored_entries};
+pub use share::{Binding, Program};
+
+use crate::expr::{Function, Rational, Symbol};
+use num_traits::{One, Signed, Zero};
+
+/// A formula.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Node {
+    /// A rational number, not negative.
+    Number(Rational),
+    /// A named value.
+    Symbol(Symbol),
+    /// The circle constant.
+    Pi,
+    /// Two or more terms; those marked true are subtracted, and the first never is.
+    Sum(Vec<(bool, Node)>),
+    /// Two or more factors.
+    Product(Vec<Node>),
+    /// Numerator and denominator.
+    Quotient(Box<Node>, Box<Node>),
+    /// The opposite.
+    Negative(Box<Node>),
+    /// A function applied to arguments.
+    Call(Function, Vec<Node>),
+}
+
+impl Node {
+    /// The number `value`.
+    pub fn number(value: &Rational) -> Self {
+        let size = Self::Number(value.abs());
+        if value.is_negative() { size.negated() } else { size }
+    }
+
+    /// Zero.
+    pub fn zero() -> Self {
+        Self::Number(Rational::zero())
+    }
+
+    /// One.
+    pub fn one() -> Self {
+        Self::Number(Rational::one())
+    }
+
+    /// Whether this is the number zero.
+    pub fn is_zero(&self) -> bool {
+        matches!(self, Self::Number(value) if value.is_zero())
+    }
+
+    /// Whether this is the number one.
+    pub fn is_one(&self) -> bool {
+        matches!(self, Self::Number(value) if value.is_one())
+    }
+
+    /// The opposite.
+    #[must_use]
+    pub fn negated(self) -> Self {
+        match self {
+            Self::Negative(inner) => *inner,
+            zero if zero.is_zero() => zero,
+            other => Self::Negative(Box::new(other)),
+        }
+    }
+
+    /// The sum, in the order given; sums among the terms are opened.
+    ///
+    /// Its first term has a plus: a sum that would start with a minus is the opposite of a sum, so that `a − b` and `b − a`
+    /// are recognised as one value.
+    pub fn sum(terms: impl IntoIterator<Item = Self>) -> Self {
+        let mut signed = vec![];
+        for term in terms {
+            push_term(&mut signed, false, term);
+        }
+        let flip = signed.first().is_some_and(|(subtracted, _)| *subtracted);
+        for (subtracted, _) in &mut signed {
+            *subtracted ^= flip;
+        }
+        let sum = match signed.len() {
+            0 => Self::zero(),
+            1 => signed.remove(0).1,
+            _ => Self::Sum(signed),
+        };
+        if flip { sum.negated() } else { sum }
+    }
+
+    /// The product, in the order given; products and quotients among the factors are opened, signs move to the front.
+    pub fn product(factors: impl IntoIterator<Item = Self>) -> Self {
+        let mut parts = Parts::default();
+        for factor in factors {
+            parts.multiply(factor);
+        }
+        let value = match (Self::of_factors(parts.above), parts.below.is_empty()) {
+            (above, true) => above,
+            (above, false) => Self::Quotient(Box::new(above), Box::new(Self::of_factors(parts.below))),
+        };
+        match (value.is_zero_quotient(), parts.negative) {
+            (true, _) => Self::zero(),
+            (false, true) => value.negated(),
+            (false, false) => value,
+        }
+    }
+
+    /// The quotient.
+    #[must_use]
+    pub fn over(self, denominator: Self) -> Self {
+        let mut parts = Parts::default();
+        parts.multiply(denominator);
+        let (above, below) = (Self::of_factors(parts.below), Self::of_factors(parts.above));
+        let sign = if parts.negative { Self::one().negated() } else { Self::one() };
+        let quotient = match below.is_one() {
+            true => Self::one(),
+            false => Self::Quotient(Box::new(Self::one()), Box::new(below)),
+        };
+        Self::product([sign, self, above, quotient])
+    }
+
+    fn of_factors(mut factors: Vec<Self>) -> Self {
+        match factors.len() {
+            0 => Self::one(),
+            _ if factors.iter().any(Self::is_zero) => Self::zero(),
+            1 => factors.remove(0),
+            _ => Self::Product(factors),
+        }
+    }
+
+    fn is_zero_quotient(&self) -> bool {
+        match self {
+            Self::Quotient(above, _) => above.is_zero(),
+            other => other.is_zero(),
+        }
+    }
+
+    /// The same formula with `f` applied to its direct parts.
+    #[must_use]
+    pub fn map_parts(&self, f: &mut impl FnMut(&Self) -> Self) -> Self {
+        match self {
+            Self::Number(_) | Self::Symbol(_) | Self::Pi => self.clone(),
+            Self::Sum(terms) => Self::Sum(terms.iter().map(|(minus, term)| (*minus, f(term))).collect()),
+            Self::Product(factors) => Self::Product(factors.iter().map(f).collect()),
+            Self::Quotient(above, below) => Self::Quotient(Box::new(f(above)), Box::new(f(below))),
+            Self::Negative(inner) => Self::Negative(Box::new(f(inner))),
+            Self::Call(function, arguments) => Self::Call(*function, arguments.iter().map(f).collect()),
+        }
+    }
+
+    /// The direct parts, in order.
+    pub fn parts(&self) -> Vec<&Self> {
+        match self {
+            Self::Number(_) | Self::Symbol(_) | Self::Pi => vec![],
+            Self::Sum(terms) => terms.iter().map(|(_, term)| term).collect(),
+            Self::Product(factors) => factors.iter().collect(),
+            Self::Quotient(above, below) => vec![above, below],
+            Self::Negative(inner) => vec![inner],
+            Self::Call(_, arguments) => arguments.iter().collect(),
+        }
+    }
+
+    /// Calls `visit` for this formula and all its parts, outermost first.
+    pub fn visit(&self, visit: &mut impl FnMut(&Self)) {
+        visit(self);
+        for part in self.parts() {
+            part.visit(visit);
+        }
+    }
+
+    /// The same value as it is best read: `b − a` instead of `−(a − b)`, a positive term first.
+    #[must_use]
+    pub fn polished(&self) -> Self {
+        match self {
+            Self::Negative(inner) => match inner.as_ref() {
+                Self::Sum(terms) if terms.iter().any(|(subtracted, _)| *subtracted) => {
+                    let flipped = terms.iter().map(|(minus, term)| (!minus, term.polished()));
+                    Self::Sum(positive_first(flipped.collect()))
+                }
+                other => Self::Negative(Box::new(other.polished())),
+            },
+            other => other.map_parts(&mut Self::polished),
+        }
+    }
+}
+
+fn positive_first(mut terms: Vec<(bool, Node)>) -> Vec<(bool, Node)> {
+    if let Some(first) = terms.iter().position(|(subtracted, _)| !subtracted) {
+        terms[..=first].rotate_right(1);
+    }
+    terms
+}
+
+fn push_term(signed: &mut Vec<(bool, Node)>, minus: bool, term: Node) {
+    match term {
+        Node::Negative(inner) => push_term(signed, !minus, *inner),
+        Node::Sum(terms) => {
+            for (subtracted, inner) in terms {
+                push_term(signed, minus ^ subtracted, inner);
+            }
+        }
+        zero if zero.is_zero() => {}
+        other => signed.push((minus, other)),
+    }
+}
+
+/// A product taken apart.
+#[derive(Default)]
+struct Parts {
+    negative: bool,
+    above: Vec<Node>,
+    below: Vec<Node>,
+}
+
+impl Parts {
+    fn multiply(&mut self, factor: Node) {
+        match factor {
+            Node::Negative(inner) => {
+                self.negative ^= true;
+                self.multiply(*inner);
+            }
+            Node::Product(factors) => factors.into_iter().for_each(|factor| self.multiply(factor)),
+            Node::Quotient(above, below) => {
+                self.multiply(*above);
+                self.divide(*below);
+            }
+            one if one.is_one() => {}
+            other => self.above.push(other),
+        }
+    }
+
+    fn divide(&mut self, divisor: Node) {
+        match divisor {
+            Node::Product(factors) => self.below.extend(factors),
+            one if one.is_one() => {}
+            other => self.below.push(other),
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Subexpressions that occur more than once are computed once, under a name that says what they are.
+
+use super::pairs::extract_pairs;
+use super::{Node, factored, factored_entries};
+use crate::derived::{Kernel, Primitive, Step};
+use crate::emit::names::{NameSet, describe};
+use crate::expr::{Function, Role, Symbol};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// First index of the symbols made here, above all that a derivation numbers itself.
+const FIRST_INDEX: usize = 0x8000;
+
+/// One line before the result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Binding {
+    /// A name for a value.
+    Value {
+        /// The name.
+        name: Symbol,
+        /// The value.
+        value: Node,
+    },
+    /// Names for the sine and the cosine of one angle, each where it is used.
+    SinCos {
+        /// Name of the sine.
+        sin: Option<Symbol>,
+        /// Name of the cosine.
+        cos: Option<Symbol>,
+        /// The angle.
+        angle: Node,
+    },
+    /// Names for the results of a function of the runtime.
+    Call {
+        /// The function.
+        primitive: Primitive,
+        /// Its argument, row by row.
+        argument: Vec<Node>,
+        /// Its results.
+        outputs: Vec<Symbol>,
+    },
+}
+
+impl Binding {
+    /// The names that it binds.
+    pub fn names(&self) -> Vec<&Symbol> {
+        match self {
+            Self::Value { name, .. } => vec![name],
+            Self::SinCos { sin, cos, .. } => sin.iter().chain(cos).collect(),
+            Self::Call { outputs, .. } => outputs.iter().collect(),
+        }
+    }
+
+    /// The formulas that it evaluates.
+    pub fn formulas(&self) -> Vec<&Node> {
+        match self {
+            Self::Value { value, .. } => vec![value],
+            Self::SinCos { angle, .. } => vec![angle],
+            Self::Call { argument, .. } => argument.iter().collect(),
+        }
+    }
+}
+
+/// A kernel's body: lines in order, then the entries of all its outputs, one matrix after the other, row by row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Program {
+    /// The lines before the result.
+    pub bindings: Vec<Binding>,
+    /// The entries of the result.
+    pub outputs: Vec<Node>,
+}
+
+impl Program {
+    /// Writes a kernel: factored, shared, polished. `taken` holds the names that must not be used.
+    pub fn new(kernel: &Kernel, taken: &NameSet) -> Self {
+        let outputs = kernel.outputs.iter().flat_map(factored_entries);
+        let mut formulas: Vec<Node> = kernel.steps.iter().flat_map(formulas_of_step).collect();
+        let of_steps = formulas.len();
+        formulas.extend(outputs);
+        extract_pairs(&mut formulas);
+        let mut sharing = Sharing::new(&formulas, taken.clone());
+        let mut remaining = formulas.iter();
+        for step in &kernel.steps {
+            sharing.step(step, &mut remaining);
+        }
+        let outputs = formulas[of_steps..].iter().map(|node| sharing.rewrite(node)).collect();
+        Self { bindings: sharing.bindings, outputs }.polished().pruned()
+    }
+
+    /// Without lines whose results nothing uses.
+    fn pruned(mut self) -> Self {
+        loop {
+            let used = self.symbols();
+            let before = self.bindings.len();
+            self.bindings.retain(|binding| binding.names().iter().any(|name| used.contains(*name)));
+            if self.bindings.len() == before {
+                return self;
+            }
+        }
+    }
+
+    fn polished(mut self) -> Self {
+        let polish = |node: &mut Node| *node = node.polished();
+        for binding in &mut self.bindings {
+            match binding {
+                Binding::Value { value, .. } => polish(value),
+                Binding::SinCos { angle, .. } => polish(angle),
+                Binding::Call { argument, .. } => argument.iter_mut().for_each(polish),
+            }
+        }
+        self.outputs.iter_mut().for_each(polish);
+        self
+    }
+
+    /// Every formula in it, in order.
+    pub fn formulas(&self) -> Vec<&Node> {
+        let bound = self.bindings.iter().flat_map(Binding::formulas);
+        bound.chain(&self.outputs).collect()
+    }
+
+    /// The symbols that its formulas use.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        let mut symbols = BTreeSet::new();
+        for formula in self.formulas() {
+            formula.visit(&mut |node| {
+                if let Node::Symbol(symbol) = node {
+                    symbols.insert(symbol.clone());
+                }
+            });
+        }
+        symbols
+    }
+}
+
+fn formulas_of_step(step: &Step) -> Vec<Node> {
+    match step {
+        Step::Let(_, value) => vec![factored(value)],
+        Step::Call { argument, .. } => factored_entries(argument),
+    }
+}
+
+/// Rewrites formulas in order, binding a shared part just before the first line that uses it.
+struct Sharing {
+    uses: BTreeMap<Node, usize>,
+    names: BTreeMap<Node, Symbol>,
+    taken: NameSet,
+    bindings: Vec<Binding>,
+    count: usize,
+}
+
+impl Sharing {
+    fn new(formulas: &[Node], taken: NameSet) -> Self {
+        let mut uses = BTreeMap::new();
+        formulas.iter().for_each(|formula| count_uses(formula, &mut uses));
+        Self { uses, names: BTreeMap::new(), taken, bindings: vec![], count: 0 }
+    }
+
+    fn step<'a>(&mut self, step: &Step, formulas: &mut impl Iterator<Item = &'a Node>) {
+        match step {
+            Step::Let(name, _) => {
+                let Some(formula) = formulas.next() else { return };
+                let value = self.rewrite_named(formula);
+                self.bindings.push(Binding::Value { name: name.clone(), value });
+                // Later occurrences of the same formula use the name that the derivation gave it.
+                if is_operation(formula) {
+                    self.names.entry(formula.clone()).or_insert_with(|| name.clone());
+                }
+            }
+            Step::Call { primitive, argument, outputs } => {
+                let count = argument.entries().len();
+                let argument = formulas.take(count).map(|formula| self.rewrite(formula)).collect();
+                self.bindings.push(Binding::Call { primitive: *primitive, argument, outputs: outputs.clone() });
+            }
+        }
+    }
+
+    /// The formula with its shared parts replaced by names, but not itself bound: its caller names it.
+    fn rewrite_named(&mut self, node: &Node) -> Node {
+        match (self.names.get(node), node) {
+            (Some(name), _) => Node::Symbol(name.clone()),
+            (None, Node::Call(Function::Sin | Function::Cos, _)) => self.rewrite(node),
+            (None, _) => node.map_parts(&mut |part| self.rewrite(part)),
+        }
+    }
+
+    /// The formula with its shared parts replaced by names.
+    fn rewrite(&mut self, node: &Node) -> Node {
+        if let Some(name) = self.names.get(node) {
+            return Node::Symbol(name.clone());
+        }
+        if let Node::Call(Function::Sin | Function::Cos, arguments) = node
+            && let [angle] = arguments.as_slice()
+        {
+            return self.sin_cos(node, angle);
+        }
+        let value = node.map_parts(&mut |part| self.rewrite(part));
+        match is_operation(node) && self.uses.get(node).is_some_and(|uses| *uses > 1) {
+            true => self.bind(node, value),
+            false => value,
+        }
+    }
+
+    fn bind(&mut self, node: &Node, value: Node) -> Node {
+        let symbol = self.fresh(&describe(&value));
+        self.names.insert(node.clone(), symbol.clone());
+        self.bindings.push(Binding::Value { name: symbol.clone(), value });
+        Node::Symbol(symbol)
+    }
+
+    /// Binds sine and cosine of the angle together, as far as they are used.
+    fn sin_cos(&mut self, node: &Node, angle: &Node) -> Node {
+        let value = self.rewrite(angle);
+        let text = describe(&value);
+        let name = |sharing: &mut Self, function: Function, prefix: &str| {
+            let call = Node::Call(function, vec![angle.clone()]);
+            sharing.uses.contains_key(&call).then(|| {
+                let symbol = sharing.fresh(&format!("{prefix}_{text}"));
+                sharing.names.insert(call, symbol.clone());
+                symbol
+            })
+        };
+        let sin = name(self, Function::Sin, "sin");
+        let cos = name(self, Function::Cos, "cos");
+        self.bindings.push(Binding::SinCos { sin, cos, angle: value });
+        match self.names.get(node) {
+            Some(symbol) => Node::Symbol(symbol.clone()),
+            None => node.clone(),
+        }
+    }
+
+    fn fresh(&mut self, wish: &str) -> Symbol {
+        let name = self.taken.claim(wish);
+        self.count += 1;
+        Symbol::new(Role::Intermediate, FIRST_INDEX + self.count, &name)
+    }
+}
+
+/// Counts the places that use each part; the parts of a repeated part are counted once.
+fn count_uses(node: &Node, uses: &mut BTreeMap<Node, usize>) {
+    let count = uses.entry(node.clone()).or_default();
+    *count += 1;
+    if *count == 1 {
+        node.parts().into_iter().for_each(|part| count_uses(part, uses));
+    }
+}
+
+fn is_operation(node: &Node) -> bool {
+    matches!(node, Node::Sum(_) | Node::Product(_) | Node::Quotient(..) | Node::Call(..))
+}

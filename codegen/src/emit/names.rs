@@ -1,0 +1,239 @@
+//! Names in emitted code: telling ones for shared terms, none used twice, none that Rust or the emitted code reserves.
+
+use super::formula::Node;
+use crate::derived::Derived;
+use crate::expr::{Function, Rational, Symbol};
+use num_traits::{One, ToPrimitive};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Longest name made from a formula; longer formulas are named after their first symbol.
+const LONGEST: usize = 32;
+
+/// Names that every kernel may use: its arguments, the constants, and what is imported.
+const RESERVED: &[&str] = &[
+    "q", "phi", "v", "p", "rate", "target", "speeds", "h", "zero", "one", "pi", "relations", "relation", "sum",
+    "nearest_rotation", "from_rows", "self", "core", "hamel", "std", "alloc",
+];
+
+/// Names of types in emitted files, which a joint must not take.
+const RESERVED_TYPES: &[&str] = &[
+    "Arc", "AnyJoint", "Joint", "JointEntry", "Pose", "ParameterError", "ParameterInfo", "Scalar", "SMatrix", "SVector",
+    "Self", "Structure", "Structures", "VelocityFrame", "T", "Clone", "Copy", "Debug", "PartialEq", "Option", "Some", "None",
+    "Result", "Ok", "Err", "Iterator",
+];
+
+/// The names that are taken.
+#[derive(Clone, Debug, Default)]
+pub struct NameSet {
+    taken: BTreeSet<String>,
+}
+
+impl NameSet {
+    /// Takes a name: the one wished for, or that one with a number where it is taken or is a keyword.
+    pub fn claim(&mut self, wish: &str) -> String {
+        let wish = identifier(wish);
+        let numbered = (2..).map(|n| format!("{wish}_{n}"));
+        let free = |name: &String| !self.taken.contains(name);
+        let name = std::iter::once(wish.clone()).chain(numbered).find(free).unwrap_or(wish);
+        self.taken.insert(name.clone());
+        name
+    }
+}
+
+fn identifier(wish: &str) -> String {
+    match syn::parse_str::<syn::Ident>(wish) {
+        Ok(_) => wish.to_owned(),
+        Err(_) => format!("{wish}_value"),
+    }
+}
+
+/// The identifiers of a joint's symbols in every kernel.
+#[derive(Clone, Debug)]
+pub struct Names {
+    by_symbol: BTreeMap<Symbol, String>,
+    taken: NameSet,
+}
+
+impl Names {
+    /// Names for the parameters and for the arguments of all kernels.
+    pub fn new(derived: &Derived) -> Self {
+        let mut taken = NameSet::default();
+        taken.taken.extend(RESERVED.iter().map(|name| (*name).to_owned()));
+        taken.taken.extend(number_words());
+        let mut names = Self { by_symbol: BTreeMap::new(), taken };
+        let arguments = &derived.arguments;
+        names.claim_coordinates(&arguments.configuration);
+        let parameters = derived.spec.parameters.iter().map(|parameter| &parameter.symbol);
+        let others = [
+            &arguments.target,
+            &arguments.local,
+            &arguments.velocity,
+            &arguments.speeds,
+            &arguments.momentum,
+            &arguments.wrench,
+        ];
+        parameters.chain(others.into_iter().flatten()).for_each(|symbol| names.claim(symbol));
+        names
+    }
+
+    /// A single coordinate called `q` may shadow the argument that it is read from.
+    fn claim_coordinates(&mut self, coordinates: &[Symbol]) {
+        for symbol in coordinates {
+            match symbol.name.as_ref() == "q" {
+                true => _ = self.by_symbol.insert(symbol.clone(), "q".to_owned()),
+                false => self.claim(symbol),
+            }
+        }
+    }
+
+    /// Gives a symbol its name.
+    pub fn claim(&mut self, symbol: &Symbol) {
+        if !self.by_symbol.contains_key(symbol) {
+            let name = self.taken.claim(&symbol.name);
+            self.by_symbol.insert(symbol.clone(), name);
+        }
+    }
+
+    /// Gives a symbol a name that is already its own.
+    pub fn adopt(&mut self, symbol: &Symbol) {
+        self.by_symbol.entry(symbol.clone()).or_insert_with(|| symbol.name.to_string());
+    }
+
+    /// The name of a symbol.
+    pub fn get(&self, symbol: &Symbol) -> &str {
+        self.by_symbol.get(symbol).map_or(&symbol.name, String::as_str)
+    }
+
+    /// All names that are taken.
+    pub fn taken(&self) -> &NameSet {
+        &self.taken
+    }
+}
+
+/// The name of a joint's type: `planar_euclidean` is `PlanarEuclidean`.
+pub fn type_name(joint: &str) -> String {
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+        first.into_iter().chain(letters).collect::<String>()
+    };
+    let name: String = joint.split('_').map(capital).collect();
+    match RESERVED_TYPES.contains(&name.as_str()) {
+        true => format!("{name}Joint"),
+        false => name,
+    }
+}
+
+const WORDS: [&str; 13] = [
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+];
+
+fn number_words() -> impl Iterator<Item = String> {
+    let fractions = ["half", "third", "quarter"];
+    WORDS.iter().chain(&fractions).map(|word| (*word).to_owned())
+}
+
+/// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `ratio_3_7`.
+pub fn number_name(value: &Rational) -> String {
+    let word = |n: &num_bigint::BigInt| n.to_usize().and_then(|n| WORDS.get(n)).map(|word| (*word).to_owned());
+    let denominator = value.denom();
+    if denominator.is_one() {
+        return word(value.numer()).unwrap_or_else(|| short("number", &[value.numer().to_string()]));
+    }
+    let part = match denominator.to_u8() {
+        Some(2) => Some("half"),
+        Some(3) => Some("third"),
+        Some(4) => Some("quarter"),
+        _ => None,
+    };
+    match (part, word(value.numer()), value.numer().is_one()) {
+        (Some(part), _, true) => part.to_owned(),
+        (Some("half"), Some(count), false) => format!("{count}_halves"),
+        (Some(part), Some(count), false) => format!("{count}_{part}s"),
+        _ => short("ratio", &[value.numer().to_string(), denominator.to_string()]),
+    }
+}
+
+/// Long numbers are cut: the value stands beside the name.
+fn short(prefix: &str, numbers: &[String]) -> String {
+    let cut = |number: &String| number.chars().take(8).collect::<String>();
+    let parts: Vec<String> = numbers.iter().map(cut).collect();
+    format!("{prefix}_{}", parts.join("_"))
+}
+
+/// A name for the value of a formula, made from what it is: `x_squared`, `q12_minus_q21`, `lead_over_pi`.
+pub fn describe(node: &Node) -> String {
+    let full = describe_fully(node);
+    if full.len() <= LONGEST {
+        return full;
+    }
+    let mut first = None;
+    node.visit(&mut |part| {
+        if let (Node::Symbol(symbol), None) = (part, &first) {
+            first = Some(symbol.name.to_string());
+        }
+    });
+    let kind = match node {
+        Node::Sum(_) => "sum",
+        Node::Product(_) => "product",
+        Node::Quotient(..) => "quotient",
+        _ => "value",
+    };
+    format!("{kind}_with_{}", first.unwrap_or_else(|| "constants".into()))
+}
+
+fn describe_fully(node: &Node) -> String {
+    match node {
+        Node::Number(value) => number_name(value),
+        Node::Symbol(symbol) => symbol.name.to_string(),
+        Node::Pi => "pi".into(),
+        Node::Sum(terms) => {
+            let mut text = String::new();
+            for (i, (minus, term)) in terms.iter().enumerate() {
+                text += if i == 0 { "" } else if *minus { "_minus_" } else { "_plus_" };
+                text += &describe_fully(term);
+            }
+            text
+        }
+        Node::Product(factors) => describe_product(factors),
+        Node::Quotient(above, below) if above.is_one() => format!("inverse_{}", describe_fully(below)),
+        Node::Quotient(above, below) => format!("{}_over_{}", describe_fully(above), describe_fully(below)),
+        Node::Negative(inner) => format!("minus_{}", describe_fully(inner)),
+        Node::Call(function, arguments) => {
+            let arguments: Vec<String> = arguments.iter().map(describe_fully).collect();
+            format!("{}_{}", function_name(*function), arguments.join("_"))
+        }
+    }
+}
+
+fn describe_product(factors: &[Node]) -> String {
+    let mut words = vec![];
+    let mut rest = factors;
+    while let Some(first) = rest.first() {
+        let copies = rest.iter().take_while(|factor| *factor == first).count();
+        let word = describe_fully(first);
+        words.push(match copies {
+            1 => word,
+            2 => format!("{word}_squared"),
+            3 => format!("{word}_cubed"),
+            _ => format!("{word}_power_{copies}"),
+        });
+        rest = &rest[copies..];
+    }
+    words.join("_")
+}
+
+fn function_name(function: Function) -> String {
+    match function {
+        Function::Pi => "pi".into(),
+        Function::Cos => "cos".into(),
+        Function::Sin => "sin".into(),
+        Function::Exp => "exp".into(),
+        Function::Ln => "ln".into(),
+        Function::Atan2 => "angle".into(),
+        Function::Sqrt => "root".into(),
+        Function::Stumpff(order) => format!("stumpff{order}"),
+        Function::DexpInverse(order) => format!("dexp_inverse{order}"),
+        Function::Recip => "inverse".into(),
+    }
+}

@@ -1,0 +1,148 @@
+//! The rows of a report's tables.
+
+use super::notation::Notation;
+use super::units;
+use crate::derived::{Claim, Derived, Kernel, Structure};
+use crate::emit::formula::Counts;
+use crate::emit::names::Names;
+use crate::emit::rust::Method;
+use crate::expr::Rational;
+use crate::model::Parameter;
+use num_traits::{One, Signed, Zero};
+
+/// A parameter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParameterRow {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// What it means.
+    pub description: String,
+}
+
+/// A freedom.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FreedomRow {
+    /// Its name.
+    pub name: String,
+    /// Its local coordinate.
+    pub local: String,
+    /// Its velocity.
+    pub velocity: String,
+    /// Unit of the local coordinate, empty where the spec does not determine it.
+    pub unit: String,
+    /// Unit of ϕ̇.
+    pub rate_unit: String,
+}
+
+/// A claim.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ClaimRow {
+    /// Its stable name.
+    pub name: String,
+    /// The claim.
+    pub statement: String,
+    /// How it was proved, in words.
+    pub proof: String,
+    /// The certificate, or what was evaluated.
+    pub detail: String,
+}
+
+/// An emitted kernel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CountRow {
+    /// Name of the method.
+    pub kernel: String,
+    /// What is known at compile time.
+    pub structure: String,
+    /// Its operations.
+    pub operations: Counts,
+}
+
+pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
+    let row = |parameter: &Parameter| ParameterRow {
+        name: parameter.symbol.name.to_string(),
+        unit: parameter.unit.clone(),
+        description: parameter.docs.trim().to_owned(),
+    };
+    derived.spec.parameters.iter().map(row).collect()
+}
+
+pub(super) fn freedoms(derived: &Derived, notation: &Notation) -> Vec<FreedomRow> {
+    let units = units::of_freedoms(derived);
+    let symbols = derived.arguments.local.iter().zip(&derived.arguments.velocity);
+    let freedoms = derived.spec.freedoms.value.iter().zip(symbols).zip(units);
+    freedoms
+        .map(|((freedom, (local, velocity)), unit)| FreedomRow {
+            name: freedom.name.clone(),
+            local: notation.symbol(local),
+            velocity: notation.symbol(velocity),
+            unit: unit.to_owned(),
+            rate_unit: units::per_second(unit),
+        })
+        .collect()
+}
+
+pub(super) fn claims(derived: &Derived) -> Vec<ClaimRow> {
+    let row = |claim: &Claim| ClaimRow {
+        name: claim.name.to_owned(),
+        statement: claim.statement.clone(),
+        proof: proof_in_words(claim),
+        detail: claim.detail.clone(),
+    };
+    derived.claims.iter().map(row).collect()
+}
+
+/// How a claim was proved: `normal form`, or what was evaluated and how well it held.
+pub fn proof_in_words(claim: &Claim) -> String {
+    let kind = claim.proof.name().replace('_', " ");
+    match claim.points {
+        0 => kind,
+        points => format!("{kind}: residual {:.1e} at {points} points, {} bits", claim.residual, claim.bits),
+    }
+}
+
+pub(super) fn counts(derived: &Derived) -> Vec<CountRow> {
+    let names = Names::new(derived);
+    let row = |kernel: &Kernel| {
+        let method = Method::new(derived, kernel, &names);
+        CountRow {
+            kernel: method.name().to_owned(),
+            structure: structure_in_words(kernel.structure).to_owned(),
+            operations: method.counts(),
+        }
+    };
+    derived.kernels.iter().map(row).collect()
+}
+
+fn structure_in_words(structure: Structure) -> &'static str {
+    match structure {
+        Structure::Zero => "zero",
+        Structure::Identity => "identity",
+        Structure::Constant => "constant",
+        Structure::General => "general",
+    }
+}
+
+const INERTIA: [&str; 10] = ["m", "mc_x", "mc_y", "mc_z", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"];
+
+/// Each element of the basis of N_X as a sum of parameters of an inertia.
+pub(super) fn imperceptible(derived: &Derived) -> Vec<String> {
+    derived.imperceptible.iter().map(combination).collect()
+}
+
+fn combination(weights: &[Rational; 10]) -> String {
+    let mut text = String::new();
+    for (weight, name) in weights.iter().zip(INERTIA).filter(|(weight, _)| !weight.is_zero()) {
+        text += match (text.is_empty(), weight.is_negative()) {
+            (true, false) => "",
+            (true, true) => "−",
+            (false, false) => " + ",
+            (false, true) => " − ",
+        };
+        let size = weight.abs();
+        text += &if size.is_one() { name.to_owned() } else { format!("{size} {name}") };
+    }
+    text
+}

@@ -1,0 +1,174 @@
+//! One kernel as a method of the trait `Joint`.
+
+use super::result;
+use super::signature::{Argument, Signature};
+use super::tokens::{Writer, ident};
+use crate::derived::{Derived, Kernel, KernelKind, Primitive, Step};
+use crate::emit::formula::{Binding, Counts, Program};
+use crate::emit::names::Names;
+use crate::expr::{Role, Symbol};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::quote;
+use std::collections::BTreeSet;
+
+/// A kernel, ready to be written.
+pub struct Method<'a> {
+    derived: &'a Derived,
+    kernel: &'a Kernel,
+    signature: Signature,
+    names: Names,
+    program: Program,
+    used: BTreeSet<Symbol>,
+}
+
+impl<'a> Method<'a> {
+    /// Factors and names what the kernel computes.
+    pub fn new(derived: &'a Derived, kernel: &'a Kernel, names: &Names) -> Self {
+        let mut names = names.clone();
+        bound_symbols(&kernel.steps).for_each(|symbol| names.claim(symbol));
+        let program = Program::new(kernel, names.taken());
+        program.bindings.iter().flat_map(Binding::names).for_each(|symbol| names.adopt(symbol));
+        let signature = Signature::new(kernel.kind, derived.shape);
+        let used = program.symbols();
+        Self { derived, kernel, signature, names, program, used }
+    }
+
+    /// Name of the method.
+    pub fn name(&self) -> &'static str {
+        self.signature.name
+    }
+
+    /// The operations of the emitted method.
+    pub fn counts(&self) -> Counts {
+        let mut counts = Counts::of_program(&self.program);
+        let relations = self.program.outputs.len();
+        if self.kernel.kind == KernelKind::Residual && relations > 0 {
+            counts += Counts { additions: relations - 1, multiplications: relations, divisions: 0, calls: 1 };
+        }
+        counts
+    }
+
+    /// The method, with its documentation.
+    pub fn tokens(&self, docs: &TokenStream) -> TokenStream {
+        let whole = self.whole_argument();
+        let body = match whole {
+            Some(argument) => {
+                let name = ident(argument.name());
+                quote! { *#name }
+            }
+            None => self.body(),
+        };
+        let arguments = self.signature.arguments.iter().map(|&argument| {
+            let is_read = whole.map_or_else(|| self.reads(argument), |whole| whole == argument);
+            let name = ident(&format!("{}{}", if is_read { "" } else { "_" }, argument.name()));
+            let size = Literal::usize_unsuffixed(argument.size(self.derived.shape));
+            quote! { #name: &SVector<T, #size> }
+        });
+        let name = ident(self.signature.name);
+        let output = self.signature.output_type(self.derived.shape);
+        quote! { #docs fn #name<T: Scalar>(&self, #(#arguments),*) -> #output { #body } }
+    }
+
+    /// The argument that is returned as it stands, if the kernel does just that.
+    fn whole_argument(&self) -> Option<Argument> {
+        let [output] = self.kernel.outputs.as_slice() else { return None };
+        let is_it = |argument: &&Argument| {
+            let symbols = argument.symbols(&self.derived.arguments);
+            let same = |(entry, symbol): (&crate::expr::Expr, &Symbol)| entry.as_symbol() == Some(symbol);
+            output.columns() == 1 && output.rows() == symbols.len() && output.entries().iter().zip(symbols).all(same)
+        };
+        let returns_vector = matches!(self.signature.output, super::signature::Output::Vector(_));
+        self.signature.arguments.iter().find(is_it).copied().filter(|_| returns_vector)
+    }
+
+    fn reads(&self, argument: Argument) -> bool {
+        argument.symbols(&self.derived.arguments).iter().any(|symbol| self.used.contains(symbol))
+    }
+
+    fn body(&self) -> TokenStream {
+        let writer = Writer::new(&self.names, &self.program);
+        let parameters = self.used.iter().filter(|symbol| symbol.role == Role::Parameter).map(|symbol| {
+            let (local, field) = (writer.symbol(symbol), ident(&symbol.name));
+            quote! { let #local = T::from_f64(self.#field); }
+        });
+        let arguments = self.signature.arguments.iter().map(|argument| self.read(*argument));
+        let bindings: Vec<_> = self.program.bindings.iter().map(|binding| self.binding(&writer, binding)).collect();
+        let result = result::tokens(&writer, self.kernel, &self.signature, &self.program.outputs);
+        let constants = writer.constants();
+        quote! { #(#parameters)* #(#arguments)* #constants #(#bindings)* #result }
+    }
+
+    /// Reads from an argument the scalars that are used.
+    fn read(&self, argument: Argument) -> TokenStream {
+        let symbols = argument.symbols(&self.derived.arguments);
+        let source = ident(argument.name());
+        let read: Vec<usize> = (0..symbols.len()).filter(|&i| self.used.contains(&symbols[i])).collect();
+        let locals: Vec<Ident> = read.iter().map(|&i| ident(self.names.get(&symbols[i]))).collect();
+        let indices: Vec<Literal> = read.iter().map(|&i| Literal::usize_unsuffixed(i)).collect();
+        match read.len() {
+            0 => TokenStream::new(),
+            1 => quote! { #(let #locals = #source[#indices];)* },
+            count if count == symbols.len() => {
+                let size = Literal::usize_unsuffixed(count);
+                quote! { let [#(#locals),*]: [T; #size] = (*#source).into(); }
+            }
+            _ => quote! { let (#(#locals),*) = (#(#source[#indices]),*); },
+        }
+    }
+
+    fn binding(&self, writer: &Writer<'_>, binding: &Binding) -> TokenStream {
+        match binding {
+            Binding::Value { name, value } => {
+                let (name, value) = (writer.symbol(name), writer.formula(value));
+                quote! { let #name = #value; }
+            }
+            Binding::SinCos { sin, cos, angle } => {
+                let (sin, cos) = (self.pattern(writer, sin.as_ref()), self.pattern(writer, cos.as_ref()));
+                let call = writer.method(angle, "sin_cos");
+                quote! { let (#sin, #cos) = #call; }
+            }
+            Binding::Call { primitive, argument, outputs } => {
+                let argument = writer.rows(argument, 3);
+                let names: Vec<TokenStream> = outputs.iter().map(|symbol| self.pattern(writer, Some(symbol))).collect();
+                call(*primitive, &argument, &names)
+            }
+        }
+    }
+
+    /// The name of a result, or `_` where it is not used.
+    fn pattern(&self, writer: &Writer<'_>, symbol: Option<&Symbol>) -> TokenStream {
+        match symbol.filter(|symbol| self.used.contains(*symbol)) {
+            Some(symbol) => {
+                let name = writer.symbol(symbol);
+                quote! { #name }
+            }
+            None => quote! { _ },
+        }
+    }
+}
+
+/// The symbols that a kernel's lines bind.
+fn bound_symbols(steps: &[Step]) -> impl Iterator<Item = &Symbol> {
+    steps.iter().flat_map(|step| match step {
+        Step::Let(symbol, _) => std::slice::from_ref(symbol),
+        Step::Call { outputs, .. } => outputs.as_slice(),
+    })
+}
+
+/// A call of the runtime; `names` are its results, row by row.
+fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> TokenStream {
+    match primitive {
+        Primitive::RotationVector => {
+            let size = Literal::usize_unsuffixed(names.len());
+            quote! { let [#(#names),*]: [T; #size] = T::rotation_vector(&#argument).into(); }
+        }
+        Primitive::NearestRotation => {
+            // Nested arrays of a matrix are its columns.
+            let columns = (0..3).map(|j| {
+                let column = names.iter().skip(j).step_by(3);
+                quote! { [#(#column),*] }
+            });
+            quote! { let [#(#columns),*]: [[T; 3]; 3] = nearest_rotation(&#argument).into(); }
+        }
+    }
+}

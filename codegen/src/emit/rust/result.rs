@@ -1,0 +1,68 @@
+//! The last expression of a method: matrices as rows, so that a reader sees them.
+
+use super::signature::{Output, Signature};
+use super::tokens::Writer;
+use crate::derived::Kernel;
+use crate::emit::formula::Node;
+use crate::matrix::Matrix;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The result of a kernel; `entries` are those of its outputs, one matrix after the other.
+pub fn tokens(writer: &Writer<'_>, kernel: &Kernel, signature: &Signature, entries: &[Node]) -> TokenStream {
+    let mut rest = entries;
+    let parts = kernel.outputs.iter().map(|matrix| {
+        let (own, others) = rest.split_at(matrix.entries().len().min(rest.len()));
+        rest = others;
+        (matrix, own)
+    });
+    let parts: Vec<(&Matrix, &[Node])> = parts.collect();
+    match (signature.output, parts.as_slice()) {
+        (Output::Pose, [(rotation, r), (translation, p)]) => {
+            let (rotation, translation) = (matrix(writer, rotation, r), vector(writer, translation, p));
+            quote! { Pose { rotation: #rotation, translation: #translation } }
+        }
+        (Output::Scalar, _) => norm(writer, entries),
+        (Output::Vector(_), [(column, own)]) => vector(writer, column, own),
+        (Output::Matrix(..), [(only, own)]) => matrix(writer, only, own),
+        (_, slices) if slices.iter().all(|(slice, _)| slice.is_zero()) => {
+            let count = Literal::usize_unsuffixed(slices.len());
+            quote! { [SMatrix::zeros(); #count] }
+        }
+        (_, slices) => {
+            let slices = slices.iter().map(|(slice, own)| matrix(writer, slice, own));
+            quote! { [#(#slices),*] }
+        }
+    }
+}
+
+fn matrix(writer: &Writer<'_>, matrix: &Matrix, entries: &[Node]) -> TokenStream {
+    if matrix.is_zero() {
+        return quote! { SMatrix::zeros() };
+    }
+    if matrix.rows() == matrix.columns() && matrix.is_identity() {
+        return quote! { SMatrix::identity() };
+    }
+    writer.rows(entries, matrix.columns())
+}
+
+fn vector(writer: &Writer<'_>, column: &Matrix, entries: &[Node]) -> TokenStream {
+    if column.is_zero() {
+        return quote! { SVector::zeros() };
+    }
+    let entries = entries.iter().map(|entry| writer.formula(entry));
+    quote! { SVector::from([#(#entries),*]) }
+}
+
+/// Root of the sum of squares.
+fn norm(writer: &Writer<'_>, relations: &[Node]) -> TokenStream {
+    if relations.iter().all(Node::is_zero) {
+        return quote! { T::zero() };
+    }
+    let relations = relations.iter().map(|relation| writer.formula(relation));
+    quote! {
+        let relations = [#(#relations),*];
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| sum + relation * relation);
+        sum.sqrt()
+    }
+}

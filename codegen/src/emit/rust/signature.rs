@@ -1,0 +1,149 @@
+//! The signatures of the trait's methods.
+
+use crate::derived::{Arguments, KernelKind, Shape};
+use crate::expr::Symbol;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// An argument of a kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// Q.
+    Configuration,
+    /// Q′.
+    Target,
+    /// ϕ.
+    Local,
+    /// v.
+    Velocity,
+    /// S₀⁻¹ v at the moved configuration: the symbols of v under another name.
+    Rate,
+    /// p.
+    Momentum,
+    /// v̄.
+    Speeds,
+    /// h.
+    Wrench,
+}
+
+impl Argument {
+    /// Its name in Rust.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Configuration => "q",
+            Self::Target => "target",
+            Self::Local => "phi",
+            Self::Velocity => "v",
+            Self::Rate => "rate",
+            Self::Momentum => "p",
+            Self::Speeds => "speeds",
+            Self::Wrench => "h",
+        }
+    }
+
+    /// Its number of scalars.
+    pub fn size(self, shape: Shape) -> usize {
+        match self {
+            Self::Configuration | Self::Target => shape.configuration,
+            Self::Local | Self::Velocity | Self::Rate | Self::Momentum => shape.freedoms,
+            Self::Speeds => shape.speeds,
+            Self::Wrench => 6,
+        }
+    }
+
+    /// Its symbols, in order.
+    pub fn symbols(self, arguments: &Arguments) -> &[Symbol] {
+        match self {
+            Self::Configuration => &arguments.configuration,
+            Self::Target => &arguments.target,
+            Self::Local => &arguments.local,
+            Self::Velocity | Self::Rate => &arguments.velocity,
+            Self::Momentum => &arguments.momentum,
+            Self::Speeds => &arguments.speeds,
+            Self::Wrench => &arguments.wrench,
+        }
+    }
+}
+
+/// What a kernel returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// A pose.
+    Pose,
+    /// A matrix.
+    Matrix(usize, usize),
+    /// A vector.
+    Vector(usize),
+    /// One matrix for each ϕ_k.
+    Slices(usize, usize),
+    /// A scalar.
+    Scalar,
+}
+
+/// Name, arguments and result of a method.
+#[derive(Clone, Debug)]
+pub struct Signature {
+    /// Its name.
+    pub name: &'static str,
+    /// Its arguments after `&self`.
+    pub arguments: Vec<Argument>,
+    /// Its result.
+    pub output: Output,
+}
+
+impl Signature {
+    /// The signature of a kernel.
+    pub fn new(kind: KernelKind, shape: Shape) -> Self {
+        use Argument::{Configuration, Local, Momentum, Rate, Speeds, Target, Velocity, Wrench};
+        use Output::{Matrix, Pose, Scalar, Slices, Vector};
+        let (n, k, s, c) = (shape.configuration, shape.freedoms, shape.speeds, shape.constraints);
+        let q = || vec![Configuration];
+        let (name, arguments, output) = match kind {
+            KernelKind::Home => ("home", vec![], Vector(n)),
+            KernelKind::Pose => ("pose", q(), Pose),
+            KernelKind::TwistMap => ("twist_map", q(), Matrix(6, k)),
+            KernelKind::TwistMapChild => ("twist_map_child", q(), Matrix(6, k)),
+            KernelKind::TwistMapChildGradient => ("twist_map_child_gradient", q(), Slices(6, k)),
+            KernelKind::VelocityMap => ("velocity_map", q(), Matrix(k, k)),
+            KernelKind::VelocityMapInverse => ("velocity_map_inverse", q(), Matrix(k, k)),
+            KernelKind::VelocityMapGradient => ("velocity_map_gradient", q(), Slices(k, k)),
+            KernelKind::Gamma => ("gamma", vec![Configuration, Velocity], Matrix(k, k)),
+            KernelKind::J22 => ("j22", vec![Configuration, Momentum], Matrix(k, k)),
+            KernelKind::Constraint => ("constraint", q(), Matrix(k, c)),
+            KernelKind::SpeedBasis => ("speed_basis", q(), Matrix(k, s)),
+            KernelKind::SpeedBasisGradient => ("speed_basis_gradient", q(), Slices(k, s)),
+            KernelKind::ConfigurationRate => ("configuration_rate", vec![Configuration, Velocity], Vector(n)),
+            KernelKind::Retract => ("retract", vec![Configuration, Local], Vector(n)),
+            KernelKind::Local => ("local", vec![Configuration, Target], Vector(k)),
+            KernelKind::RetractDifferentialInverse => {
+                ("retract_differential_inverse", vec![Configuration, Local, Rate], Vector(k))
+            }
+            KernelKind::Project => ("project", q(), Vector(n)),
+            KernelKind::Residual => ("residual", q(), Scalar),
+            KernelKind::BiasAcceleration => ("bias_acceleration", vec![Configuration, Speeds], Vector(6)),
+            KernelKind::BiasMomentum => ("bias_momentum", vec![Configuration, Speeds, Wrench], Vector(s)),
+        };
+        Self { name, arguments, output }
+    }
+
+    /// The type that the method returns.
+    pub fn output_type(&self, shape: Shape) -> TokenStream {
+        let size = Literal::usize_unsuffixed;
+        match self.output {
+            Output::Pose => quote! { Pose<T> },
+            Output::Scalar => quote! { T },
+            Output::Vector(rows) => {
+                let rows = size(rows);
+                quote! { SVector<T, #rows> }
+            }
+            Output::Matrix(rows, columns) => {
+                let (rows, columns) = (size(rows), size(columns));
+                quote! { SMatrix<T, #rows, #columns> }
+            }
+            Output::Slices(rows, columns) => {
+                let (rows, columns, count) = (size(rows), size(columns), size(shape.freedoms));
+                quote! { [SMatrix<T, #rows, #columns>; #count] }
+            }
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Formulas as Rust tokens, generic in the scalar `T`.
+
+use crate::emit::formula::{Binding, Node, Program};
+use crate::emit::names::{NameSet, Names, number_name};
+use crate::expr::{Function, Rational, Symbol};
+use num_bigint::BigInt;
+use num_traits::{One, ToPrimitive, Zero};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+
+/// The identifier `name`.
+pub fn ident(name: &str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
+
+/// How tightly an operator binds.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Sum,
+    Product,
+    Sign,
+    Atom,
+}
+
+/// Writes the formulas of one kernel, and remembers the constants that they use.
+pub struct Writer<'a> {
+    names: &'a Names,
+    numbers: RefCell<BTreeMap<Rational, Ident>>,
+    taken: RefCell<NameSet>,
+    pi: Cell<bool>,
+}
+
+impl<'a> Writer<'a> {
+    /// A writer of the program's formulas.
+    pub fn new(names: &'a Names, program: &Program) -> Self {
+        let mut taken = names.taken().clone();
+        for name in program.bindings.iter().flat_map(Binding::names) {
+            taken.claim(names.get(name));
+        }
+        Self { names, numbers: RefCell::default(), taken: RefCell::new(taken), pi: Cell::new(false) }
+    }
+
+    /// The identifier of a constant.
+    fn number(&self, value: &Rational) -> Ident {
+        let make = || {
+            let name = number_name(value);
+            // Words are reserved for numbers; composed names may meet a name of the joint.
+            let composed = name.contains(|c: char| c.is_ascii_digit());
+            ident(&if composed { self.taken.borrow_mut().claim(&name) } else { name })
+        };
+        self.numbers.borrow_mut().entry(value.clone()).or_insert_with(make).clone()
+    }
+
+    /// `let half = T::from_f64(0.5);` for each constant written so far.
+    pub fn constants(&self) -> TokenStream {
+        let numbers = self.numbers.borrow();
+        let lines = numbers.iter().map(|(value, name)| match value {
+            zero if zero.is_zero() => quote! { let #name = T::zero(); },
+            one if one.is_one() => quote! { let #name = T::one(); },
+            _ => {
+                let literal = number_literal(value);
+                quote! { let #name = T::from_f64(#literal); }
+            }
+        });
+        let pi = self.pi.get().then(|| quote! { let pi = T::from_f64(::core::f64::consts::PI); });
+        quote! { #(#lines)* #pi }
+    }
+
+    /// The identifier of a symbol.
+    pub fn symbol(&self, symbol: &Symbol) -> Ident {
+        ident(self.names.get(symbol))
+    }
+
+    /// The formula.
+    pub fn formula(&self, node: &Node) -> TokenStream {
+        match node {
+            Node::Number(value) => {
+                let name = self.number(value);
+                quote! { #name }
+            }
+            Node::Symbol(symbol) => {
+                let name = self.symbol(symbol);
+                quote! { #name }
+            }
+            Node::Pi => {
+                self.pi.set(true);
+                quote! { pi }
+            }
+            Node::Sum(terms) => self.sum(terms),
+            Node::Product(factors) => self.product(factors),
+            Node::Quotient(above, below) => {
+                let (above, below) = (self.at_least(above, Level::Product), self.at_least(below, Level::Atom));
+                quote! { #above / #below }
+            }
+            Node::Negative(inner) => {
+                let inner = self.at_least(inner, Level::Product);
+                quote! { -#inner }
+            }
+            Node::Call(function, arguments) => self.call(*function, arguments),
+        }
+    }
+
+    fn sum(&self, terms: &[(bool, Node)]) -> TokenStream {
+        let mut tokens = TokenStream::new();
+        for (i, (minus, term)) in terms.iter().enumerate() {
+            let value = self.at_least(term, Level::Product);
+            tokens.extend(match (i, minus) {
+                (0, false) => quote! { #value },
+                (_, false) => quote! { + #value },
+                (_, true) => quote! { - #value },
+            });
+        }
+        tokens
+    }
+
+    fn product(&self, factors: &[Node]) -> TokenStream {
+        let factors = factors.iter().map(|factor| self.at_least(factor, Level::Atom));
+        let mut tokens = TokenStream::new();
+        for (i, factor) in factors.enumerate() {
+            tokens.extend(if i == 0 { factor } else { quote! { * #factor } });
+        }
+        tokens
+    }
+
+    fn call(&self, function: Function, arguments: &[Node]) -> TokenStream {
+        let mut written = arguments.iter().map(|argument| self.at_least(argument, Level::Atom));
+        let first = written.next().unwrap_or_default();
+        match function {
+            Function::Sin => quote! { #first.sin_cos().0 },
+            Function::Cos => quote! { #first.sin_cos().1 },
+            Function::Exp => quote! { #first.exp() },
+            Function::Ln => quote! { #first.ln() },
+            Function::Sqrt => quote! { #first.sqrt() },
+            Function::Recip => quote! { (T::one() / #first) },
+            Function::Pi => quote! { pi },
+            Function::Atan2 => {
+                let x = arguments.get(1).map(|x| self.formula(x));
+                quote! { #first.atan2(#x) }
+            }
+            Function::Stumpff(order) => {
+                let order = Literal::u8_unsuffixed(order);
+                quote! { #first.stumpff(#order) }
+            }
+            Function::DexpInverse(derivative) => {
+                let derivative = Literal::u8_unsuffixed(derivative);
+                quote! { #first.dexp_inverse(#derivative) }
+            }
+        }
+    }
+
+    /// A method without arguments called on the formula.
+    pub fn method(&self, node: &Node, name: &str) -> TokenStream {
+        let (receiver, name) = (self.at_least(node, Level::Atom), ident(name));
+        quote! { #receiver.#name() }
+    }
+
+    /// `from_rows([[…], …])` of entries, row by row.
+    pub fn rows(&self, entries: &[Node], columns: usize) -> TokenStream {
+        let rows = entries.chunks(columns.max(1)).map(|row| {
+            let row = row.iter().map(|entry| self.formula(entry));
+            quote! { [#(#row),*] }
+        });
+        quote! { from_rows([#(#rows),*]) }
+    }
+
+    /// The formula, in parentheses where it binds less tightly than `level`.
+    fn at_least(&self, node: &Node, level: Level) -> TokenStream {
+        let own = match node {
+            Node::Sum(_) => Level::Sum,
+            Node::Product(_) | Node::Quotient(..) => Level::Product,
+            Node::Negative(_) => Level::Sign,
+            Node::Number(_) | Node::Symbol(_) | Node::Pi | Node::Call(..) => Level::Atom,
+        };
+        let tokens = self.formula(node);
+        // A sign inside another operation is put in parentheses: `a * (-b)`.
+        if own < level || own == Level::Sign { quote! { (#tokens) } } else { tokens }
+    }
+}
+
+/// A positive rational as a literal, or as the quotient of two where that alone says what it is.
+fn number_literal(value: &Rational) -> TokenStream {
+    let exact = |n: &BigInt| n.bits() <= 53;
+    let (above, below) = (value.numer(), value.denom());
+    let is_dyadic = below.trailing_zeros().is_some_and(|zeros| *below == BigInt::one() << zeros);
+    if exact(above) && exact(below) && !is_dyadic {
+        let (above, below) = (float(above.to_f64()), float(below.to_f64()));
+        return quote! { #above / #below };
+    }
+    let value = float(value.to_f64());
+    quote! { #value }
+}
+
+/// The literal of a finite value; rationals of specs are far within the range of `f64`.
+fn float(value: Option<f64>) -> Literal {
+    Literal::f64_unsuffixed(value.filter(|value| value.is_finite()).unwrap_or(f64::MAX))
+}
+
+/// A number that may be negative, as in constant tables.
+pub fn signed_literal(value: &Rational) -> TokenStream {
+    let literal = float(value.to_f64().map(f64::abs));
+    match value < &Rational::zero() {
+        true => quote! { -#literal },
+        false => quote! { #literal },
+    }
+}

@@ -1,0 +1,250 @@
+//! Finite maps of a joint whose Φ is `Q exp(ϕ)` on every factor: Φ, its inverse and differential, projection, residual.
+
+use super::motion::local_element;
+use super::steps::Steps;
+use crate::algebra;
+use crate::derived::{Primitive, Step};
+use crate::expr::{Expr, Symbol};
+use crate::manifold::{Factor, Kind};
+use crate::matrix::Matrix;
+use crate::model::{Freedom, JointSpec};
+
+/// Lines and result of a kernel.
+pub type Body = (Vec<Step>, Matrix);
+
+/// Prefix of the names of one factor's intermediate values: none where it is the only one.
+fn prefix(spec: &JointSpec, factor: &Factor) -> String {
+    match spec.manifold.value.factors().len() {
+        1 => String::new(),
+        _ => format!("{}_", factor.name.to_ascii_lowercase()),
+    }
+}
+
+/// Φ(Q, ϕ) = Q exp(Σ b_k ϕ_k); `None` where exp has no closed form.
+pub fn retract(spec: &JointSpec) -> Option<Body> {
+    let mut steps = Steps::default();
+    let mut moved = vec![];
+    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+        let prefix = prefix(spec, factor);
+        let xi = local_element(spec, n);
+        let mut square = None;
+        let exp = algebra::exp_by(&xi, |order, s| {
+            let bound = square.get_or_insert_with(|| steps.bind(&format!("{prefix}theta_squared"), s.clone())).clone();
+            steps.bind(&format!("{prefix}c{order}"), bound.stumpff(order))
+        })?;
+        let exp = match factor.kind {
+            Kind::Real(_) => exp,
+            _ => steps.bind_matrix(&format!("{prefix}e"), &exp),
+        };
+        moved.extend(factor.coordinates_of(&factor.matrix().times(&exp)));
+    }
+    Some((steps.finish(), Matrix::column_vector(moved)))
+}
+
+/// ϕ with Φ(Q, ϕ) = Q′: `log(Q⁻¹ Q′)` in the declared basis.
+pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
+    let mut steps = Steps::default();
+    let mut locals = vec![Expr::zero(); spec.freedoms.value.len()];
+    for (n, (factor, goal)) in spec.manifold.value.factors().iter().zip(target).enumerate() {
+        let relative = factor.inverse(&factor.matrix())?.times(&goal.matrix());
+        let prefix = prefix(spec, factor);
+        let standard = logarithm(factor.kind, &relative, &prefix, &mut steps)?;
+        let freedoms = spec.freedoms.value.iter().enumerate().filter(|(_, f)| f.factor == n);
+        let (places, freedoms): (Vec<usize>, Vec<&Freedom>) = freedoms.unzip();
+        for (place, value) in places.into_iter().zip(in_basis(&freedoms, &standard)?) {
+            locals[place] = value;
+        }
+    }
+    Some((steps.finish(), Matrix::column_vector(locals)))
+}
+
+/// Coordinates in the declared basis of the element with the given standard coordinates.
+fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Option<Vec<Expr>> {
+    let columns: Vec<Vec<Expr>> = freedoms.iter().map(|freedom| freedom.generator.clone()).collect();
+    let basis = Matrix::from_columns(standard.len(), &columns);
+    let inverse = basis.determinant(&Expr::clone).recip()?;
+    let inverse = basis.adjugate(&Expr::clone).scale(&inverse);
+    Some(inverse.times(&Matrix::column_vector(standard.to_vec())).entries().to_vec())
+}
+
+/// Standard coordinates of the logarithm of a group element given as a matrix.
+fn logarithm(kind: Kind, m: &Matrix, prefix: &str, steps: &mut Steps) -> Option<Vec<Expr>> {
+    let named = |name: &str| format!("{prefix}{name}");
+    Some(match kind {
+        Kind::Real(size) => (0..size).map(|i| m.at(i, size).clone()).collect(),
+        Kind::S1 | Kind::So2 => vec![steps.bind(&named("angle"), m.at(1, 0).atan2(m.at(0, 0)))],
+        Kind::So3 => rotation_vector(m.clone(), prefix, steps),
+        Kind::S3 => rotation_vector(rotation_of_quaternion(&m.column(0)), prefix, steps),
+        Kind::Se2 => {
+            let angle = steps.bind(&named("angle"), m.at(1, 0).atan2(m.at(0, 0)));
+            let t = steps.bind_matrix(&named("t"), &m.block(0, 2, 2, 1));
+            let square = steps.bind(&named("theta_squared"), angle.square());
+            // (θ/2) cot(θ/2) = 1 − θ² G(θ²).
+            let cotangent = &Expr::one() - &(&square * &square.dexp_inverse(0));
+            let cotangent = steps.bind(&named("half_cotangent"), cotangent);
+            let half = steps.bind(&named("half_angle"), &angle * &Expr::fraction(1, 2));
+            let x = &(&cotangent * t.at(0, 0)) + &(&half * t.at(1, 0));
+            let y = &(&cotangent * t.at(1, 0)) - &(&half * t.at(0, 0));
+            vec![angle, x, y]
+        }
+        Kind::Se3 => {
+            let omega = rotation_vector(m.block(0, 0, 3, 3), prefix, steps);
+            let p = steps.bind_matrix(&named("t"), &m.block(0, 3, 3, 1));
+            let square: Expr = omega.iter().map(Expr::square).sum();
+            let square = steps.bind(&named("theta_squared"), square);
+            let g = steps.bind(&named("g"), square.dexp_inverse(0));
+            let tilde = Matrix::tilde(&omega);
+            let once = steps.bind_matrix(&named("r_cross_t"), &tilde.times(&p));
+            let twice = tilde.times(&once).scale(&g);
+            let rho = p.minus(&once.scale(&Expr::fraction(1, 2))).plus(&twice);
+            omega.into_iter().chain(rho.entries().iter().cloned()).collect()
+        }
+        Kind::S2 => return None,
+    })
+}
+
+fn rotation_vector(rotation: Matrix, prefix: &str, steps: &mut Steps) -> Vec<Expr> {
+    let names = ["r1", "r2", "r3"].map(|name| format!("{prefix}{name}"));
+    steps.call(Primitive::RotationVector, rotation, &names.each_ref().map(String::as_str))
+}
+
+/// The rotation matrix of a unit quaternion `(w, x, y, z)`.
+pub fn rotation_of_quaternion(q: &[Expr]) -> Matrix {
+    let vector = Matrix::tilde(&q[1..4]);
+    let two = Expr::integer(2);
+    let once = vector.scale(&(&two * &q[0]));
+    Matrix::identity(3).plus(&once).plus(&vector.times(&vector).scale(&two))
+}
+
+/// `D⁻¹ u` with `D = Σ (−ad_ϕ)ⁿ/(n+1)!`: `u + ½ [ϕ, u] + G [ϕ, [ϕ, u]] + …`; `None` where no closed form fits.
+pub fn retract_differential_inverse(spec: &JointSpec, constants: &[Matrix], rate: &[Symbol]) -> Option<Body> {
+    let size = rate.len();
+    let mut steps = Steps::default();
+    let mut rates = Matrix::symbols(rate);
+    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+        let places: Vec<usize> = (0..size).filter(|&k| spec.freedoms.value[k].factor == n).collect();
+        let ad = restricted_adjoint(spec, constants, &places);
+        if ad.is_zero() {
+            continue;
+        }
+        let prefix = prefix(spec, factor);
+        let rate = rates.select_rows(&places);
+        let solved = inverse_differential(&ad, &rate, &prefix, &mut steps)?;
+        rates = Matrix::from_fn(size, 1, |i, _| match places.iter().position(|&place| place == i) {
+            Some(row) => solved.at(row, 0).clone(),
+            None => rates.at(i, 0).clone(),
+        });
+    }
+    Some((steps.finish(), rates))
+}
+
+/// `ad_ϕ` on the freedoms at `places`: entry (i, j) is `Σ_k c^i_kj ϕ_k`.
+fn restricted_adjoint(spec: &JointSpec, constants: &[Matrix], places: &[usize]) -> Matrix {
+    Matrix::from_fn(places.len(), places.len(), |i, j| {
+        let term = |&k: &usize| constants[k].at(places[i], places[j]) * &Expr::symbol(&spec.freedoms.value[k].local);
+        places.iter().map(term).sum()
+    })
+}
+
+fn inverse_differential(ad: &Matrix, rate: &Matrix, prefix: &str, steps: &mut Steps) -> Option<Matrix> {
+    let named = |name: &str| format!("{prefix}{name}");
+    let square = ad.times(ad);
+    let once = steps.bind_matrix(&named("bracket"), &ad.times(rate));
+    let half = once.scale(&Expr::fraction(1, 2));
+    let linear = rate.plus(&half);
+    if square.is_zero() {
+        return Some(linear);
+    }
+    let cube = square.times(ad);
+    for rank in [2, 4] {
+        let s = &-square.trace() * &Expr::fraction(1, rank);
+        let simple = cube.plus(&ad.scale(&s)).is_zero();
+        let two_s = &s * &Expr::integer(2);
+        let double = || cube.times(&square).plus(&cube.scale(&two_s)).plus(&ad.scale(&s.square())).is_zero();
+        if !simple && !double() {
+            continue;
+        }
+        let theta_squared = steps.bind(&named("theta_squared"), s);
+        let g = steps.bind(&named("g"), theta_squared.dexp_inverse(0));
+        let twice = steps.bind_matrix(&named("double_bracket"), &ad.times(&once));
+        if simple {
+            return Some(linear.plus(&twice.scale(&g)));
+        }
+        // ad (ad² + s)² = 0: the even part is interpolated with its slope at the double root.
+        let slope = steps.bind(&named("g_slope"), theta_squared.dexp_inverse(1));
+        let alpha = steps.bind(&named("alpha"), &g - &(&theta_squared * &slope));
+        let thrice = steps.bind_matrix(&named("triple_bracket"), &ad.times(&twice));
+        let fourth = ad.times(&thrice);
+        return Some(linear.plus(&twice.scale(&alpha)).minus(&fourth.scale(&slope)));
+    }
+    None
+}
+
+/// The nearest configuration on the manifold.
+pub fn project(spec: &JointSpec) -> Body {
+    let mut steps = Steps::default();
+    let mut projected = vec![];
+    for factor in spec.manifold.value.factors() {
+        projected.extend(projected_factor(factor, &prefix(spec, factor), &mut steps));
+    }
+    (steps.finish(), Matrix::column_vector(projected))
+}
+
+fn projected_factor(factor: &Factor, prefix: &str, steps: &mut Steps) -> Vec<Expr> {
+    let q: Vec<Expr> = factor.coordinates.iter().map(Expr::symbol).collect();
+    match factor.kind {
+        Kind::Real(_) => q,
+        Kind::S1 | Kind::S2 | Kind::S3 => normalised(&q, prefix, steps),
+        Kind::So2 | Kind::Se2 => {
+            let m = factor.matrix();
+            let half = Expr::fraction(1, 2);
+            let cos = steps.bind(&format!("{prefix}cos"), &(m.at(0, 0) + m.at(1, 1)) * &half);
+            let sin = steps.bind(&format!("{prefix}sin"), &(m.at(1, 0) - m.at(0, 1)) * &half);
+            let unit = normalised(&[cos, sin], prefix, steps);
+            let turned = Matrix::from_fn(m.rows(), m.columns(), |i, j| match (i, j) {
+                (0, 0) | (1, 1) => unit[0].clone(),
+                (1, 0) => unit[1].clone(),
+                (0, 1) => -&unit[1],
+                _ => m.at(i, j).clone(),
+            });
+            factor.coordinates_of(&turned)
+        }
+        Kind::So3 | Kind::Se3 => {
+            let m = factor.matrix();
+            let names: Vec<String> = (0..9).map(|n| format!("{prefix}r{}{}", n / 3 + 1, n % 3 + 1)).collect();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let r = steps.call(Primitive::NearestRotation, m.block(0, 0, 3, 3), &names);
+            let turned = Matrix::from_fn(m.rows(), m.columns(), |i, j| match i < 3 && j < 3 {
+                true => r[3 * i + j].clone(),
+                false => m.at(i, j).clone(),
+            });
+            factor.coordinates_of(&turned)
+        }
+    }
+}
+
+fn normalised(q: &[Expr], prefix: &str, steps: &mut Steps) -> Vec<Expr> {
+    let square: Expr = q.iter().map(Expr::square).sum();
+    let norm = steps.bind(&format!("{prefix}norm"), square.sqrt());
+    let inverse = steps.bind(&format!("{prefix}inverse_norm"), norm.recip().unwrap_or_default());
+    q.iter().map(|entry| entry * &inverse).collect()
+}
+
+/// The relations whose residual says how far Q is off its manifold: enough of them, none twice.
+pub fn residual(spec: &JointSpec) -> Matrix {
+    Matrix::column_vector(spec.manifold.value.factors().iter().flat_map(residual_of_factor).collect())
+}
+
+fn residual_of_factor(factor: &Factor) -> Vec<Expr> {
+    match factor.kind {
+        Kind::So3 | Kind::Se3 => {
+            let r = factor.matrix().block(0, 0, 3, 3);
+            let gram = r.transpose().times(&r).minus(&Matrix::identity(3));
+            let upper = (0..3).flat_map(|i| (i..3).map(move |j| (i, j)));
+            // RᵀR = I leaves reflections; the determinant does not.
+            let orientation = &r.determinant(&Expr::clone) - &Expr::one();
+            upper.map(|(i, j)| gram.at(i, j).clone()).chain([orientation]).collect()
+        }
+        _ => factor.relations(),
+    }
+}

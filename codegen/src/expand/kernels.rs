@@ -1,0 +1,151 @@
+//! The kernels of THEORY §3 from an expansion, in the order in which they are emitted.
+
+use super::{Expansion, finite, hamel};
+use crate::derived::{Kernel, KernelKind, Step, Structure};
+use crate::diagnostic::Diagnostic;
+use crate::expr::Role;
+use crate::manifold::Ideal;
+use crate::matrix::Matrix;
+use crate::model::JointSpec;
+
+/// All kernels of a joint.
+pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
+    let maker = Maker { spec, x: expansion, ideal: spec.manifold.value.ideal() };
+    let mut kernels = maker.pose_and_velocity();
+    kernels.extend(maker.nonholonomic());
+    kernels.extend(maker.finite_maps()?);
+    kernels.extend(maker.bias());
+    kernels.sort_by_key(|kernel| kernel.kind);
+    Ok(kernels)
+}
+
+struct Maker<'a> {
+    spec: &'a JointSpec,
+    x: &'a Expansion,
+    ideal: &'a Ideal,
+}
+
+impl Maker<'_> {
+    fn short(&self, matrix: &Matrix) -> Matrix {
+        self.ideal.simplest_entries(matrix)
+    }
+
+    fn normal(&self, matrix: &Matrix) -> Matrix {
+        self.ideal.normal_forms(matrix)
+    }
+
+    fn pose_and_velocity(&self) -> Vec<Kernel> {
+        let pose = &self.spec.pose.value;
+        let s = &self.x.velocity_map;
+        let velocity = Matrix::symbols(&self.x.arguments.velocity);
+        let momentum = Matrix::symbols(&self.x.arguments.momentum);
+        let inverse = &self.x.velocity_map_inverse;
+        let child_slopes = (0..self.x.shape.freedoms)
+            .map(|k| self.normal(&self.x.motion.along_each(&self.x.twist_map_child, k)));
+        let home = Matrix::column_vector(self.spec.manifold.value.home());
+        vec![
+            plain(KernelKind::Home, vec![home]),
+            plain(KernelKind::Pose, vec![pose.rotation.clone(), pose.translation.clone()]),
+            plain(KernelKind::TwistMap, vec![self.x.twist_map.clone()]),
+            plain(KernelKind::TwistMapChild, vec![self.x.twist_map_child.clone()]),
+            plain(KernelKind::TwistMapChildGradient, child_slopes.collect()),
+            plain(KernelKind::VelocityMap, vec![s.base.clone()]),
+            plain(KernelKind::VelocityMapInverse, vec![inverse.clone()]),
+            plain(KernelKind::VelocityMapGradient, s.slopes.clone()),
+            plain(KernelKind::Gamma, vec![self.normal(&hamel::gamma(s, inverse, &velocity))]),
+            plain(KernelKind::J22, vec![self.normal(&hamel::j22(s, inverse, &momentum))]),
+        ]
+    }
+
+    fn nonholonomic(&self) -> Vec<Kernel> {
+        let parts = &self.x.nonholonomic;
+        vec![
+            plain(KernelKind::Constraint, vec![parts.constraint.clone()]),
+            plain(KernelKind::SpeedBasis, vec![parts.speed_basis.clone()]),
+            plain(KernelKind::SpeedBasisGradient, parts.slopes.clone()),
+        ]
+    }
+
+    fn finite_maps(&self) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
+        let (spec, arguments) = (self.spec, &self.x.arguments);
+        let missing = || vec![no_closed_form(spec)];
+        let (retract_steps, retract) = finite::retract(spec).ok_or_else(missing)?;
+        let (local_steps, local) = finite::local(spec, &spec.manifold.value.target()).ok_or_else(missing)?;
+        let (differential_steps, differential) =
+            finite::retract_differential_inverse(spec, &self.x.structure_constants, &arguments.velocity).ok_or_else(missing)?;
+        let (project_steps, project) = finite::project(spec);
+        let identity = |value: &Matrix, symbols: &[crate::expr::Symbol]| *value == Matrix::symbols(symbols);
+        let differential_structure = match identity(&differential, &arguments.velocity) {
+            true => Structure::Identity,
+            false => Structure::General,
+        };
+        let project_structure = match identity(&project, &arguments.configuration) {
+            true => Structure::Identity,
+            false => Structure::General,
+        };
+        Ok(vec![
+            plain(KernelKind::ConfigurationRate, vec![self.configuration_rate()]),
+            with(KernelKind::Retract, retract_steps, retract, Structure::General),
+            with(KernelKind::Local, local_steps, local, Structure::General),
+            with(KernelKind::RetractDifferentialInverse, differential_steps, differential, differential_structure),
+            with(KernelKind::Project, project_steps, project, project_structure),
+            plain(KernelKind::Residual, vec![finite::residual(spec)]),
+        ])
+    }
+
+    /// `Q̇ = Σ_k δ_k (S₀⁻¹ v)_k`, (31).
+    fn configuration_rate(&self) -> Matrix {
+        let rates = self.x.velocity_map_inverse.times(&Matrix::symbols(&self.x.arguments.velocity));
+        let directions: Vec<Vec<_>> = (0..self.x.shape.freedoms).map(|k| self.x.motion.direction(k).to_vec()).collect();
+        let directions = Matrix::from_columns(self.x.shape.configuration, &directions);
+        let rate = directions.times(&rates);
+        self.short(&rate)
+    }
+
+    /// `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`, with `ϕ̇ = S₀⁻¹ S̄ v̄`.
+    fn bias(&self) -> Vec<Kernel> {
+        let basis = &self.x.nonholonomic.speed_basis;
+        let speeds = Matrix::symbols(&self.x.arguments.speeds);
+        let rates = self.normal(&self.x.velocity_map_inverse.times(basis).times(&speeds));
+        let reduced = self.normal(&self.x.twist_map_child.times(basis));
+        let zero = Matrix::zeros(6, basis.columns());
+        let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| {
+            sum.plus(&self.normal(&self.x.motion.along_each(&reduced, k)).scale(rates.at(k, 0)))
+        });
+        let acceleration = self.normal(&rate.times(&speeds));
+        let momentum = self.normal(&rate.transpose().times(&Matrix::symbols(&self.x.arguments.wrench)));
+        vec![
+            plain(KernelKind::BiasAcceleration, vec![acceleration]),
+            plain(KernelKind::BiasMomentum, vec![momentum]),
+        ]
+    }
+}
+
+/// A kernel without intermediate lines.
+fn plain(kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
+    let structure = structure_of(&outputs);
+    Kernel { kind, steps: vec![], outputs, structure }
+}
+
+fn with(kind: KernelKind, steps: Vec<Step>, output: Matrix, structure: Structure) -> Kernel {
+    Kernel { kind, steps, outputs: vec![output], structure }
+}
+
+fn structure_of(outputs: &[Matrix]) -> Structure {
+    let depends = |role: Role| {
+        let entries = outputs.iter().flat_map(|output| output.entries());
+        entries.clone().any(|entry| entry.symbols().iter().any(|symbol| symbol.role == role))
+    };
+    match outputs {
+        _ if outputs.iter().all(Matrix::is_zero) => Structure::Zero,
+        [output] if output.rows() == output.columns() && output.is_identity() => Structure::Identity,
+        _ if !depends(Role::Coordinate) => Structure::Constant,
+        _ => Structure::General,
+    }
+}
+
+fn no_closed_form(spec: &JointSpec) -> Diagnostic {
+    Diagnostic::new("E0404", spec.freedoms.span.clone(), "exp of this basis has no closed form that the generator knows")
+        .label("Φ = Q exp(ϕ) cannot be emitted")
+        .help("use a basis of a known algebra: r1 … r6, so2, se2, so3, se3")
+}

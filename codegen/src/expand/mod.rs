@@ -1,0 +1,206 @@
+//! The paper's step: from what a spec declares to every kernel, in symbols, at ϕ = 0 and beyond.
+//!
+//! Nothing here is trusted: [`crate::prove`] substitutes the results back into their definitions.
+
+mod finite;
+mod hamel;
+mod imperceptible;
+mod kernels;
+mod motion;
+mod nonholonomic;
+pub(crate) mod rank;
+mod steps;
+mod velocity;
+
+pub use finite::rotation_of_quaternion;
+pub use kernels::kernels;
+pub use motion::{Motion, local_element};
+pub use nonholonomic::{Nonholonomic, speed_names};
+pub use velocity::{TwistJacobian, VelocityMap, adjoint, adjoint_inverse, bracket};
+
+use crate::algebra;
+use crate::derived::{Arguments, Shape};
+use crate::diagnostic::Diagnostic;
+use crate::expr::{Expr, Role, Symbol};
+use crate::manifold::Ideal;
+use crate::matrix::Matrix;
+use crate::model::{JointSpec, VelocityFrame};
+
+/// Everything that the kernels and the proofs are made of.
+#[derive(Clone, Debug)]
+pub struct Expansion {
+    /// Sizes.
+    pub shape: Shape,
+    /// Symbols of the kernels' arguments.
+    pub arguments: Arguments,
+    /// Φ to second order.
+    pub motion: Motion,
+    /// Structure constants: slice k is `ad_{b_k}` in the declared basis, entry (i, j) = c^i_kj.
+    pub structure_constants: Vec<Matrix>,
+    /// J to first order.
+    pub jacobian: TwistJacobian,
+    /// X.
+    pub twist_map: Matrix,
+    /// X^c.
+    pub twist_map_child: Matrix,
+    /// S to first order.
+    pub velocity_map: VelocityMap,
+    /// det S₀.
+    pub determinant: Expr,
+    /// S₀⁻¹.
+    pub velocity_map_inverse: Matrix,
+    /// A, S̄ and ∂S̄/∂ϕ.
+    pub nonholonomic: Nonholonomic,
+    /// N_X.
+    pub imperceptible: Vec<[crate::expr::Rational; 10]>,
+}
+
+/// Expands a spec.
+pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
+    check_dimensions(spec)?;
+    let ideal = spec.manifold.value.ideal();
+    let arguments = arguments(spec);
+    let motion = Motion::of_exponential(spec);
+    let structure_constants = structure_constants(spec)?;
+    let jacobian = TwistJacobian::new(&spec.pose.value, &motion, ideal);
+    let to_child = adjoint_inverse(&spec.pose.value);
+    let twist_map = twist_map(spec, &jacobian, &to_child, ideal)?;
+    let twist_map_child = ideal.simplest_entries(&ideal.normal_forms(&to_child.times(&twist_map)));
+    let left_inverse = velocity::left_inverse(&twist_map, &twist_map_child, &to_child, ideal)
+        .ok_or_else(|| vec![singular_twist_map(spec, &twist_map)])?;
+    let velocity_map = VelocityMap::new(&jacobian, &twist_map, &left_inverse, &motion, ideal);
+    let simplify = |e: &Expr| ideal.normal_form(e);
+    let determinant = velocity_map.base.determinant(&simplify);
+    let inverse = determinant.recip().ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
+    let velocity_map_inverse = ideal.normal_forms(&velocity_map.base.adjugate(&simplify).scale(&inverse));
+    let nonholonomic = Nonholonomic::new(spec, &motion, ideal)?;
+    let twists = ideal.normal_forms(&to_child.times(&jacobian.base));
+    Ok(Expansion {
+        shape: Shape {
+            configuration: arguments.configuration.len(),
+            freedoms: motion.freedoms(),
+            speeds: nonholonomic.speed_basis.columns(),
+            constraints: nonholonomic.constraint.columns(),
+        },
+        imperceptible: imperceptible::imperceptible(&twist_map_child, &twists, ideal),
+        arguments,
+        motion,
+        structure_constants,
+        jacobian,
+        twist_map,
+        twist_map_child,
+        velocity_map,
+        determinant,
+        velocity_map_inverse,
+        nonholonomic,
+    })
+}
+
+fn arguments(spec: &JointSpec) -> Arguments {
+    let manifold = &spec.manifold.value;
+    let freedoms = &spec.freedoms.value;
+    let named = |role: Role, prefix: &str| -> Vec<Symbol> {
+        let name = |(i, freedom): (usize, &crate::model::Freedom)| Symbol::new(role, i, &format!("{prefix}_{}", freedom.name));
+        freedoms.iter().enumerate().map(name).collect()
+    };
+    let speeds = nonholonomic::speed_names(spec);
+    Arguments {
+        configuration: manifold.coordinates(),
+        target: manifold.target().into_iter().flat_map(|factor| factor.coordinates).collect(),
+        local: freedoms.iter().map(|freedom| freedom.local.clone()).collect(),
+        velocity: named(Role::Velocity, "v"),
+        speeds: speeds.iter().enumerate().map(|(i, name)| Symbol::new(Role::Speed, i, &format!("speed_{name}"))).collect(),
+        momentum: named(Role::Momentum, "p"),
+        wrench: Symbol::series(Role::Wrench, "h", 6),
+    }
+}
+
+/// A joint of k freedoms has a k-dimensional configuration manifold, factor by factor.
+fn check_dimensions(spec: &JointSpec) -> Result<(), Vec<Diagnostic>> {
+    let errors: Vec<Diagnostic> = spec
+        .manifold
+        .value
+        .factors()
+        .iter()
+        .enumerate()
+        .filter_map(|(n, factor)| {
+            let moved = spec.freedoms.value.iter().filter(|freedom| freedom.factor == n).count();
+            let dimension = factor.kind.dimension();
+            (moved != dimension || factor.kind.algebra_name().is_none()).then(|| {
+                let message = format!("{} has dimension {dimension}, but the basis moves {moved} of it", factor.kind.name());
+                Diagnostic::new("E0401", spec.freedoms.span.clone(), message)
+                    .label("these local coordinates")
+                    .help(format!("give {} a basis of {dimension} elements, or choose a manifold of dimension {moved}", factor.name))
+            })
+        })
+        .collect();
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// `c^i_kj` with `[b_k, b_j] = Σ_i c^i_kj b_i`, in the declared basis.
+fn structure_constants(spec: &JointSpec) -> Result<Vec<Matrix>, Vec<Diagnostic>> {
+    let freedoms = &spec.freedoms.value;
+    let count = freedoms.len();
+    let mut constants = vec![vec![vec![Expr::zero(); count]; count]; count];
+    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+        let places: Vec<usize> = (0..count).filter(|&k| freedoms[k].factor == n).collect();
+        let basis = places.iter().map(|&k| freedoms[k].generator.clone()).collect::<Vec<_>>();
+        let columns = Matrix::from_columns(factor.kind.dimension(), &basis);
+        for (a, &k) in places.iter().enumerate() {
+            for (b, &j) in places.iter().enumerate() {
+                let (x, y) = (algebra::hat(factor.kind, &basis[a]), algebra::hat(factor.kind, &basis[b]));
+                let bracket = algebra::vee(factor.kind, &algebra::commutator(&x, &y));
+                let coordinates = algebra::coordinates_in(&columns, &bracket)
+                    .map_err(|rest| vec![not_closed(spec, k, j, &rest)])?;
+                for (place, value) in places.iter().zip(coordinates) {
+                    constants[k][*place][j] = value;
+                }
+            }
+        }
+    }
+    Ok(constants.iter().map(|slice| Matrix::from_fn(count, count, |i, j| slice[i][j].clone())).collect())
+}
+
+/// X: as declared; else the velocity of Φ itself; read in the parent frame, the constant that the latter is in the child frame.
+fn twist_map(spec: &JointSpec, jacobian: &TwistJacobian, to_child: &Matrix, ideal: &Ideal) -> Result<Matrix, Vec<Diagnostic>> {
+    if let Some(declared) = &spec.twist_map {
+        return Ok(declared.value.clone());
+    }
+    let moving = ideal.simplest_entries(&jacobian.base);
+    if spec.velocity.value != VelocityFrame::Parent {
+        return Ok(moving);
+    }
+    let child = ideal.normal_forms(&to_child.times(&moving));
+    match child.is_constant() {
+        true => Ok(child),
+        false => Err(vec![
+            Diagnostic::new("E0402", spec.velocity.span.clone(), "this joint has no constant velocity directions to read in the parent frame")
+                .label("declared here")
+                .note(format!("in the child frame they are\n{child}"))
+                .help("declare X, the twist of the child in the parent frame for each velocity"),
+        ]),
+    }
+}
+
+fn not_closed(spec: &JointSpec, k: usize, j: usize, rest: &[Expr]) -> Diagnostic {
+    let names = &spec.freedoms.value;
+    Diagnostic::new("E0403", spec.freedoms.span.clone(), "the basis does not close under the bracket")
+        .label(format!("[{}, {}] leaves its span", names[k].name, names[j].name))
+        .note(format!("the part outside is\n{}", Matrix::column_vector(rest.to_vec())))
+        .help("exp of the span is no group: add the missing directions")
+}
+
+fn singular_twist_map(spec: &JointSpec, twist_map: &Matrix) -> Diagnostic {
+    let span = spec.twist_map.as_ref().map_or(spec.pose.span.clone(), |declared| declared.span.clone());
+    Diagnostic::new("E0408", span, "X has dependent columns at every configuration")
+        .label("some velocity moves nothing")
+        .note(format!("X =\n{twist_map}"))
+        .help("each velocity must move the child in a way of its own")
+}
+
+fn singular_velocity_map(spec: &JointSpec, base: &Matrix) -> Diagnostic {
+    let span = spec.twist_map.as_ref().map_or(spec.freedoms.span.clone(), |declared| declared.span.clone());
+    Diagnostic::new("E0407", span, "S₀ is singular at every configuration")
+        .label("the velocities do not determine the motion")
+        .note(format!("S₀ =\n{base}"))
+}

@@ -1,0 +1,93 @@
+//! Derivatives along the local coordinates: Φ to second order, and the chain rule through it.
+
+use crate::algebra;
+use crate::expr::{Expr, Symbol};
+use crate::matrix::Matrix;
+use crate::model::JointSpec;
+
+/// Φ(Q, ϕ) to second order in ϕ, as stored scalars: Q + Σ δ_k ϕ_k + ½ Σ δ_kl ϕ_k ϕ_l.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    coordinates: Vec<Symbol>,
+    /// `first[k][i]`: ∂Φ_i/∂ϕ_k.
+    first: Vec<Vec<Expr>>,
+    /// `second[k][l][i]`: ∂²Φ_i/∂ϕ_k∂ϕ_l.
+    second: Vec<Vec<Vec<Expr>>>,
+}
+
+/// The algebra element Σ b_k ϕ_k of one factor, as the matrix that multiplies.
+pub fn local_element(spec: &JointSpec, factor: usize) -> Matrix {
+    let kind = spec.manifold.value.factors()[factor].kind;
+    let mut standard = vec![Expr::zero(); kind.dimension()];
+    for freedom in spec.freedoms.value.iter().filter(|freedom| freedom.factor == factor) {
+        for (sum, component) in standard.iter_mut().zip(&freedom.generator) {
+            *sum += &(component * &Expr::symbol(&freedom.local));
+        }
+    }
+    algebra::hat(kind, &standard)
+}
+
+impl Motion {
+    /// Φ = Q exp(Σ b_k ϕ_k) on every factor, exp taken to second order.
+    pub fn of_exponential(spec: &JointSpec) -> Self {
+        let factors = spec.manifold.value.factors().iter().enumerate();
+        let moved = factors.flat_map(|(n, factor)| {
+            let step = algebra::exp_second_order(&local_element(spec, n));
+            factor.coordinates_of(&factor.matrix().times(&step))
+        });
+        Self::of_map(spec, &moved.collect::<Vec<_>>())
+    }
+
+    /// Any Φ, given as stored scalars in Q and ϕ.
+    pub fn of_map(spec: &JointSpec, moved: &[Expr]) -> Self {
+        let locals: Vec<Symbol> = spec.freedoms.value.iter().map(|freedom| freedom.local.clone()).collect();
+        let at_base = |entries: &[Expr]| entries.iter().map(|e| e.at_zero(&locals)).collect::<Vec<_>>();
+        let along = |entries: &[Expr], k: usize| entries.iter().map(|e| e.derivative(&locals[k])).collect::<Vec<_>>();
+        let slopes: Vec<Vec<Expr>> = (0..locals.len()).map(|k| along(moved, k)).collect();
+        let second = |k: usize| (0..locals.len()).map(|l| at_base(&along(&slopes[k], l))).collect();
+        Self {
+            coordinates: spec.manifold.value.coordinates(),
+            first: slopes.iter().map(|slope| at_base(slope)).collect(),
+            second: (0..locals.len()).map(second).collect(),
+        }
+    }
+
+    /// Number of local coordinates.
+    pub fn freedoms(&self) -> usize {
+        self.first.len()
+    }
+
+    /// δ_k: the velocity of the stored scalars along ϕ_k.
+    pub fn direction(&self, k: usize) -> &[Expr] {
+        &self.first[k]
+    }
+
+    /// ∂/∂ϕ_k at ϕ = 0 of a function of Q.
+    pub fn along(&self, function: &Expr, k: usize) -> Expr {
+        self.contract(function, &self.first[k])
+    }
+
+    /// Entry by entry.
+    pub fn along_each(&self, function: &Matrix, k: usize) -> Matrix {
+        function.map(|entry| self.along(entry, k))
+    }
+
+    /// ∂²/∂ϕ_k∂ϕ_l at ϕ = 0 of a function of Φ(Q, ϕ).
+    pub fn along_both(&self, function: &Expr, k: usize, l: usize) -> Expr {
+        let curved = self.coordinates.iter().zip(&self.first[k]).zip(&self.second[k][l]);
+        curved
+            .map(|((symbol, first), second)| {
+                let slope = function.derivative(symbol);
+                match slope.is_zero() {
+                    true => Expr::zero(),
+                    false => &(&self.along(&slope, l) * first) + &(&slope * second),
+                }
+            })
+            .sum()
+    }
+
+    fn contract(&self, function: &Expr, direction: &[Expr]) -> Expr {
+        let terms = self.coordinates.iter().zip(direction).filter(|(_, speed)| !speed.is_zero());
+        terms.map(|(symbol, speed)| &function.derivative(symbol) * speed).sum()
+    }
+}

@@ -1,0 +1,145 @@
+//! The indeterminates of the polynomial ring: symbols, and functions applied to expressions.
+
+use super::Expr;
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+/// What a symbol stands for. The order of the variants is the order of elimination: later ones are larger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// A parameter of the joint: an element of the field of coefficients, never zero.
+    Parameter,
+    /// A stored scalar of the configuration Q.
+    Coordinate,
+    /// A stored scalar of a second configuration Q′.
+    Target,
+    /// A local coordinate ϕ.
+    Local,
+    /// A joint velocity v.
+    Velocity,
+    /// A speed v̄.
+    Speed,
+    /// A momentum p.
+    Momentum,
+    /// A momentum wrench h.
+    Wrench,
+    /// A parameter of a spatial inertia.
+    Inertia,
+    /// An intermediate value of a kernel.
+    Intermediate,
+}
+
+/// A named indeterminate.
+#[derive(Clone, Debug)]
+pub struct Symbol {
+    /// What it stands for.
+    pub role: Role,
+    /// Position among the symbols of its role.
+    pub index: u16,
+    /// Name, an ASCII Rust identifier.
+    pub name: Arc<str>,
+}
+
+impl Symbol {
+    /// The symbol `name`, number `index` of its role.
+    pub fn new(role: Role, index: usize, name: &str) -> Self {
+        let index = u16::try_from(index).unwrap_or(u16::MAX);
+        Self {
+            role,
+            index,
+            name: name.into(),
+        }
+    }
+
+    /// The symbols `prefix1 … prefixN` of one role.
+    pub fn series(role: Role, prefix: &str, count: usize) -> Vec<Self> {
+        (0..count)
+            .map(|i| Self::new(role, i, &format!("{prefix}{}", i + 1)))
+            .collect()
+    }
+}
+
+impl PartialEq for Symbol {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Symbol {}
+
+impl PartialOrd for Symbol {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Symbol {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.role, self.index)
+            .cmp(&(other.role, other.index))
+            .then_with(|| match Arc::ptr_eq(&self.name, &other.name) {
+                true => Ordering::Equal,
+                false => self.name.cmp(&other.name),
+            })
+    }
+}
+
+impl std::hash::Hash for Symbol {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        (self.role, self.index).hash(state);
+        self.name.hash(state);
+    }
+}
+
+/// A function that is an indeterminate of its own, with a relation or a derivative that the ring knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Function {
+    /// The circle constant; no arguments.
+    Pi,
+    /// Cosine.
+    Cos,
+    /// Sine.
+    Sin,
+    /// Exponential function.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+    /// `atan2(y, x)`.
+    Atan2,
+    /// Square root.
+    Sqrt,
+    /// Stumpff function `c_k`.
+    Stumpff(u8),
+    /// `n`-th derivative of the coefficient of `ad²` in `dexp⁻¹`.
+    DexpInverse(u8),
+    /// Reciprocal.
+    Recip,
+}
+
+/// A function with its arguments.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Application {
+    /// The function.
+    pub function: Function,
+    /// Its arguments, in normal form of the ring without relations.
+    pub arguments: Vec<Expr>,
+}
+
+/// An indeterminate.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Atom {
+    /// A symbol.
+    Symbol(Symbol),
+    /// A function applied to expressions.
+    Apply(Arc<Application>),
+}
+
+impl Atom {
+    /// Whether this is an invertible constant of the field of coefficients: a parameter or π.
+    pub fn is_unit(&self) -> bool {
+        match self {
+            Self::Symbol(symbol) => symbol.role == Role::Parameter,
+            Self::Apply(application) => application.function == Function::Pi,
+        }
+    }
+}

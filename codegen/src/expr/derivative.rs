@@ -1,0 +1,130 @@
+//! Derivatives and substitution.
+
+use super::{Application, Atom, Expr, Function, Monomial, Rational, Symbol};
+use num_traits::One;
+use std::collections::BTreeMap;
+
+impl Expr {
+    /// Partial derivative with respect to a symbol.
+    pub fn derivative(&self, symbol: &Symbol) -> Self {
+        self.atoms()
+            .iter()
+            .map(|atom| {
+                let inner = derivative_of_atom(atom, symbol);
+                match inner.is_zero() {
+                    true => Self::zero(),
+                    false => &self.derivative_by_atom(atom) * &inner,
+                }
+            })
+            .sum()
+    }
+
+    /// Partial derivative with respect to one atom, the others held.
+    fn derivative_by_atom(&self, atom: &Atom) -> Self {
+        let single = Monomial::atom(atom.clone());
+        let inverse = single.recip();
+        let lower = |monomial: &Monomial| match &inverse {
+            Some(inverse) => Some(monomial.times(inverse)),
+            None => monomial.divided_by(&single),
+        };
+        let mut derivative = Self::zero();
+        for (monomial, coefficient) in self.terms() {
+            let power = monomial.power(atom);
+            if let (true, Some(rest)) = (power != 0, lower(monomial)) {
+                let factor = Rational::from_integer(power.into());
+                derivative += &Self::term(coefficient * factor, rest);
+            }
+        }
+        derivative
+    }
+
+    /// Replaces symbols by expressions, inside functions too, all at once.
+    pub fn substitute(&self, values: &BTreeMap<Symbol, Self>) -> Self {
+        let replaced: BTreeMap<Atom, Self> = self
+            .atoms()
+            .into_iter()
+            .filter_map(|atom| Some((atom.clone(), substituted_atom(&atom, values)?)))
+            .collect();
+        if replaced.is_empty() {
+            return self.clone();
+        }
+        self.terms()
+            .map(|(monomial, coefficient)| substituted_term(monomial, coefficient, &replaced))
+            .sum()
+    }
+
+    /// Replaces the symbols by zero.
+    pub fn at_zero(&self, symbols: &[Symbol]) -> Self {
+        let zeros = symbols.iter().map(|symbol| (symbol.clone(), Self::zero()));
+        self.substitute(&zeros.collect())
+    }
+}
+
+fn substituted_term(monomial: &Monomial, coefficient: &Rational, replaced: &BTreeMap<Atom, Expr>) -> Expr {
+    let mut product = Expr::rational(coefficient.clone());
+    for (atom, power) in monomial.factors() {
+        let factor = replaced.get(atom).cloned().unwrap_or_else(|| Expr::atom(atom.clone()));
+        let factor = match power < 0 {
+            true => factor.recip().unwrap_or_default(),
+            false => factor,
+        };
+        product = &product * &factor.pow(power.unsigned_abs());
+    }
+    product
+}
+
+/// The value of the atom, where the substitution changes it.
+fn substituted_atom(atom: &Atom, values: &BTreeMap<Symbol, Expr>) -> Option<Expr> {
+    match atom {
+        Atom::Symbol(symbol) => values.get(symbol).cloned(),
+        Atom::Apply(application) => {
+            let touched = application
+                .arguments
+                .iter()
+                .any(|argument| argument.symbols().iter().any(|s| values.contains_key(s)));
+            touched.then(|| {
+                let arguments: Vec<Expr> = application.arguments.iter().map(|a| a.substitute(values)).collect();
+                Expr::applied(application.function, &arguments)
+            })
+        }
+    }
+}
+
+fn derivative_of_atom(atom: &Atom, symbol: &Symbol) -> Expr {
+    match atom {
+        Atom::Symbol(candidate) if candidate == symbol => Expr::one(),
+        Atom::Symbol(_) => Expr::zero(),
+        Atom::Apply(application) => derivative_of_function(application, atom, symbol),
+    }
+}
+
+fn derivative_of_function(application: &Application, atom: &Atom, symbol: &Symbol) -> Expr {
+    let inner: Vec<Expr> = application.arguments.iter().map(|a| a.derivative(symbol)).collect();
+    if inner.iter().all(Expr::is_zero) {
+        return Expr::zero();
+    }
+    let itself = Expr::atom(atom.clone());
+    match (application.function, application.arguments.as_slice(), inner.as_slice()) {
+        (Function::Cos, [x], [dx]) => -(&x.sin() * dx),
+        (Function::Sin, [x], [dx]) => &x.cos() * dx,
+        (Function::Exp, _, [dx]) => &itself * dx,
+        (Function::Ln, [x], [dx]) => &x.recip().unwrap_or_default() * dx,
+        (Function::Sqrt, _, [dx]) => {
+            let half = Expr::fraction(1, 2);
+            &(&half * &itself.recip().unwrap_or_default()) * dx
+        }
+        (Function::Recip, _, [dx]) => -(&itself.square() * dx),
+        (Function::Atan2, [y, x], [dy, dx]) => {
+            let norm = &x.square() + &y.square();
+            &(&(x * dy) - &(y * dx)) * &norm.recip().unwrap_or_default()
+        }
+        (Function::Stumpff(order), [x], [dx]) => {
+            let upper = x.stumpff(order + 2);
+            let weighted = upper.scaled(&Rational::from_integer(order.into()), &Monomial::one());
+            let half = Rational::one() / Rational::from_integer(2.into());
+            (&weighted - &x.stumpff(order + 1)).scaled(&half, &Monomial::one()) * dx.clone()
+        }
+        (Function::DexpInverse(order), [x], [dx]) => &x.dexp_inverse(order + 1) * dx,
+        _ => Expr::zero(),
+    }
+}

@@ -1,0 +1,230 @@
+//! Functions of expressions, folded where their value is known, and the relations between them.
+
+use super::{Application, Atom, Expr, Function, Monomial, Rational};
+use num_bigint::BigInt;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+use std::sync::Arc;
+
+/// Largest integer multiple of an angle that is expanded by the addition theorems.
+const LARGEST_MULTIPLE: i64 = 16;
+
+fn apply(function: Function, arguments: Vec<Expr>) -> Expr {
+    Expr::atom(Atom::Apply(Arc::new(Application {
+        function,
+        arguments,
+    })))
+}
+
+impl Expr {
+    /// The circle constant.
+    pub fn pi() -> Self {
+        apply(Function::Pi, vec![])
+    }
+
+    /// Cosine; sums and integer multiples of angles are expanded.
+    pub fn cos(&self) -> Self {
+        self.cos_sin().0
+    }
+
+    /// Sine; sums and integer multiples of angles are expanded.
+    pub fn sin(&self) -> Self {
+        self.cos_sin().1
+    }
+
+    /// Cosine and sine by the addition theorems, so that equal angles written differently are equal.
+    fn cos_sin(&self) -> (Self, Self) {
+        let mut result = (Self::one(), Self::zero());
+        for (monomial, coefficient) in self.terms() {
+            let (cos, sin) = cos_sin_of_term(monomial, coefficient);
+            result = (
+                &(&result.0 * &cos) - &(&result.1 * &sin),
+                &(&result.1 * &cos) + &(&result.0 * &sin),
+            );
+        }
+        result
+    }
+
+    /// Exponential function.
+    pub fn exp(&self) -> Self {
+        match self.is_zero() {
+            true => Self::one(),
+            false => apply(Function::Exp, vec![self.clone()]),
+        }
+    }
+
+    /// Natural logarithm.
+    pub fn ln(&self) -> Self {
+        match self.is_one() {
+            true => Self::zero(),
+            false => apply(Function::Ln, vec![self.clone()]),
+        }
+    }
+
+    /// Angle of the point `(x, self)`.
+    pub fn atan2(&self, x: &Self) -> Self {
+        match (self.is_zero(), x.as_rational()) {
+            (true, Some(value)) if value.is_positive() => Self::zero(),
+            _ => apply(Function::Atan2, vec![self.clone(), x.clone()]),
+        }
+    }
+
+    /// Square root; squares of rationals are taken.
+    pub fn sqrt(&self) -> Self {
+        match self.as_rational().as_ref().and_then(rational_root) {
+            Some(root) => Self::rational(root),
+            None => apply(Function::Sqrt, vec![self.clone()]),
+        }
+    }
+
+    /// Reciprocal; `None` for zero. Single terms are inverted factor by factor.
+    pub fn recip(&self) -> Option<Self> {
+        let (leading, coefficient) = self.leading()?;
+        let scale = Self::rational(coefficient.recip());
+        if self.terms().len() > 1 {
+            let monic = self.scaled(&coefficient.recip(), &Monomial::one());
+            return Some(&scale * &apply(Function::Recip, vec![monic]));
+        }
+        let (main, units) = leading.split();
+        let units = Self::term(Rational::one(), units.recip()?);
+        let inverse = |(atom, power): &(Atom, u32)| recip_of_atom(atom).pow(*power);
+        let product = main.main().iter().map(inverse);
+        Some(product.fold(&scale * &units, |product, factor| &product * &factor))
+    }
+
+    /// Stumpff function `c_order`.
+    pub fn stumpff(&self, order: u8) -> Self {
+        match self.is_zero() {
+            true => Self::rational(Rational::new(BigInt::one(), factorial(order.into()))),
+            false => apply(Function::Stumpff(order), vec![self.clone()]),
+        }
+    }
+
+    /// `derivative`-th derivative of the coefficient of `ad²` in `dexp⁻¹`, in `s = θ²`.
+    pub fn dexp_inverse(&self, derivative: u8) -> Self {
+        match self.is_zero() {
+            true => Self::rational(dexp_inverse_at_zero(derivative)),
+            false => apply(Function::DexpInverse(derivative), vec![self.clone()]),
+        }
+    }
+
+    /// The function with new arguments, folded.
+    pub(super) fn applied(function: Function, arguments: &[Self]) -> Self {
+        match (function, arguments) {
+            (Function::Cos, [x]) => x.cos(),
+            (Function::Sin, [x]) => x.sin(),
+            (Function::Exp, [x]) => x.exp(),
+            (Function::Ln, [x]) => x.ln(),
+            (Function::Sqrt, [x]) => x.sqrt(),
+            (Function::Atan2, [y, x]) => y.atan2(x),
+            (Function::Stumpff(order), [x]) => x.stumpff(order),
+            (Function::DexpInverse(order), [x]) => x.dexp_inverse(order),
+            (Function::Recip, [x]) if !x.is_zero() => x.recip().unwrap_or_default(),
+            _ => apply(function, arguments.to_vec()),
+        }
+    }
+
+    /// The polynomials that vanish because of what the functions in `self` are: `c² + s² − 1`, `r² − u`, `u/u − 1`.
+    pub fn atom_relations(&self) -> Vec<Self> {
+        self.atoms().iter().filter_map(relation_of_atom).collect()
+    }
+}
+
+fn relation_of_atom(atom: &Atom) -> Option<Expr> {
+    let Atom::Apply(application) = atom else {
+        return None;
+    };
+    let itself = Expr::atom(atom.clone());
+    match (application.function, application.arguments.as_slice()) {
+        (Function::Cos | Function::Sin, [x]) => {
+            let (cos, sin) = (apply(Function::Cos, vec![x.clone()]), apply(Function::Sin, vec![x.clone()]));
+            Some(&(&cos.square() + &sin.square()) - &Expr::one())
+        }
+        (Function::Sqrt, [x]) => Some(&itself.square() - x),
+        (Function::Recip, [x]) => Some(&(&itself * x) - &Expr::one()),
+        _ => None,
+    }
+}
+
+fn recip_of_atom(atom: &Atom) -> Expr {
+    match atom {
+        Atom::Apply(application) if application.function == Function::Recip => {
+            application.arguments.first().cloned().unwrap_or_default()
+        }
+        _ => apply(Function::Recip, vec![Expr::atom(atom.clone())]),
+    }
+}
+
+/// Cosine and sine of one term: known at multiples of a quarter turn, expanded at integer multiples.
+fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) {
+    if let Some(exact) = quarter_turns(monomial, coefficient) {
+        return exact;
+    }
+    let negative = coefficient.is_negative();
+    let size = coefficient.abs();
+    let multiple = size.to_integer().to_i64().filter(|n| {
+        size.is_integer() && (2..=LARGEST_MULTIPLE).contains(n)
+    });
+    let base = match multiple {
+        Some(_) => Rational::one(),
+        None => size,
+    };
+    let angle = Expr::term(base, monomial.clone());
+    let cos = apply(Function::Cos, vec![angle.clone()]);
+    let sin = apply(Function::Sin, vec![angle]);
+    let (mut c, mut s) = (cos.clone(), sin.clone());
+    for _ in 1..multiple.unwrap_or(1) {
+        (c, s) = (&(&c * &cos) - &(&s * &sin), &(&s * &cos) + &(&c * &sin));
+    }
+    match negative {
+        true => (c, -s),
+        false => (c, s),
+    }
+}
+
+fn quarter_turns(monomial: &Monomial, coefficient: &Rational) -> Option<(Expr, Expr)> {
+    let is_pi = Expr::term(Rational::one(), monomial.clone()) == Expr::pi();
+    let quarters = coefficient * Rational::from_integer(2.into());
+    if !is_pi || !quarters.is_integer() {
+        return None;
+    }
+    let four = BigInt::from(4);
+    let quarter = ((quarters.to_integer() % &four) + &four) % &four;
+    Some(match quarter.to_i64()? {
+        0 => (Expr::one(), Expr::zero()),
+        1 => (Expr::zero(), Expr::one()),
+        2 => (Expr::integer(-1), Expr::zero()),
+        _ => (Expr::zero(), Expr::integer(-1)),
+    })
+}
+
+fn rational_root(value: &Rational) -> Option<Rational> {
+    if value.is_negative() {
+        return None;
+    }
+    let root = Rational::new(value.numer().sqrt(), value.denom().sqrt());
+    (&root * &root == *value).then_some(root)
+}
+
+pub(super) fn factorial(n: u32) -> BigInt {
+    (1..=n).map(BigInt::from).product()
+}
+
+/// `n! |B_{2n+2}| / (2n+2)!`, from `G(s) = Σ_{j ≥ 1} |B_{2j}| s^{j−1} / (2j)!`.
+fn dexp_inverse_at_zero(derivative: u8) -> Rational {
+    let n = u32::from(derivative);
+    let bernoulli = bernoulli(2 * n as usize + 2).abs();
+    bernoulli * Rational::new(factorial(n), factorial(2 * n + 2))
+}
+
+/// Bernoulli number `B_n`, by the Akiyama–Tanigawa table.
+fn bernoulli(n: usize) -> Rational {
+    let mut row: Vec<Rational> = vec![Rational::zero(); n + 1];
+    for m in 0..=n {
+        row[m] = Rational::new(BigInt::one(), BigInt::from(m + 1));
+        for j in (1..=m).rev() {
+            let difference = &row[j - 1] - &row[j];
+            row[j - 1] = difference * Rational::from_integer(BigInt::from(j));
+        }
+    }
+    row.swap_remove(0)
+}

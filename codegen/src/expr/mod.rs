@@ -1,0 +1,297 @@
+//! Symbolic scalars: polynomials over the rationals in symbols and functions.
+//!
+//! An [`Expr`] is a sum of terms, each a rational times a [`Monomial`] of [`Atom`]s, sorted; equal sums are equal values, so
+//! that the ring needs no separate simplifier. Sines, roots and quotients are atoms of their own, related to others by the
+//! polynomials of [`Expr::atom_relations`]; an [`crate::manifold::Ideal`] reduces modulo those and the manifold's relations.
+
+mod atom;
+pub mod budget;
+mod derivative;
+mod display;
+mod evaluate;
+mod function;
+mod monomial;
+
+pub use atom::{Application, Atom, Function, Role, Symbol};
+pub use evaluate::{Number, evaluate_f64};
+pub use monomial::Monomial;
+
+use num_traits::{One, Signed, Zero};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+/// An exact rational number.
+pub type Rational = num_rational::BigRational;
+
+/// A polynomial with rational coefficients in [`Atom`]s.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Expr {
+    terms: BTreeMap<Monomial, Rational>,
+}
+
+impl Expr {
+    /// Zero.
+    pub fn zero() -> Self {
+        Self::default()
+    }
+
+    /// One.
+    pub fn one() -> Self {
+        Self::integer(1)
+    }
+
+    /// The integer `value`.
+    pub fn integer(value: i64) -> Self {
+        Self::rational(Rational::from_integer(value.into()))
+    }
+
+    /// The fraction `numerator / denominator`; zero denominators are a programming error of the caller.
+    pub fn fraction(numerator: i64, denominator: i64) -> Self {
+        Self::rational(Rational::new(numerator.into(), denominator.into()))
+    }
+
+    /// The rational `value`.
+    pub fn rational(value: Rational) -> Self {
+        Self::term(value, Monomial::one())
+    }
+
+    /// The symbol.
+    pub fn symbol(symbol: &Symbol) -> Self {
+        Self::atom(Atom::Symbol(symbol.clone()))
+    }
+
+    /// The atom.
+    pub fn atom(atom: Atom) -> Self {
+        Self::term(Rational::one(), Monomial::atom(atom))
+    }
+
+    /// `coefficient · monomial`.
+    pub fn term(coefficient: Rational, monomial: Monomial) -> Self {
+        let mut terms = BTreeMap::new();
+        if !coefficient.is_zero() {
+            terms.insert(monomial, coefficient);
+        }
+        Self { terms }
+    }
+
+    /// The terms, in ascending term order.
+    pub fn terms(&self) -> impl DoubleEndedIterator<Item = (&Monomial, &Rational)> + ExactSizeIterator {
+        self.terms.iter()
+    }
+
+    /// The largest term.
+    pub fn leading(&self) -> Option<(&Monomial, &Rational)> {
+        self.terms.last_key_value()
+    }
+
+    /// Whether this is zero as it stands, without any relation.
+    pub fn is_zero(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// Whether this is one.
+    pub fn is_one(&self) -> bool {
+        self.as_rational().is_some_and(|value| value.is_one())
+    }
+
+    /// The value, if this is a rational number.
+    pub fn as_rational(&self) -> Option<Rational> {
+        match self.terms.len() {
+            0 => Some(Rational::zero()),
+            1 => {
+                let (monomial, value) = self.leading()?;
+                monomial.is_one().then(|| value.clone())
+            }
+            _ => None,
+        }
+    }
+
+    /// The symbol, if this is one.
+    pub fn as_symbol(&self) -> Option<&Symbol> {
+        let (monomial, coefficient) = self.leading()?;
+        match monomial.main() {
+            [(Atom::Symbol(symbol), 1)]
+                if self.terms.len() == 1 && coefficient.is_one() && monomial.units().is_empty() =>
+            {
+                Some(symbol)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether this depends on no symbol but parameters.
+    pub fn is_constant(&self) -> bool {
+        self.symbols().iter().all(|symbol| symbol.role == Role::Parameter)
+    }
+
+    /// All symbols, those inside functions included.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        let mut symbols = BTreeSet::new();
+        for atom in self.atoms() {
+            match atom {
+                Atom::Symbol(symbol) => {
+                    symbols.insert(symbol);
+                }
+                Atom::Apply(application) => {
+                    symbols.extend(application.arguments.iter().flat_map(Self::symbols));
+                }
+            }
+        }
+        symbols
+    }
+
+    /// The atoms of the polynomial itself, not those inside functions.
+    pub fn atoms(&self) -> BTreeSet<Atom> {
+        let factors = self.terms.keys().flat_map(Monomial::factors);
+        factors.map(|(atom, _)| atom.clone()).collect()
+    }
+
+    /// `self · coefficient · monomial`.
+    pub fn scaled(&self, coefficient: &Rational, monomial: &Monomial) -> Self {
+        if coefficient.is_zero() || !budget::spend(self.terms.len() as u64) {
+            return Self::zero();
+        }
+        let scale = |(m, c): (&Monomial, &Rational)| (m.times(monomial), c * coefficient);
+        Self {
+            terms: self.terms.iter().map(scale).collect(),
+        }
+    }
+
+    /// The integer power.
+    pub fn pow(&self, exponent: u32) -> Self {
+        let (mut base, mut exponent, mut power) = (self.clone(), exponent, Self::one());
+        while exponent > 0 && !budget::is_exhausted() {
+            if exponent & 1 == 1 {
+                power = &power * &base;
+            }
+            exponent >>= 1;
+            if exponent > 0 {
+                base = &base * &base;
+            }
+        }
+        power
+    }
+
+    /// The square.
+    pub fn square(&self) -> Self {
+        self * self
+    }
+
+    /// Whether the leading coefficient is negative: decides which of `a − b` and `b − a` is written.
+    pub fn leads_negative(&self) -> bool {
+        self.leading().is_some_and(|(_, c)| c.is_negative())
+    }
+
+    fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
+        use std::collections::btree_map::Entry;
+        match self.terms.entry(monomial) {
+            Entry::Vacant(entry) => {
+                entry.insert(coefficient);
+            }
+            Entry::Occupied(mut entry) => {
+                *entry.get_mut() += coefficient;
+                if entry.get().is_zero() {
+                    entry.remove();
+                }
+            }
+        }
+    }
+
+    /// Adds `coefficient · monomial · other` in place.
+    pub fn add_scaled(&mut self, coefficient: &Rational, monomial: &Monomial, other: &Self) {
+        if !budget::spend(other.terms.len() as u64) {
+            return;
+        }
+        for (m, c) in &other.terms {
+            self.add_term(m.times(monomial), c * coefficient);
+        }
+    }
+}
+
+impl AddAssign<&Expr> for Expr {
+    fn add_assign(&mut self, other: &Expr) {
+        for (monomial, coefficient) in &other.terms {
+            self.add_term(monomial.clone(), coefficient.clone());
+        }
+    }
+}
+
+impl SubAssign<&Expr> for Expr {
+    fn sub_assign(&mut self, other: &Expr) {
+        for (monomial, coefficient) in &other.terms {
+            self.add_term(monomial.clone(), -coefficient);
+        }
+    }
+}
+
+impl Add for &Expr {
+    type Output = Expr;
+    fn add(self, other: &Expr) -> Expr {
+        let mut sum = self.clone();
+        sum += other;
+        sum
+    }
+}
+
+impl Sub for &Expr {
+    type Output = Expr;
+    fn sub(self, other: &Expr) -> Expr {
+        let mut difference = self.clone();
+        difference -= other;
+        difference
+    }
+}
+
+impl Mul for &Expr {
+    type Output = Expr;
+    fn mul(self, other: &Expr) -> Expr {
+        let (short, long) = match self.terms.len() <= other.terms.len() {
+            true => (self, other),
+            false => (other, self),
+        };
+        let mut product = Expr::zero();
+        for (monomial, coefficient) in &short.terms {
+            product.add_scaled(coefficient, monomial, long);
+        }
+        product
+    }
+}
+
+impl Neg for &Expr {
+    type Output = Expr;
+    fn neg(self) -> Expr {
+        let terms = self.terms.iter().map(|(m, c)| (m.clone(), -c)).collect();
+        Expr { terms }
+    }
+}
+
+macro_rules! by_value {
+    ($($operator:ident $method:ident),*) => {$(
+        impl $operator for Expr {
+            type Output = Expr;
+            fn $method(self, other: Expr) -> Expr {
+                (&self).$method(&other)
+            }
+        }
+    )*};
+}
+by_value!(Add add, Sub sub, Mul mul);
+
+impl Neg for Expr {
+    type Output = Expr;
+    fn neg(self) -> Expr {
+        -&self
+    }
+}
+
+impl std::iter::Sum for Expr {
+    fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {
+        terms.fold(Self::zero(), |mut sum, term| {
+            sum += &term;
+            sum
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

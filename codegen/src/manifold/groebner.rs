@@ -1,0 +1,115 @@
+//! Gröbner bases of the relations of a manifold, by Buchberger's algorithm.
+
+use crate::expr::{Expr, Rational, budget};
+use num_traits::One;
+
+/// A relation whose leading coefficient is a sum of parameters cannot be solved for its leading monomial.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotMonic {
+    /// The relation.
+    pub relation: Expr,
+}
+
+/// The reduced Gröbner basis of the ideal of `relations`.
+pub fn groebner_basis(relations: &[Expr]) -> Result<Vec<Expr>, NotMonic> {
+    let mut basis = interreduce(relations.to_vec())?;
+    let mut pairs: Vec<(usize, usize)> = pairs_up_to(basis.len());
+    while let Some((i, j)) = take_smallest(&mut pairs, &basis) {
+        if budget::is_exhausted() {
+            break;
+        }
+        let Some(s) = s_polynomial(&basis[i], &basis[j]) else { continue };
+        let remainder = reduce(&s, &basis);
+        if !remainder.is_zero() {
+            pairs.extend((0..basis.len()).map(|k| (k, basis.len())));
+            basis.push(monic(remainder)?);
+        }
+    }
+    interreduce(basis)
+}
+
+/// The normal form of `expression` modulo a Gröbner basis of monic polynomials.
+pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
+    let mut rest = expression.clone();
+    let mut normal = Expr::zero();
+    while let Some((monomial, coefficient)) = rest.leading().map(|(m, c)| (m.clone(), c.clone())) {
+        let step = basis.iter().find_map(|g| Some((g, monomial.divided_by(g.leading()?.0)?)));
+        match step {
+            Some((g, quotient)) => rest.add_scaled(&-coefficient, &quotient, g),
+            None => {
+                let term = Expr::term(coefficient, monomial);
+                rest -= &term;
+                normal += &term;
+            }
+        }
+        if budget::is_exhausted() {
+            return Expr::zero();
+        }
+    }
+    normal
+}
+
+fn pairs_up_to(count: usize) -> Vec<(usize, usize)> {
+    (0..count).flat_map(|j| (0..j).map(move |i| (i, j))).collect()
+}
+
+/// Buchberger's normal strategy: the pair with the smallest common multiple first.
+fn take_smallest(pairs: &mut Vec<(usize, usize)>, basis: &[Expr]) -> Option<(usize, usize)> {
+    let multiple = |&(i, j): &(usize, usize)| {
+        let (a, b) = (basis[i].leading()?.0, basis[j].leading()?.0);
+        Some(a.lcm(b))
+    };
+    let position = (0..pairs.len()).min_by_key(|&n| multiple(&pairs[n]))?;
+    Some(pairs.swap_remove(position))
+}
+
+/// `None` where the leading monomials are coprime: the pair then reduces to zero (Buchberger's first criterion).
+fn s_polynomial(f: &Expr, g: &Expr) -> Option<Expr> {
+    let (lf, lg) = (f.leading()?.0, g.leading()?.0);
+    if lf.is_coprime(lg) {
+        return None;
+    }
+    let multiple = lf.lcm(lg);
+    let one = Rational::one();
+    let mut s = f.scaled(&one, &multiple.divided_by(lf)?);
+    s.add_scaled(&-one, &multiple.divided_by(lg)?, g);
+    Some(s)
+}
+
+/// Scales so that the leading term has coefficient 1 and no parameters.
+fn monic(relation: Expr) -> Result<Expr, NotMonic> {
+    let Some((monomial, coefficient)) = relation.leading() else { return Ok(relation) };
+    let (main, units) = monomial.split();
+    let competing = relation.terms().filter(|(m, _)| m.split().0 == main).count();
+    match (competing, units.recip()) {
+        (1, Some(inverse)) => Ok(relation.scaled(&coefficient.recip(), &inverse)),
+        _ => Err(NotMonic { relation }),
+    }
+}
+
+/// Reduces every element by the others until none changes; drops zeros.
+fn interreduce(mut basis: Vec<Expr>) -> Result<Vec<Expr>, NotMonic> {
+    basis = basis.into_iter().filter(|g| !g.is_zero()).map(monic).collect::<Result<_, _>>()?;
+    loop {
+        let mut changed = false;
+        let mut position = 0;
+        while position < basis.len() {
+            let element = basis.remove(position);
+            let reduced = reduce(&element, &basis);
+            changed |= reduced != element;
+            if !reduced.is_zero() {
+                basis.insert(position, monic(reduced)?);
+                position += 1;
+            }
+        }
+        if !changed || budget::is_exhausted() {
+            basis.sort_by(|a, b| a.leading().map(|t| t.0).cmp(&b.leading().map(|t| t.0)));
+            return Ok(basis);
+        }
+    }
+}
+
+/// Whether a leading monomial is one: the relations contradict each other.
+pub fn is_trivial(basis: &[Expr]) -> bool {
+    basis.iter().any(|g| g.leading().is_some_and(|(m, _)| m.main().is_empty()))
+}

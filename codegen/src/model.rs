@@ -1,0 +1,90 @@
+//! What a spec declares, in symbols: the border between the spec language and the derivation.
+
+use crate::expr::{Expr, Symbol};
+use crate::manifold::Manifold;
+use crate::matrix::Matrix;
+use std::ops::Range;
+
+/// A value together with the bytes of the spec that declare it.
+#[derive(Clone, Debug)]
+pub struct Declared<T> {
+    /// The value.
+    pub value: T,
+    /// Where it is declared: bytes of the source.
+    pub span: Range<usize>,
+}
+
+/// A parameter of a joint.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Its symbol; its name is also the name of the field in Rust.
+    pub symbol: Symbol,
+    /// SI unit as written: `m`, `rad`, `1`, ….
+    pub unit: String,
+    /// Doc comment.
+    pub docs: String,
+}
+
+/// One direction of local motion: a local coordinate ϕ and a velocity v of the same name.
+#[derive(Clone, Debug)]
+pub struct Freedom {
+    /// Name of the local coordinate and of the velocity.
+    pub name: String,
+    /// The symbol ϕ_k, `Role::Local`, named `phi_<name>`.
+    pub local: Symbol,
+    /// The factor that it moves.
+    pub factor: usize,
+    /// Its generator: coordinates in the standard basis of that factor's algebra; rational or of parameters.
+    pub generator: Vec<Expr>,
+}
+
+/// The frame in which v is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityFrame {
+    /// Child frame: `X^c` at ϕ = 0 is the velocity of Φ itself.
+    Child,
+    /// Parent frame: X is the constant that `X^c` would be.
+    Parent,
+    /// Not declared: v = ϕ̇ at ϕ = 0 (path joints), or X is declared.
+    Rates,
+}
+
+/// H(Q).
+#[derive(Clone, Debug)]
+pub struct PoseExpr {
+    /// 3×3.
+    pub rotation: Matrix,
+    /// 3×1.
+    pub translation: Matrix,
+}
+
+/// A joint as its spec declares it: parsed, evaluated, shapes checked; nothing derived, nothing proved.
+#[derive(Clone, Debug)]
+pub struct JointSpec {
+    /// Name, a Rust identifier in snake case.
+    pub name: Declared<String>,
+    /// Doc comment, line by line.
+    pub docs: Vec<String>,
+    /// The spec's text.
+    pub source: String,
+    /// Parameters in order.
+    pub parameters: Vec<Parameter>,
+    /// Where Q lives.
+    pub manifold: Declared<Manifold>,
+    /// Local coordinates, in order: those of a `basis`, else the coordinates of the real factors.
+    pub freedoms: Declared<Vec<Freedom>>,
+    /// Frame of v.
+    pub velocity: Declared<VelocityFrame>,
+    /// H(Q).
+    pub pose: Declared<PoseExpr>,
+    /// Φ(Q, ϕ) as stored scalars, where declared.
+    pub retract: Option<Declared<Vec<Expr>>>,
+    /// X(Q), 6×k, where declared.
+    pub twist_map: Option<Declared<Matrix>>,
+    /// A(Q), k×(k−k̄), where declared.
+    pub constraint: Option<Declared<Matrix>>,
+    /// S̄(Q), k×k̄, where declared.
+    pub speed_basis: Option<Declared<Matrix>>,
+    /// Names of the speeds, where declared.
+    pub speed_names: Option<Declared<Vec<String>>>,
+}

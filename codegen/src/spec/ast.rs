@@ -1,0 +1,116 @@
+//! The tree of a spec as it is written, with the bytes of the source that each part comes from.
+
+use crate::expr::Rational;
+use std::ops::Range;
+
+/// A name and where it stands.
+#[derive(Clone, Debug)]
+pub(super) struct Name {
+    pub text: String,
+    pub span: Range<usize>,
+}
+
+/// A spec file.
+#[derive(Debug)]
+pub(super) struct File {
+    pub docs: Vec<String>,
+    pub name: Name,
+    pub parameters: Vec<Parameter>,
+    pub statements: Vec<Statement>,
+    /// Whether some of the text could not be read: what is missing may stand there.
+    pub partial: bool,
+}
+
+/// `name: unit`.
+#[derive(Debug)]
+pub(super) struct Parameter {
+    pub docs: Vec<String>,
+    pub name: Name,
+    pub unit: Name,
+}
+
+/// One statement, up to its `;`.
+#[derive(Debug)]
+pub(super) struct Statement {
+    pub span: Range<usize>,
+    pub kind: StatementKind,
+}
+
+#[derive(Debug)]
+pub(super) enum StatementKind {
+    /// `config Q: SO3, …;`
+    Config(Vec<(Name, Name)>),
+    /// `basis a, b = …, … of algebra(factor);`
+    Basis(Basis),
+    /// `local a, b;`
+    Local(Vec<Name>),
+    /// `velocity in child;`
+    Velocity { child: bool },
+    /// `speeds a, b;`
+    Speeds(Vec<Name>),
+    /// `let a = …;`
+    Let(Name, Node),
+    /// `H = …;` and its like; Phi has one value for each factor.
+    Assign(Target, Vec<Node>),
+}
+
+#[derive(Debug)]
+pub(super) struct Basis {
+    pub elements: Vec<(Name, Option<Node>)>,
+    pub algebra: Name,
+    pub factor: Option<Name>,
+}
+
+/// What a spec declares by `=`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Target {
+    Retract,
+    Pose,
+    TwistMap,
+    Constraint,
+    SpeedBasis,
+}
+
+impl Target {
+    pub const ALL: [Self; 5] = [
+        Self::Retract,
+        Self::Pose,
+        Self::TwistMap,
+        Self::Constraint,
+        Self::SpeedBasis,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Retract => "Phi",
+            Self::Pose => "H",
+            Self::TwistMap => "X",
+            Self::Constraint => "A",
+            Self::SpeedBasis => "S_bar",
+        }
+    }
+}
+
+/// An expression.
+#[derive(Debug)]
+pub(super) struct Node {
+    pub span: Range<usize>,
+    pub kind: NodeKind,
+}
+
+/// Chains of one precedence are one node, so that the depth of the tree is that of the brackets.
+#[derive(Debug)]
+pub(super) enum NodeKind {
+    Number(Rational),
+    Name(String),
+    Call(Name, Vec<Node>),
+    Field(Box<Node>, Name),
+    Index(Box<Node>, Vec<Node>),
+    /// Rows of blocks.
+    Literal(Vec<Vec<Node>>),
+    Negative(Box<Node>),
+    /// Terms, each with whether it is subtracted.
+    Sum(Vec<(bool, Node)>),
+    /// Factors, each with whether it divides.
+    Product(Vec<(bool, Node)>),
+}

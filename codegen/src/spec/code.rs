@@ -1,0 +1,52 @@
+//! The stable codes of errors in a spec. A code keeps its meaning for ever; a new error takes a new number.
+
+macro_rules! codes {
+    ($($name:ident $code:literal $meaning:literal)*) => {
+        $(#[doc = $meaning] pub const $name: &str = $code;)*
+        /// Every code with its meaning, ascending.
+        pub const ALL: &[(&str, &str)] = &[$(($code, $meaning)),*];
+    };
+}
+
+codes! {
+    SIZE "E0101" "The source is larger than 64 KiB."
+    CHARACTER "E0102" "A character or token that the language does not have."
+    BRACKETS "E0103" "A bracket without its partner, or brackets nested too deep."
+    VERSION "E0104" "The version line is missing, or names a version that this generator does not know."
+    EXPECTED "E0105" "Something else was expected here."
+    STATEMENT "E0106" "No such statement."
+    NUMBER "E0107" "A number in a form that is not exact or too long."
+    POWER "E0108" "A power written as an operator."
+    SURPLUS "E0109" "Text after the joint."
+
+    UNDEFINED "E0201" "A name that is not defined here."
+    MANIFOLD "E0202" "No such manifold."
+    ALGEBRA "E0203" "No such Lie algebra, or no factor with it."
+    FUNCTION "E0204" "No such function."
+    UNIT "E0205" "No such unit."
+    DUPLICATE_STATEMENT "E0206" "A statement that may stand once stands twice."
+    DUPLICATE_NAME "E0207" "A name is defined twice, or is that of a stored scalar."
+    RESERVED "E0208" "A name that belongs to the language or to Rust."
+    FORM "E0209" "A name in the wrong case."
+    SHAPES "E0210" "Operands whose shapes do not fit."
+    ARGUMENTS "E0211" "Arguments that the function does not take."
+    INDEX "E0212" "An index outside the matrix."
+    FIELD "E0213" "No such part."
+    DECLARED_SHAPE "E0214" "A declared matrix has the wrong shape."
+    PHI "E0215" "A local coordinate outside Phi."
+
+    MISSING "E0301" "A statement is missing."
+    BASIS_MISSING "E0302" "A factor has no basis."
+    VELOCITY_MISSING "E0303" "The frame of the velocity is not declared."
+    VELOCITY_UNUSED "E0304" "A velocity frame where v is the rate of the coordinates."
+    NOT_CLOSED "E0305" "A basis that does not close under the bracket."
+    DEPENDENT "E0306" "A basis whose elements are dependent, or too many or too few."
+    NOT_CONSTANT "E0307" "A basis element that is not constant."
+    FREEDOMS "E0308" "Too many freedoms, factors or stored scalars."
+    UNUSED "E0309" "A parameter or a let that nothing uses."
+    UNDEFINED_VALUE "E0310" "Division by zero, or a function outside its domain."
+    TOO_LARGE "E0311" "A value that is too large to work with."
+    CONSTRAINT "E0312" "A and S_bar that do not fit each other, or one without the other."
+    SPEEDS "E0313" "Names of speeds that do not fit S_bar."
+    POSE "E0314" "A 4×4 matrix that is no pose."
+}

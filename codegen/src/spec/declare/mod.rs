@@ -1,0 +1,114 @@
+//! Tree to joint: what each statement declares, checked against the others.
+
+mod basis;
+mod config;
+mod freedoms;
+mod matrices;
+mod once;
+mod retract;
+mod scope;
+mod unit;
+
+use self::freedoms::Freedoms;
+use self::once::Once;
+use self::scope::Scope;
+use super::ast::{File, Target};
+use super::evaluate::Evaluator;
+use super::{code, limits};
+use crate::diagnostic::Diagnostic;
+use crate::expr::budget;
+use crate::manifold::Manifold;
+use crate::model::{Declared, JointSpec, PoseExpr, VelocityFrame};
+
+/// The joint that the file declares; `None` where something essential is wrong. Reasons are among the errors.
+pub(super) fn joint(source: &str, file: &File, errors: &mut Vec<Diagnostic>) -> Option<JointSpec> {
+    let statements = once::collect(source, file, errors);
+    let manifold = config::manifold(file, &statements, errors)?;
+    let before = errors.len();
+    let result = budget::scope(limits::FILE_BUDGET, || {
+        let mut evaluator = Evaluator::new(errors);
+        evaluator.lenient = file.partial;
+        declare(source, file, &statements, &manifold, &mut evaluator)
+    });
+    if result.is_err() && errors.len() == before {
+        let error = Diagnostic::new(code::TOO_LARGE, file.name.span.clone(), "the joint needs too many products of terms");
+        errors.push(error.label("too much work"));
+    }
+    result.ok().flatten()
+}
+
+/// What the matrices of a joint are checked against.
+struct Context<'a> {
+    file: &'a File,
+    statements: &'a Once<'a>,
+    manifold: &'a Declared<Manifold>,
+}
+
+fn declare(
+    source: &str,
+    file: &File,
+    statements: &Once<'_>,
+    manifold: &Declared<Manifold>,
+    evaluator: &mut Evaluator<'_>,
+) -> Option<JointSpec> {
+    let mut scope = Scope::new(source, evaluator);
+    scope.joint(&file.name);
+    let parameters = scope.parameters(&file.parameters);
+    scope.factors(statements.config, manifold.value.factors());
+    scope.lets(&statements.lets);
+    let context = Context { file, statements, manifold };
+    let freedoms = freedoms::freedoms(&context, &mut scope);
+    let velocity = freedoms.as_ref().map(|freedoms| freedoms::velocity(&context, freedoms, evaluator));
+    let retract = freedoms.as_ref().and_then(|freedoms| retract::retract(&context, freedoms, evaluator));
+    let pose = pose(&context, evaluator);
+    let matrices = freedoms.as_ref().map(|freedoms| matrices::matrices(&context, freedoms.count(), evaluator));
+    scope::report_unused(file, statements, evaluator);
+    let (freedoms, matrices): (Freedoms, _) = (freedoms?, matrices?);
+    Some(JointSpec {
+        name: Declared { value: file.name.text.clone(), span: file.name.span.clone() },
+        docs: file.docs.clone(),
+        source: source.to_owned(),
+        parameters,
+        manifold: manifold.clone(),
+        freedoms: freedoms.list,
+        velocity: velocity?,
+        pose: pose?,
+        retract,
+        twist_map: matrices.twist_map,
+        constraint: matrices.constraint,
+        speed_basis: matrices.speed_basis,
+        speed_names: matrices.speed_names,
+    })
+}
+
+fn pose(context: &Context<'_>, evaluator: &mut Evaluator<'_>) -> Option<Declared<PoseExpr>> {
+    let Some(statement) = context.statements.target(Target::Pose) else {
+        if !context.file.partial {
+            let name = &context.file.name;
+            let error = Diagnostic::new(code::MISSING, name.span.clone(), format!("joint `{}` declares no H", name.text));
+            evaluator.report(error.label("H is missing").help("add `H = …;`, the pose of the child in the parent as a function of Q"));
+        }
+        return None;
+    };
+    let value = matrices::pose(statement, evaluator)?;
+    Some(Declared { value, span: statement.span.clone() })
+}
+
+impl Freedoms {
+    fn count(&self) -> usize {
+        self.list.value.len()
+    }
+
+    fn frame_needed(&self, manifold: &Manifold) -> bool {
+        let group = |factor: usize| !matches!(manifold.factors()[factor].kind, crate::manifold::Kind::Real(_));
+        !self.local && self.list.value.iter().any(|freedom| group(freedom.factor))
+    }
+}
+
+/// `VelocityFrame` of a statement.
+fn frame(child: bool) -> VelocityFrame {
+    match child {
+        true => VelocityFrame::Child,
+        false => VelocityFrame::Parent,
+    }
+}

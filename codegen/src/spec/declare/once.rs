@@ -1,0 +1,90 @@
+//! Statements by kind: which may stand once, and where they stand.
+
+use super::super::ast::{Basis, File, Name, Node, StatementKind, Target};
+use super::super::code;
+use crate::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A statement's content and its bytes.
+pub(super) struct At<'a, T: ?Sized> {
+    pub value: &'a T,
+    pub span: &'a Range<usize>,
+}
+
+// Derived, these would ask that `T` be copied.
+impl<T: ?Sized> Clone for At<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: ?Sized> Copy for At<'_, T> {}
+
+/// All statements of a joint.
+#[derive(Default)]
+pub(super) struct Once<'a> {
+    pub config: Option<At<'a, [(Name, Name)]>>,
+    pub local: Option<At<'a, [Name]>>,
+    pub velocity: Option<At<'a, bool>>,
+    pub speeds: Option<At<'a, [Name]>>,
+    pub bases: Vec<At<'a, Basis>>,
+    pub lets: Vec<(&'a Name, &'a Node)>,
+    targets: BTreeMap<Target, At<'a, [Node]>>,
+}
+
+impl<'a> Once<'a> {
+    pub fn target(&self, target: Target) -> Option<At<'a, [Node]>> {
+        self.targets.get(&target).copied()
+    }
+}
+
+/// Sorts the statements; those that stand twice are errors.
+pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnostic>) -> Once<'a> {
+    let mut once = Once::default();
+    for statement in &file.statements {
+        let span = &statement.span;
+        let (word, first) = match &statement.kind {
+            StatementKind::Config(value) => ("config", replace(&mut once.config, value.as_slice(), span)),
+            StatementKind::Local(value) => ("local", replace(&mut once.local, value.as_slice(), span)),
+            StatementKind::Velocity { child } => ("velocity", replace(&mut once.velocity, child, span)),
+            StatementKind::Speeds(value) => ("speeds", replace(&mut once.speeds, value.as_slice(), span)),
+            StatementKind::Basis(value) => {
+                once.bases.push(At { value, span });
+                continue;
+            }
+            StatementKind::Let(name, value) => {
+                once.lets.push((name, value));
+                continue;
+            }
+            StatementKind::Assign(target, values) => {
+                let first = once.targets.get(target).map(|at| at.span);
+                once.targets.entry(*target).or_insert(At { value: values.as_slice(), span });
+                (target.name(), first)
+            }
+        };
+        if let Some(first) = first {
+            errors.push(twice(source, word, first, span));
+        }
+    }
+    once
+}
+
+/// Keeps the first; returns where that is, if this is the second.
+fn replace<'a, T: ?Sized>(slot: &mut Option<At<'a, T>>, value: &'a T, span: &'a Range<usize>) -> Option<&'a Range<usize>> {
+    let first = slot.as_ref().map(|at| at.span);
+    if slot.is_none() {
+        *slot = Some(At { value, span });
+    }
+    first
+}
+
+fn twice(source: &str, word: &str, first: &Range<usize>, span: &Range<usize>) -> Diagnostic {
+    let error = Diagnostic::new(code::DUPLICATE_STATEMENT, span.clone(), format!("`{word}` is declared twice"));
+    error.label("declared again here").note(format!("first declared in line {}", line(source, first)))
+}
+
+/// The line in which a span starts, counted from 1.
+pub(super) fn line(source: &str, span: &Range<usize>) -> usize {
+    1 + source[..span.start].matches('\n').count()
+}

@@ -1,0 +1,110 @@
+//! The names of a spec: each is defined once, in a form that Rust can take over, and used.
+
+use super::super::ast::{File, Name, Node, Parameter};
+use super::super::evaluate::{Evaluator, FUNCTIONS};
+use super::super::names::{self, Form};
+use super::super::value::Value;
+use super::super::code;
+use super::once::{At, Once, line};
+use super::unit;
+use crate::diagnostic::Diagnostic;
+use crate::expr::{Expr, Role, Symbol};
+use crate::manifold::{Factor, Kind};
+use crate::matrix::Matrix;
+use crate::model;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Names claimed so far, with what they name and where.
+pub(super) struct Scope<'s, 'e, 'a> {
+    source: &'s str,
+    pub evaluator: &'e mut Evaluator<'a>,
+    claimed: BTreeMap<String, (String, Range<usize>)>,
+}
+
+impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
+    pub fn new(source: &'s str, evaluator: &'e mut Evaluator<'a>) -> Self {
+        Self { source, evaluator, claimed: BTreeMap::new() }
+    }
+
+    pub fn joint(&mut self, name: &Name) {
+        self.evaluator.errors.extend(names::check_joint(name, FUNCTIONS));
+    }
+
+    /// Checks the form of the name, and that it is new.
+    pub fn claim(&mut self, name: &Name, form: Form, owner: &str) {
+        match names::check(name, form, FUNCTIONS) {
+            Some(error) => self.evaluator.report(error),
+            None => self.claim_text(&name.text, &name.span, owner),
+        }
+    }
+
+    /// Claims a name that is made from one of the spec.
+    pub fn claim_text(&mut self, text: &str, span: &Range<usize>, owner: &str) {
+        let Some((first, place)) = self.claimed.get(text) else {
+            self.claimed.insert(text.to_owned(), (owner.to_owned(), span.clone()));
+            return;
+        };
+        let message = format!("`{text}`, {owner}, is already {first}");
+        let error = Diagnostic::new(code::DUPLICATE_NAME, span.clone(), message).label("defined again here");
+        let error = error.note(format!("first defined in line {}", line(self.source, place)));
+        self.evaluator.report(error.help("choose another name"));
+    }
+
+    pub fn parameters(&mut self, parameters: &[Parameter]) -> Vec<model::Parameter> {
+        let mut declared = vec![];
+        for (index, parameter) in parameters.iter().enumerate() {
+            self.claim(&parameter.name, Form::Snake, "a parameter");
+            self.evaluator.errors.extend(unit::error(&parameter.unit));
+            let symbol = Symbol::new(Role::Parameter, index, &parameter.name.text);
+            self.evaluator.define(&parameter.name.text, Some(Value::Scalar(Expr::symbol(&symbol))));
+            declared.push(model::Parameter { symbol, unit: parameter.unit.text.clone(), docs: parameter.docs.join("\n") });
+        }
+        declared
+    }
+
+    /// The factors of `config`, and their stored scalars.
+    pub fn factors(&mut self, config: Option<At<'_, [(Name, Name)]>>, factors: &[Factor]) {
+        let names = config.map(|config| config.value).unwrap_or_default();
+        for ((name, _), factor) in names.iter().zip(factors) {
+            self.claim(name, Form::Any, "a factor of the configuration");
+            self.evaluator.define(&name.text, Some(value_of(factor)));
+        }
+        for ((name, _), factor) in names.iter().zip(factors) {
+            let owner = format!("a stored scalar of `{}`", name.text);
+            for symbol in factor.coordinates.iter().filter(|symbol| *symbol.name != *name.text) {
+                self.claim_text(&symbol.name, &name.span, &owner);
+            }
+        }
+    }
+
+    /// `let`s in order: each sees those above it.
+    pub fn lets(&mut self, lets: &[(&Name, &Node)]) {
+        for (name, node) in lets {
+            let statement = format!("let {}", name.text);
+            let value = self.evaluator.bounded(&statement, &node.span, |evaluator| evaluator.value(node));
+            self.claim(name, Form::Snake, "an auxiliary value");
+            self.evaluator.define(&name.text, value);
+        }
+    }
+}
+
+/// The value of a factor's name: scalars and columns of real factors and spheres, elements of groups.
+fn value_of(factor: &Factor) -> Value {
+    match factor.kind {
+        Kind::Real(_) => Value::matrix(Matrix::symbols(&factor.coordinates)),
+        Kind::S2 => Value::Matrix(factor.matrix()),
+        kind => Value::Element(kind, factor.matrix()),
+    }
+}
+
+/// Parameters and `let`s that nothing uses.
+pub(super) fn report_unused(file: &File, statements: &Once<'_>, evaluator: &mut Evaluator<'_>) {
+    let parameters = file.parameters.iter().map(|parameter| (&parameter.name, "parameter"));
+    let lets = statements.lets.iter().map(|(name, _)| (*name, "auxiliary value"));
+    let unused: Vec<_> = parameters.chain(lets).filter(|(name, _)| !evaluator.is_used(&name.text)).collect();
+    for (name, what) in unused.into_iter().filter(|_| !file.partial) {
+        let error = Diagnostic::new(code::UNUSED, name.span.clone(), format!("{what} `{}` is never used", name.text));
+        evaluator.report(error.label("never used").help("use it or remove it"));
+    }
+}

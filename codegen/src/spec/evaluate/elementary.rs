@@ -1,0 +1,85 @@
+//! Elementary functions of scalars, in terms of those that expressions know.
+
+use super::super::value::Value;
+use super::super::{Fallible, limits};
+use super::function::Call;
+use crate::expr::{Expr, Rational};
+use num_traits::{One, Signed, ToPrimitive};
+
+/// Functions of one scalar.
+pub(super) fn of_one(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
+    let [Value::Scalar(x)] = arguments else {
+        return Err(call.refuse("one scalar", arguments));
+    };
+    let constant = x.as_rational();
+    let negative = constant.as_ref().is_some_and(Signed::is_negative);
+    let value = match call.name {
+        "sin" => x.sin(),
+        "cos" => x.cos(),
+        "tan" => quotient(call, &x.sin(), &x.cos())?,
+        "exp" => x.exp(),
+        "sqrt" if negative => return Err(call.undefined("square root of a negative number")),
+        "sqrt" => x.sqrt(),
+        "log" if negative || x.is_zero() => return Err(call.undefined("logarithm of a number that is not positive")),
+        "log" => x.ln(),
+        _ => hyperbolic(call, x)?,
+    };
+    Ok(Value::Scalar(value))
+}
+
+/// sinh, cosh and tanh, by exp.
+fn hyperbolic(call: &Call<'_>, x: &Expr) -> Fallible<Expr> {
+    let up = x.exp();
+    let down = quotient(call, &Expr::one(), &up)?;
+    let half = Expr::fraction(1, 2);
+    let sinh = &half * &(&up - &down);
+    let cosh = &half * &(&up + &down);
+    match call.name {
+        "sinh" => Ok(sinh),
+        "cosh" => Ok(cosh),
+        _ => quotient(call, &sinh, &cosh),
+    }
+}
+
+/// `atan2(y, x)` and `pow(x, n)`.
+pub(super) fn of_two(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
+    let [Value::Scalar(first), Value::Scalar(second)] = arguments else {
+        return Err(call.refuse("two scalars", arguments));
+    };
+    match call.name {
+        "atan2" if first.is_zero() && second.is_zero() => Err(call.undefined("atan2(0, 0) is no angle")),
+        "atan2" => Ok(Value::Scalar(first.atan2(second))),
+        _ => match second.as_rational() {
+            Some(exponent) => Ok(Value::Scalar(power(call, first, &exponent)?)),
+            None => Err(call.refuse("a scalar and a number as exponent", arguments)),
+        },
+    }
+}
+
+/// `x` to an integer, by products; to a multiple of ½, by the root; to another fraction, by exp and log.
+fn power(call: &Call<'_>, x: &Expr, exponent: &Rational) -> Fallible<Expr> {
+    let size = exponent.abs();
+    let limit = Rational::from_integer(limits::LARGEST_POWER.into());
+    if size > limit || size.denom() > &limits::LARGEST_POWER.into() {
+        let message = format!("the exponent {exponent}: numerators and denominators go up to {}", limits::LARGEST_POWER);
+        return Err(call.undefined(&message));
+    }
+    if x.as_rational().is_some_and(|x| x.is_negative()) && !size.is_integer() {
+        return Err(call.undefined("a broken power of a negative number"));
+    }
+    let times = size.numer().to_u32().unwrap_or(0);
+    let value = match size.denom() {
+        one if one.is_one() => x.pow(times),
+        two if *two == 2.into() => x.sqrt().pow(times),
+        _ => (&x.ln() * &Expr::rational(size)).exp(),
+    };
+    match exponent.is_negative() {
+        true => quotient(call, &Expr::one(), &value),
+        false => Ok(value),
+    }
+}
+
+fn quotient(call: &Call<'_>, a: &Expr, b: &Expr) -> Fallible<Expr> {
+    let inverse = b.recip().ok_or_else(|| call.undefined("division by zero"))?;
+    Ok(a * &inverse)
+}

@@ -1,0 +1,154 @@
+//! Statements, and recovery at the end of each.
+
+use super::super::ast::{Basis, Name, Statement, StatementKind, Target};
+use super::super::names::{self, STATEMENTS};
+use super::super::tokens::Tokens;
+use super::super::{Fallible, code};
+use super::expression;
+use crate::diagnostic::Diagnostic;
+use proc_macro2::Delimiter;
+
+/// All statements of a joint; of each that cannot be read, one error.
+pub(in super::super) fn all(mut tokens: Tokens<'_>, errors: &mut Vec<Diagnostic>) -> Vec<Statement> {
+    let mut statements = vec![];
+    loop {
+        tokens.docs();
+        if tokens.is_empty() {
+            return statements;
+        }
+        let start = tokens.span().start;
+        match statement(&mut tokens) {
+            Ok(kind) => statements.push(Statement { span: start..tokens.previous, kind }),
+            Err(error) => {
+                errors.push(*error);
+                recover(&mut tokens, start);
+            }
+        }
+    }
+}
+
+/// Goes on behind the next `;`, or at a line that begins a statement.
+fn recover(tokens: &mut Tokens<'_>, start: usize) {
+    let begins_statement = |tokens: &Tokens<'_>| {
+        let known = tokens.peek_name().is_some_and(|name| STATEMENTS.contains(&name.text.as_str()));
+        known && tokens.starts_line() && tokens.span().start > start
+    };
+    while !tokens.eat(';') {
+        if begins_statement(tokens) || !tokens.skip() {
+            return;
+        }
+    }
+}
+
+fn statement(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
+    let keyword = tokens.expect_name("a statement")?;
+    let kind = match keyword.text.as_str() {
+        "config" => StatementKind::Config(list(tokens, factor)?),
+        "basis" => StatementKind::Basis(basis(tokens)?),
+        "local" => StatementKind::Local(list(tokens, |t| t.expect_name("the name of a local coordinate"))?),
+        "speeds" => StatementKind::Speeds(list(tokens, |t| t.expect_name("the name of a speed"))?),
+        "velocity" => velocity(tokens)?,
+        "let" => {
+            let name = tokens.expect_name("a name")?;
+            tokens.expect('=', "`=`")?;
+            StatementKind::Let(name, expression::expression(tokens)?)
+        }
+        word => match Target::ALL.into_iter().find(|target| target.name() == word) {
+            Some(target) => assignment(tokens, target)?,
+            None => return Err(unknown(&keyword, tokens)),
+        },
+    };
+    match tokens.eat(';') {
+        true => Ok(kind),
+        false => Err(unfinished(tokens)),
+    }
+}
+
+fn unknown(keyword: &Name, tokens: &Tokens<'_>) -> Box<Diagnostic> {
+    let message = format!("there is no statement `{}`", keyword.text);
+    let error = Diagnostic::new(code::STATEMENT, keyword.span.clone(), message).label("not a statement");
+    let near = names::nearest(&keyword.text, STATEMENTS.iter().copied());
+    Box::new(error.help(match near {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if tokens.peek('=') => format!("an auxiliary value is defined by `let {} = …;`", keyword.text),
+        None => format!("statements are {}", STATEMENTS.join(", ")),
+    }))
+}
+
+fn unfinished(tokens: &Tokens<'_>) -> Box<Diagnostic> {
+    if tokens.peek('^') {
+        return expression::power(tokens.span());
+    }
+    if tokens.is_empty() || tokens.starts_line() {
+        let here = tokens.previous..tokens.previous;
+        let error = Diagnostic::new(code::EXPECTED, here, format!("expected `;`, found {}", tokens.found()));
+        return Box::new(error.label("expected `;` here"));
+    }
+    tokens.expected("an operator or `;`")
+}
+
+/// One or more items, separated by commas.
+fn list<'a, T>(tokens: &mut Tokens<'a>, item: impl Fn(&mut Tokens<'a>) -> Fallible<T>) -> Fallible<Vec<T>> {
+    let mut items = vec![item(tokens)?];
+    while tokens.eat(',') {
+        items.push(item(tokens)?);
+    }
+    Ok(items)
+}
+
+fn factor(tokens: &mut Tokens<'_>) -> Fallible<(Name, Name)> {
+    let name = tokens.expect_name("the name of a factor")?;
+    tokens.expect(':', "`:` and a manifold")?;
+    Ok((name, tokens.expect_name("a manifold")?))
+}
+
+fn basis(tokens: &mut Tokens<'_>) -> Fallible<Basis> {
+    let elements = list(tokens, |tokens| {
+        let name = tokens.expect_name("the name of a basis element")?;
+        let value = tokens.eat('=').then(|| expression::expression(tokens)).transpose()?;
+        Ok((name, value))
+    })?;
+    keyword(tokens, "of")?;
+    let algebra = tokens.expect_name("a Lie algebra")?;
+    let factor = match tokens.group(Delimiter::Parenthesis) {
+        Some((mut inside, _)) => {
+            let name = inside.expect_name("the name of a factor")?;
+            if !inside.is_empty() {
+                return Err(inside.expected("`)`"));
+            }
+            Some(name)
+        }
+        None => None,
+    };
+    Ok(Basis { elements, algebra, factor })
+}
+
+fn velocity(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
+    keyword(tokens, "in")?;
+    match tokens.peek_name().map(|name| name.text).as_deref() {
+        Some(frame @ ("child" | "parent")) => {
+            tokens.name();
+            Ok(StatementKind::Velocity { child: frame == "child" })
+        }
+        _ => Err(tokens.expected("`child` or `parent`")),
+    }
+}
+
+fn keyword(tokens: &mut Tokens<'_>, word: &str) -> Fallible<()> {
+    match tokens.peek_name() {
+        Some(name) if name.text == word => {
+            tokens.name();
+            Ok(())
+        }
+        _ => Err(tokens.expected(&format!("`{word}`"))),
+    }
+}
+
+fn assignment(tokens: &mut Tokens<'_>, target: Target) -> Fallible<StatementKind> {
+    tokens.expect('=', "`=`")?;
+    let values = match target {
+        Target::Retract => list(tokens, expression::expression)?,
+        _ => vec![expression::expression(tokens)?],
+    };
+    Ok(StatementKind::Assign(target, values))
+}

@@ -1,0 +1,121 @@
+//! Values of expressions, and what each may stand for.
+
+use crate::expr::Expr;
+use crate::manifold::Kind;
+use crate::matrix::Matrix;
+use crate::model::PoseExpr;
+
+/// The value of an expression.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Scalar(Expr),
+    /// A bracket without `;`: a row, or a column where only a column fits.
+    List(Vec<Expr>),
+    /// Any other matrix; never 1×1.
+    Matrix(Matrix),
+    Pose(PoseExpr),
+    /// An element of a group, as the square matrix that multiplies.
+    Element(Kind, Matrix),
+    /// An element of a group's algebra: its coordinates in the standard basis.
+    Tangent(Kind, Vec<Expr>),
+}
+
+impl Value {
+    /// The matrix as a value: a scalar where it is 1×1.
+    pub fn matrix(matrix: Matrix) -> Self {
+        match (matrix.shape(), matrix.entries()) {
+            ((1, 1), [entry]) => Self::Scalar(entry.clone()),
+            _ => Self::Matrix(matrix),
+        }
+    }
+
+    /// The column as a value.
+    pub fn column(entries: Vec<Expr>) -> Self {
+        Self::matrix(Matrix::column_vector(entries))
+    }
+
+    /// What it is, for error messages.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Scalar(_) => "a scalar".into(),
+            Self::List(entries) => format!("a list of {}", entries.len()),
+            Self::Matrix(matrix) => format!("a {}×{} matrix", matrix.rows(), matrix.columns()),
+            Self::Pose(_) => "a pose".into(),
+            Self::Element(kind, _) => format!("an element of {}", kind.name()),
+            Self::Tangent(kind, _) => format!("an element of {}", kind.algebra_name().unwrap_or_else(|| kind.name())),
+        }
+    }
+
+    /// All scalars that it holds.
+    pub fn entries(&self) -> Vec<Expr> {
+        match self {
+            Self::Scalar(entry) => vec![entry.clone()],
+            Self::List(entries) | Self::Tangent(_, entries) => entries.clone(),
+            Self::Matrix(matrix) | Self::Element(_, matrix) => matrix.entries().to_vec(),
+            Self::Pose(pose) => [pose.rotation.entries(), pose.translation.entries()].concat(),
+        }
+    }
+
+    /// As a scalar.
+    pub fn as_scalar(&self) -> Option<&Expr> {
+        match self {
+            Self::Scalar(entry) => Some(entry),
+            _ => None,
+        }
+    }
+
+    /// As a matrix: matrices, lists as rows, elements of SO2 and SO3; not scalars.
+    pub fn as_matrix(&self) -> Option<Matrix> {
+        match self {
+            Self::Matrix(matrix) | Self::Element(Kind::So2 | Kind::So3, matrix) => Some(matrix.clone()),
+            Self::List(entries) => Some(Matrix::column_vector(entries.clone()).transpose()),
+            _ => None,
+        }
+    }
+
+    /// As a column: columns, and lists.
+    pub fn as_column(&self) -> Option<Vec<Expr>> {
+        match self {
+            Self::List(entries) => Some(entries.clone()),
+            Self::Matrix(matrix) if matrix.columns() == 1 => Some(matrix.entries().to_vec()),
+            _ => None,
+        }
+    }
+
+    /// As a column of three.
+    pub fn as_vector3(&self) -> Option<Vec<Expr>> {
+        self.as_column().filter(|column| column.len() == 3)
+    }
+
+    /// As a matrix of that shape: a scalar counts as 1×1, a list as a row or a column.
+    pub fn as_shape(&self, rows: usize, columns: usize) -> Option<Matrix> {
+        let matrix = match self {
+            Self::Scalar(entry) => Matrix::column_vector(vec![entry.clone()]),
+            Self::List(entries) if columns == 1 => Matrix::column_vector(entries.clone()),
+            _ => self.as_matrix()?,
+        };
+        (matrix.shape() == (rows, columns)).then_some(matrix)
+    }
+
+    /// As a rotation matrix: 3×3, or an element of SO3.
+    pub fn as_rotation(&self) -> Option<Matrix> {
+        self.as_matrix().filter(|matrix| matrix.shape() == (3, 3))
+    }
+
+    /// As a pose: poses, elements of SE3, and rotations alone.
+    pub fn as_pose(&self) -> Option<PoseExpr> {
+        match self {
+            Self::Pose(pose) => Some(pose.clone()),
+            Self::Element(Kind::Se3, matrix) => Some(PoseExpr {
+                rotation: matrix.block(0, 0, 3, 3),
+                translation: matrix.block(0, 3, 3, 1),
+            }),
+            _ => Some(PoseExpr { rotation: self.as_rotation()?, translation: Matrix::zeros(3, 1) }),
+        }
+    }
+
+    /// Whether this is a pose by itself, not only where one is expected.
+    pub fn is_pose(&self) -> bool {
+        matches!(self, Self::Pose(_) | Self::Element(Kind::Se3, _))
+    }
+}
