@@ -1,0 +1,83 @@
+//! Equations of motion of a mechanism, in Lagrangian (v̄) and port-Hamiltonian (p̄) form.
+//!
+//! * [`Reference`]: Theorems 2 and 3 literally, matrices and all. For reading, checking and small mechanisms.
+//! * [`NewtonEuler`]: inverse dynamics by recursion, which shares no formula with the former.
+//! * [`quasi`]: Theorem 1, for systems in quasi-coordinates that a caller writes down.
+//!
+//! Whatever integrates or compares equations of motion does so through [`Dynamics`].
+
+mod error;
+mod newton_euler;
+pub mod quasi;
+pub mod reference;
+
+pub use error::DynamicsError;
+pub use newton_euler::NewtonEuler;
+pub use reference::Reference;
+
+use crate::mechanism::Mechanism;
+use alloc::sync::Arc;
+
+/// Equations of motion of one mechanism.
+///
+/// `q` is a configuration, `speeds` v̄ and `momenta` p̄ have one entry a speed, `efforts` τ one a freedom: τ is collocated
+/// with v. Configurations are taken to lie on the joints' manifolds ([`Mechanism::check_configuration`]).
+pub trait Dynamics {
+    /// The mechanism whose equations these are.
+    fn mechanism(&self) -> &Arc<Mechanism>;
+
+    /// v̄̇ into `rates`, (24), (34).
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size.
+    fn accelerations(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError>;
+
+    /// `p̄ = M̄ v̄` into `momenta`.
+    ///
+    /// # Errors
+    /// A wrong size.
+    fn momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        momenta: &mut [f64],
+    ) -> Result<(), DynamicsError>;
+
+    /// `v̄ = M̄⁻¹ p̄` into `speeds`.
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size.
+    fn speeds(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        speeds: &mut [f64],
+    ) -> Result<(), DynamicsError>;
+
+    /// v̄ into `speeds` and p̄̇ into `rates`, (27), (35).
+    ///
+    /// `efforts` is handed v̄ and fills in τ, so that efforts that depend on v̄ do not cost a second factorisation.
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size.
+    fn momentum_rates(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &mut dyn FnMut(&[f64], &mut [f64]),
+        speeds: &mut [f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError>;
+
+    /// `H = ½ p̄ᵀ M̄⁻¹ p̄ + V`, J.
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size.
+    fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError>;
+}

@@ -1,0 +1,260 @@
+//! Joints behind one object-safe trait, so that a mechanism holds joints of any type.
+//!
+//! [`AnyJoint`] mirrors the kernels of [`Joint`] over slices of `f64`. Matrices are stored column by column, and the K
+//! slices of a derivative in ϕ one after the other. Nothing here allocates.
+
+use crate::joint::{Joint, Structures, VelocityFrame};
+use crate::spatial::Pose;
+use alloc::sync::Arc;
+use core::fmt::Debug;
+use nalgebra::{SMatrix, SVector, Vector6};
+
+/// Sizes of a joint, or their sums over a mechanism.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// N: stored scalars of Q.
+    pub configuration: usize,
+    /// K: freedoms, the size of v and of ϕ.
+    pub freedoms: usize,
+    /// S: speeds, the size of v̄ and of p̄.
+    pub speeds: usize,
+    /// C: nonholonomic constraints, the size of λ.
+    pub constraints: usize,
+}
+
+/// A joint of any type, [`Joint`] over slices.
+///
+/// With (N, K, S, C) of [`AnyJoint::layout`], shapes are as in [`Joint`]. The caller hands over slices of exactly these
+/// sizes; a method panics on any other, as an index out of bounds does.
+pub trait AnyJoint: Debug + Send + Sync {
+    /// Name of the spec.
+    fn name(&self) -> &'static str;
+    /// N, K, S and C.
+    fn layout(&self) -> Layout;
+    /// Which kernels are trivial.
+    fn structures(&self) -> Structures;
+    /// Frame in which v is read.
+    fn velocity_frame(&self) -> VelocityFrame;
+    /// Names of the stored scalars of Q.
+    fn coordinates(&self) -> &'static [&'static str];
+    /// Names of the freedoms.
+    fn freedoms(&self) -> &'static [&'static str];
+    /// Names of the speeds.
+    fn speeds(&self) -> &'static [&'static str];
+    /// Basis of the inertias that the joint cannot feel, [`Joint::IMPERCEPTIBLE`].
+    fn imperceptible(&self) -> &'static [[f64; 10]];
+    /// Hands each parameter's name and value to `visit`.
+    fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64));
+
+    /// [`Joint::home`] into `q` (N).
+    fn home(&self, q: &mut [f64]);
+    /// [`Joint::pose`].
+    fn pose(&self, q: &[f64]) -> Pose<f64>;
+    /// [`Joint::twist_map`] into `out` (6×K).
+    fn twist_map(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::twist_map_child`] into `out` (6×K).
+    fn twist_map_child(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::twist_map_child_gradient`] into `out` (K slices of 6×K).
+    fn twist_map_child_gradient(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::velocity_map`] into `out` (K×K).
+    fn velocity_map(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::velocity_map_inverse`] into `out` (K×K).
+    fn velocity_map_inverse(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::velocity_map_gradient`] into `out` (K slices of K×K).
+    fn velocity_map_gradient(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::gamma`] into `out` (K×K).
+    fn gamma(&self, q: &[f64], v: &[f64], out: &mut [f64]);
+    /// [`Joint::j22`] into `out` (K×K).
+    fn j22(&self, q: &[f64], p: &[f64], out: &mut [f64]);
+    /// [`Joint::constraint`] into `out` (K×C).
+    fn constraint(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::speed_basis`] into `out` (K×S).
+    fn speed_basis(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::speed_basis_gradient`] into `out` (K slices of K×S).
+    fn speed_basis_gradient(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::configuration_rate`] into `out` (N).
+    fn configuration_rate(&self, q: &[f64], v: &[f64], out: &mut [f64]);
+    /// [`Joint::retract`] into `out` (N).
+    fn retract(&self, q: &[f64], phi: &[f64], out: &mut [f64]);
+    /// [`Joint::local`] into `phi` (K).
+    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]);
+    /// [`Joint::retract_differential_inverse`] into `out` (K).
+    fn retract_differential_inverse(&self, q: &[f64], phi: &[f64], rate: &[f64], out: &mut [f64]);
+    /// [`Joint::project`] in place.
+    fn project(&self, q: &mut [f64]);
+    /// [`Joint::residual`].
+    fn residual(&self, q: &[f64]) -> f64;
+    /// [`Joint::bias_acceleration`].
+    fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64>;
+    /// [`Joint::bias_momentum`] into `out` (S).
+    fn bias_momentum(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
+}
+
+/// Puts a joint behind [`AnyJoint`].
+pub fn erase<J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: J,
+) -> Arc<dyn AnyJoint>
+where
+    J: Joint<N, K, S, C>,
+{
+    Arc::new(Erased::<J, N, K, S, C>(joint))
+}
+
+/// The adapter behind [`erase`]; its constants make the sizes part of the type.
+#[derive(Debug)]
+struct Erased<J, const N: usize, const K: usize, const S: usize, const C: usize>(J);
+
+fn vector<const D: usize>(slice: &[f64]) -> SVector<f64, D> {
+    SVector::from_column_slice(slice)
+}
+
+fn store<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>, out: &mut [f64]) {
+    out.copy_from_slice(matrix.as_slice());
+}
+
+fn store_slices<const R: usize, const C: usize, const K: usize>(
+    slices: &[SMatrix<f64, R, C>; K],
+    out: &mut [f64],
+) {
+    assert_eq!(out.len(), R * C * K, "size of a derivative in phi");
+    // chunks_exact_mut refuses a chunk size of 0, which a joint without constraints can ask for.
+    for (slice, chunk) in slices.iter().zip(out.chunks_exact_mut((R * C).max(1))) {
+        store(slice, chunk);
+    }
+}
+
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> AnyJoint
+    for Erased<J, N, K, S, C>
+where
+    J: Joint<N, K, S, C>,
+{
+    fn name(&self) -> &'static str {
+        J::NAME
+    }
+
+    fn layout(&self) -> Layout {
+        Layout {
+            configuration: N,
+            freedoms: K,
+            speeds: S,
+            constraints: C,
+        }
+    }
+
+    fn structures(&self) -> Structures {
+        J::STRUCTURES
+    }
+
+    fn velocity_frame(&self) -> VelocityFrame {
+        J::VELOCITY_FRAME
+    }
+
+    fn coordinates(&self) -> &'static [&'static str] {
+        const { &J::COORDINATES }
+    }
+
+    fn freedoms(&self) -> &'static [&'static str] {
+        const { &J::FREEDOMS }
+    }
+
+    fn speeds(&self) -> &'static [&'static str] {
+        const { &J::SPEEDS }
+    }
+
+    fn imperceptible(&self) -> &'static [[f64; 10]] {
+        J::IMPERCEPTIBLE
+    }
+
+    fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        for (name, value) in self.0.parameters() {
+            visit(name, value);
+        }
+    }
+
+    fn home(&self, q: &mut [f64]) {
+        store(&self.0.home(), q);
+    }
+
+    fn pose(&self, q: &[f64]) -> Pose<f64> {
+        self.0.pose(&vector(q))
+    }
+
+    fn twist_map(&self, q: &[f64], out: &mut [f64]) {
+        store(&self.0.twist_map(&vector(q)), out);
+    }
+
+    fn twist_map_child(&self, q: &[f64], out: &mut [f64]) {
+        store(&self.0.twist_map_child(&vector(q)), out);
+    }
+
+    fn twist_map_child_gradient(&self, q: &[f64], out: &mut [f64]) {
+        store_slices(&self.0.twist_map_child_gradient(&vector(q)), out);
+    }
+
+    fn velocity_map(&self, q: &[f64], out: &mut [f64]) {
+        store(&self.0.velocity_map(&vector(q)), out);
+    }
+
+    fn velocity_map_inverse(&self, q: &[f64], out: &mut [f64]) {
+        store(&self.0.velocity_map_inverse(&vector(q)), out);
+    }
+
+    fn velocity_map_gradient(&self, q: &[f64], out: &mut [f64]) {
+        store_slices(&self.0.velocity_map_gradient(&vector(q)), out);
+    }
+
+    fn gamma(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        store(&self.0.gamma(&vector(q), &vector(v)), out);
+    }
+
+    fn j22(&self, q: &[f64], p: &[f64], out: &mut [f64]) {
+        store(&self.0.j22(&vector(q), &vector(p)), out);
+    }
+
+    fn constraint(&self, q: &[f64], out: &mut [f64]) {
+        store(&self.0.constraint(&vector(q)), out);
+    }
+
+    fn speed_basis(&self, q: &[f64], out: &mut [f64]) {
+        store(&self.0.speed_basis(&vector(q)), out);
+    }
+
+    fn speed_basis_gradient(&self, q: &[f64], out: &mut [f64]) {
+        store_slices(&self.0.speed_basis_gradient(&vector(q)), out);
+    }
+
+    fn configuration_rate(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        store(&self.0.configuration_rate(&vector(q), &vector(v)), out);
+    }
+
+    fn retract(&self, q: &[f64], phi: &[f64], out: &mut [f64]) {
+        store(&self.0.retract(&vector(q), &vector(phi)), out);
+    }
+
+    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]) {
+        store(&self.0.local(&vector(q), &vector(target)), phi);
+    }
+
+    fn retract_differential_inverse(&self, q: &[f64], phi: &[f64], rate: &[f64], out: &mut [f64]) {
+        let result = self
+            .0
+            .retract_differential_inverse(&vector(q), &vector(phi), &vector(rate));
+        store(&result, out);
+    }
+
+    fn project(&self, q: &mut [f64]) {
+        store(&self.0.project(&vector(q)), q);
+    }
+
+    fn residual(&self, q: &[f64]) -> f64 {
+        self.0.residual(&vector(q))
+    }
+
+    fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64> {
+        self.0.bias_acceleration(&vector(q), &vector(speeds))
+    }
+
+    fn bias_momentum(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]) {
+        store(&self.0.bias_momentum(&vector(q), &vector(speeds), h), out);
+    }
+}

@@ -1,0 +1,211 @@
+//! From the initial time to the last, by accepted steps, over the sample times.
+
+use super::clock::Clock;
+use super::control::Controller;
+use super::flow::Flow;
+use super::stepper::Stepper;
+use super::{
+    Form, Inputs, IntegrateError, Method, Observer, Options, Solution, State, Statistics, Step,
+    StepFailure,
+};
+use crate::dynamics::Dynamics;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use num_traits::Float;
+
+/// A remainder that exceeds a fixed step by less than this is taken as that step: it is rounding of the step count.
+const FIXED_STRETCH: f64 = 1.0 + 1e-9;
+
+/// A remainder that exceeds a controlled step by less than this is taken at once: it saves a sliver of a step.
+const CONTROLLED_STRETCH: f64 = 1.01;
+
+/// An integration under way.
+pub(super) struct Driver<'a> {
+    flow: Flow<'a>,
+    stepper: Stepper,
+    options: &'a Options,
+    clock: Clock,
+    start: f64,
+    statistics: Statistics,
+    samples: Vec<State>,
+}
+
+/// How the next step is chosen.
+struct Pacing {
+    /// The step to try where no sample time is in the way.
+    step: f64,
+    controller: Controller,
+}
+
+impl<'a> Driver<'a> {
+    pub(super) fn new(
+        dynamics: &'a mut dyn Dynamics,
+        initial: &State,
+        options: &'a Options,
+        inputs: &'a mut Inputs<'a>,
+    ) -> Result<Self, IntegrateError> {
+        let mut flow = Flow::new(dynamics, inputs, options.form);
+        let (time, tableau) = (initial.time, options.method.tableau());
+        let stepper = Stepper::new(tableau, &mut flow, time, &initial.configuration, &initial.speeds)
+            .map_err(|cause| at_state(time, cause))?;
+        Ok(Self {
+            flow,
+            stepper,
+            options,
+            clock: Clock::new(time),
+            start: time,
+            statistics: Statistics::default(),
+            samples: Vec::with_capacity(options.samples.len()),
+        })
+    }
+
+    /// Steps until the end, or until the observer breaks.
+    pub(super) fn run(mut self, observer: &mut Observer<'_>) -> Result<Solution, IntegrateError> {
+        let mut pacing = self.pacing();
+        let mut stopped = self.report(observer);
+        while !stopped && self.clock.time() < self.options.t_end {
+            self.advance(&mut pacing)?;
+            stopped = self.report(observer);
+        }
+        self.statistics.evaluations = self.flow.evaluations;
+        Ok(Solution {
+            state: self.state(),
+            samples: self.samples,
+            statistics: self.statistics,
+            stopped,
+        })
+    }
+
+    fn pacing(&self) -> Pacing {
+        let order = self.options.method.tableau().order;
+        let step = match self.options.method {
+            Method::Rk4 { dt } => dt,
+            Method::DormandPrince { tolerance, max_step, first_step } => first_step
+                .unwrap_or_else(|| self.first_step(tolerance, order))
+                .min(max_step),
+        };
+        Pacing { step, controller: Controller::new(order) }
+    }
+
+    /// A step over which the state changes by about `tolerance^(1/order)`.
+    fn first_step(&self, tolerance: f64, order: u32) -> f64 {
+        let span = self.options.t_end - self.start;
+        let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
+        (change / self.stepper.pace()).min(0.01 * span)
+    }
+
+    /// The next sample time, or the end.
+    fn target(&self) -> f64 {
+        let samples = &self.options.samples;
+        samples.get(self.samples.len()).copied().unwrap_or(self.options.t_end)
+    }
+
+    /// One accepted step.
+    fn advance(&mut self, pacing: &mut Pacing) -> Result<(), IntegrateError> {
+        loop {
+            let (step, lands) = self.choose_step(pacing.step);
+            let attempt = self.attempt(pacing, step);
+            let Err(cause) = attempt else {
+                return self.accept(step, lands);
+            };
+            self.statistics.rejected += 1;
+            self.refuse(pacing, step, cause)?;
+        }
+    }
+
+    /// The step to try, and whether it ends on the target.
+    fn choose_step(&self, step: f64) -> (f64, bool) {
+        let remaining = self.clock.until(self.target());
+        match self.options.method {
+            Method::Rk4 { .. } if remaining <= step * FIXED_STRETCH => (remaining, true),
+            Method::Rk4 { .. } => (step, false),
+            _ if remaining <= step * CONTROLLED_STRETCH => (remaining, true),
+            // Two equal steps rather than a full one and a sliver.
+            _ if remaining < 2.0 * step => (0.5 * remaining, false),
+            _ => (step, false),
+        }
+    }
+
+    fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
+        let outcome = self.stepper.attempt(&mut self.flow, self.clock.time(), step);
+        let Method::DormandPrince { tolerance, max_step, .. } = self.options.method else {
+            return outcome;
+        };
+        if let Err(cause) = outcome {
+            pacing.step = step * pacing.controller.reject(None);
+            return Err(cause);
+        }
+        let (error, joint) = self.stepper.error(&self.flow, step, tolerance);
+        // A comparison that NaN fails as well.
+        if !(error <= 1.0) {
+            pacing.step = step * pacing.controller.reject(Some(error));
+            return Err(self.inaccurate(joint, error));
+        }
+        let next = step * pacing.controller.accept(error);
+        // A step that was cut short to land says nothing against the step that was meant.
+        let cut = step < pacing.step;
+        pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);
+        Ok(())
+    }
+
+    fn inaccurate(&self, joint: usize, ratio: f64) -> StepFailure {
+        let name = self.flow.mechanism.bodies().get(joint).map_or("", |body| body.joint_name());
+        StepFailure::Inaccurate { joint: name.into(), ratio }
+    }
+
+    /// Ends the integration where no smaller step can help.
+    fn refuse(&self, pacing: &Pacing, step: f64, cause: StepFailure) -> Result<(), IntegrateError> {
+        let (time, cause) = (self.clock.time(), Box::new(cause));
+        if matches!(self.options.method, Method::Rk4 { .. }) {
+            return Err(IntegrateError::Step { time, step, cause });
+        }
+        let limit = 16.0 * f64::EPSILON * time.abs().max(self.options.t_end - self.start);
+        if pacing.step > limit {
+            return Ok(());
+        }
+        Err(IntegrateError::StepUnderflow { time, step: pacing.step, limit, cause })
+    }
+
+    fn accept(&mut self, step: f64, lands: bool) -> Result<(), IntegrateError> {
+        if lands {
+            self.clock = Clock::new(self.target());
+        } else {
+            self.clock.advance(step);
+        }
+        let time = self.clock.time();
+        self.stepper.accept(&mut self.flow, time).map_err(|cause| at_state(time, cause))?;
+        self.statistics.steps += 1;
+        Ok(())
+    }
+
+    /// Records the samples that fall on this time and shows the state; whether to stop.
+    fn report(&mut self, observer: &mut Observer<'_>) -> bool {
+        let mut sample = None;
+        while self.options.samples.get(self.samples.len()) == Some(&self.clock.time()) {
+            sample = Some(self.samples.len());
+            self.samples.push(self.state());
+        }
+        let step = Step {
+            time: self.clock.time(),
+            number: self.statistics.steps,
+            configuration: &self.stepper.configuration,
+            speeds: self.stepper.speeds(),
+            momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.stepper.y),
+            sample,
+        };
+        observer(&step).is_break()
+    }
+
+    fn state(&self) -> State {
+        State {
+            time: self.clock.time(),
+            configuration: self.stepper.configuration.clone(),
+            speeds: self.stepper.speeds().to_vec(),
+        }
+    }
+}
+
+fn at_state(time: f64, cause: StepFailure) -> IntegrateError {
+    let cause = Box::new(cause);
+    IntegrateError::AtState { time, cause }
+}

@@ -1,0 +1,104 @@
+//! Why an integration ends before its time.
+
+use crate::dynamics::DynamicsError;
+use crate::mechanism::StateError;
+use alloc::boxed::Box;
+use alloc::string::String;
+
+/// Why a step cannot be taken, or is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepFailure {
+    /// The embedded error estimate exceeds the tolerance.
+    #[error("the error of joint `{joint}` is {ratio:e} times the tolerance")]
+    Inaccurate {
+        /// The joint with the largest error.
+        joint: String,
+        /// Its error over the tolerance.
+        ratio: f64,
+    },
+    /// A joint turns too far for one step.
+    #[error("joint `{joint}` turns by {angle} rad within the step, more than pi")]
+    Turn {
+        /// The joint.
+        joint: String,
+        /// Its rotation.
+        angle: f64,
+    },
+    /// NaN or infinity.
+    #[error("the motion of joint `{joint}` is not finite")]
+    NotFinite {
+        /// The joint.
+        joint: String,
+    },
+    /// The equations of motion cannot be evaluated.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
+}
+
+/// Why an integration ends before its time.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IntegrateError {
+    /// An option out of range.
+    #[error("{option} is {value}: it must be {requirement}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        requirement: &'static str,
+    },
+    /// The end lies before the start.
+    #[error("t_end is {end} s: it lies before the initial time {start} s")]
+    TimeOrder {
+        /// Initial time.
+        start: f64,
+        /// Time at which to end.
+        end: f64,
+    },
+    /// A sample time out of order or out of range.
+    #[error("sample {index} is at {time} s: sample times ascend, and this one must lie between {earliest} s and {end} s")]
+    Sample {
+        /// Its index.
+        index: usize,
+        /// The time.
+        time: f64,
+        /// Initial time, or the sample before.
+        earliest: f64,
+        /// Time at which to end.
+        end: f64,
+    },
+    /// The initial state is refused.
+    #[error("initial state: {0}")]
+    Initial(#[from] StateError),
+    /// The equations of motion fail at a state that was reached, so that no step size can mend it.
+    #[error("at {time} s: {cause}")]
+    AtState {
+        /// When.
+        time: f64,
+        /// Why.
+        cause: Box<StepFailure>,
+    },
+    /// A step of fixed size fails.
+    #[error("the step of {step:e} s at {time} s fails: {cause}; take a smaller dt")]
+    Step {
+        /// When.
+        time: f64,
+        /// The step.
+        step: f64,
+        /// Why.
+        cause: Box<StepFailure>,
+    },
+    /// Step control has come to steps that time cannot resolve.
+    #[error("the step has shrunk to {step:e} s at {time} s, the limit is {limit:e} s: {cause}")]
+    StepUnderflow {
+        /// When.
+        time: f64,
+        /// The step.
+        step: f64,
+        /// Smallest step.
+        limit: f64,
+        /// Why the last attempt was refused.
+        cause: Box<StepFailure>,
+    },
+}

@@ -1,0 +1,221 @@
+//! The vector field in (ϕ, y) around a base point, for both forms.
+
+use super::{Form, Inputs};
+use crate::dynamics::{Dynamics, DynamicsError};
+use crate::mechanism::Mechanism;
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// ϕ̇, ẏ and v̄ at one stage.
+#[derive(Clone, Debug)]
+pub(super) struct Rates {
+    pub(super) phi: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) speeds: Vec<f64>,
+}
+
+/// The equations of motion with their inputs, as a vector field.
+pub(super) struct Flow<'a> {
+    dynamics: &'a mut dyn Dynamics,
+    inputs: &'a mut Inputs<'a>,
+    pub(super) mechanism: Arc<Mechanism>,
+    pub(super) form: Form,
+    pub(super) evaluations: usize,
+    configuration: Vec<f64>,
+    efforts: Vec<f64>,
+    velocity: Vec<f64>,
+    local_rate: Vec<f64>,
+    /// One joint's S̄, S₀ or S₀⁻¹, K×K at most.
+    matrix: Vec<f64>,
+    /// One joint's X^c, 6×K.
+    twist_map: Vec<f64>,
+}
+
+impl<'a> Flow<'a> {
+    pub(super) fn new(
+        dynamics: &'a mut dyn Dynamics,
+        inputs: &'a mut Inputs<'a>,
+        form: Form,
+    ) -> Self {
+        let mechanism = Arc::clone(dynamics.mechanism());
+        let layout = *mechanism.layout();
+        let widest = mechanism
+            .bodies()
+            .iter()
+            .map(|body| body.ranges().freedoms.len())
+            .max()
+            .unwrap_or(0);
+        Self {
+            dynamics,
+            inputs,
+            form,
+            evaluations: 0,
+            configuration: vec![0.0; layout.configuration],
+            efforts: vec![0.0; layout.freedoms],
+            velocity: vec![0.0; widest],
+            local_rate: vec![0.0; widest],
+            matrix: vec![0.0; widest * widest],
+            twist_map: vec![0.0; 6 * widest],
+            mechanism,
+        }
+    }
+
+    /// Room for the rates of one stage.
+    pub(super) fn new_rates(&self) -> Rates {
+        let layout = self.mechanism.layout();
+        Rates {
+            phi: vec![0.0; layout.freedoms],
+            y: vec![0.0; layout.speeds],
+            speeds: vec![0.0; layout.speeds],
+        }
+    }
+
+    /// y of an initial v̄: v̄ itself or `p̄ = M̄ v̄`.
+    pub(super) fn initial(&mut self, q: &[f64], speeds: &[f64]) -> Result<Vec<f64>, DynamicsError> {
+        let mut y = speeds.to_vec();
+        if self.form == Form::Hamiltonian {
+            self.dynamics.momenta(q, speeds, &mut y)?;
+        }
+        Ok(y)
+    }
+
+    /// What y of one unit of each speed amounts to: 1, or the diagonal of M̄.
+    pub(super) fn units(&mut self, q: &[f64]) -> Result<Vec<f64>, DynamicsError> {
+        let size = self.mechanism.layout().speeds;
+        let mut units = vec![1.0; size];
+        if self.form == Form::Hamiltonian {
+            let (mut unit, mut momenta) = (vec![0.0; size], vec![0.0; size]);
+            for i in 0..size {
+                unit[i] = 1.0;
+                self.dynamics.momenta(q, &unit, &mut momenta)?;
+                units[i] = momenta[i];
+                unit[i] = 0.0;
+            }
+        }
+        Ok(units)
+    }
+
+    /// Rates at time `time`, at `Φ(base, phi)` and `y`.
+    pub(super) fn evaluate(
+        &mut self,
+        time: f64,
+        base: &[f64],
+        phi: &[f64],
+        y: &[f64],
+        rates: &mut Rates,
+    ) -> Result<(), DynamicsError> {
+        self.evaluations += 1;
+        retract(&self.mechanism, base, phi, &mut self.configuration);
+        self.dynamic_rates(time, y, rates)?;
+        for index in 0..self.mechanism.bodies().len() {
+            self.local_rates(index, base, phi, rates);
+        }
+        Ok(())
+    }
+
+    /// Rates that differ from `rates` in their base point alone: now `q` itself, with ϕ = `zero`.
+    pub(super) fn recentre(&mut self, q: &[f64], zero: &[f64], rates: &mut Rates) {
+        self.configuration.copy_from_slice(q);
+        for index in 0..self.mechanism.bodies().len() {
+            self.local_rates(index, q, zero, rates);
+        }
+    }
+
+    /// Angular rows of X^c S₀ at `q`, 3×K column by column, joints one after the other: ϕ to each joint's rotation
+    /// vector, to first order, and exactly where Φ is an exponential.
+    pub(super) fn turn_maps(&mut self, q: &[f64], maps: &mut [f64]) {
+        for body in self.mechanism.bodies() {
+            let (own, size) = (&body.ranges().freedoms, body.ranges().freedoms.len());
+            let twist_map = &mut self.twist_map[..6 * size];
+            let velocity_map = &mut self.matrix[..size * size];
+            body.joint().twist_map_child(body.configuration(q), twist_map);
+            body.joint().velocity_map(body.configuration(q), velocity_map);
+            let columns = velocity_map.chunks_exact(size.max(1));
+            let targets = maps[3 * own.start..3 * own.end].chunks_exact_mut(3);
+            for (column, target) in columns.zip(targets) {
+                let mut twist = [0.0; 6];
+                multiply(twist_map, column, &mut twist);
+                target.copy_from_slice(&twist[..3]);
+            }
+        }
+    }
+
+    /// v̄ and ẏ at the current configuration.
+    fn dynamic_rates(&mut self, time: f64, y: &[f64], rates: &mut Rates) -> Result<(), DynamicsError> {
+        let Self { dynamics, inputs, configuration, efforts, .. } = self;
+        match self.form {
+            Form::Lagrangian => {
+                rates.speeds.copy_from_slice(y);
+                efforts.fill(0.0);
+                inputs(time, configuration, y, efforts);
+                dynamics.accelerations(configuration, y, efforts, &mut rates.y)
+            }
+            Form::Hamiltonian => dynamics.momentum_rates(
+                configuration,
+                y,
+                &mut |speeds, efforts| {
+                    efforts.fill(0.0);
+                    inputs(time, configuration, speeds, efforts);
+                },
+                &mut rates.speeds,
+                &mut rates.y,
+            ),
+        }
+    }
+
+    /// `ϕ̇ = S(Q_n, ϕ)⁻¹ v` of one joint, with `S(Q_n, ϕ)⁻¹ = D⁻¹ S₀(Q_i)⁻¹`.
+    fn local_rates(&mut self, index: usize, base: &[f64], phi: &[f64], rates: &mut Rates) {
+        let body = &self.mechanism.bodies()[index];
+        let (joint, ranges) = (body.joint(), body.ranges());
+        let (freedoms, size) = (ranges.freedoms.clone(), ranges.freedoms.len());
+        let q = body.configuration(&self.configuration);
+        let speeds = &rates.speeds[ranges.speeds.clone()];
+        let velocity = &mut self.velocity[..size];
+        let local_rate = &mut self.local_rate[..size];
+
+        if joint.structures().speed_basis.is_identity() {
+            velocity.copy_from_slice(speeds);
+        } else {
+            let basis = &mut self.matrix[..size * speeds.len()];
+            joint.speed_basis(q, basis);
+            multiply(basis, speeds, velocity);
+        }
+        if joint.structures().velocity_map.is_identity() {
+            local_rate.copy_from_slice(velocity);
+        } else {
+            let inverse = &mut self.matrix[..size * size];
+            joint.velocity_map_inverse(q, inverse);
+            multiply(inverse, velocity, local_rate);
+        }
+        let own_rates = &mut rates.phi[freedoms.clone()];
+        if joint.structures().retract_differential.is_identity() {
+            own_rates.copy_from_slice(local_rate);
+        } else {
+            let (base, phi) = (body.configuration(base), &phi[freedoms]);
+            joint.retract_differential_inverse(base, phi, local_rate, own_rates);
+        }
+    }
+}
+
+/// `Φ(base, phi)` of all joints.
+pub(super) fn retract(mechanism: &Mechanism, base: &[f64], phi: &[f64], moved: &mut [f64]) {
+    for body in mechanism.bodies() {
+        let ranges = body.ranges();
+        body.joint().retract(
+            body.configuration(base),
+            &phi[ranges.freedoms.clone()],
+            &mut moved[ranges.configuration.clone()],
+        );
+    }
+}
+
+/// `out = matrix · x`, the matrix column by column.
+pub(super) fn multiply(matrix: &[f64], x: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    for (column, &weight) in matrix.chunks_exact(out.len().max(1)).zip(x) {
+        for (sum, &entry) in out.iter_mut().zip(column) {
+            *sum += entry * weight;
+        }
+    }
+}

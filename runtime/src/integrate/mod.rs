@@ -1,0 +1,58 @@
+//! Lie-group Runge–Kutta integration of Munthe-Kaas type, through the joints' own Φ (§V of the paper, (31)).
+//!
+//! A step starts at Q_n with ϕ = 0. Stages live in the flat space of (ϕ, y) with y = v̄ or p̄: stage i has
+//! `Q_i = Φ(Q_n, ϕ_i)` and `ϕ̇_i = S(Q_n, ϕ_i)⁻¹ S̄(Q_i) v̄_i`, so that any explicit tableau keeps its order. The step ends
+//! at `Φ(Q_n, ϕ)`, projected onto the manifold against rounding, where ϕ begins at 0 again. Nothing is ever added to Q.
+
+mod clock;
+mod control;
+mod driver;
+mod error;
+mod flow;
+mod options;
+mod solution;
+mod stepper;
+mod tableau;
+
+pub use error::{IntegrateError, StepFailure};
+pub use options::{Form, Method, Options};
+pub use solution::{Solution, State, Statistics, Step};
+pub use tableau::Tableau;
+
+use crate::dynamics::Dynamics;
+use core::ops::ControlFlow;
+
+/// Efforts τ (one entry a freedom) from time, q and v̄; entries are zero when it is called.
+pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
+
+/// Sees the initial state and every accepted step; breaks to end the integration there.
+pub type Observer<'a> = dyn FnMut(&Step<'_>) -> ControlFlow<()> + 'a;
+
+/// Inputs of a mechanism that is left alone.
+pub fn no_inputs(_time: f64, _q: &[f64], _speeds: &[f64], _efforts: &mut [f64]) {}
+
+/// An observer that only lets go on.
+pub fn no_observer(_step: &Step<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Moves a mechanism from `initial` to [`Options::t_end`].
+///
+/// Sample times are hit exactly, by shortening steps. The initial state is checked, not projected.
+///
+/// # Errors
+/// Options out of range; `t_end` before the initial time; an initial state of the wrong size, not finite, or off the
+/// joints' manifolds; a singular mass matrix; a step that fails at fixed size, or shrinks to nothing under step control.
+pub fn integrate(
+    dynamics: &mut dyn Dynamics,
+    initial: &State,
+    options: &Options,
+    inputs: &mut Inputs<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Solution, IntegrateError> {
+    options.check(initial.time)?;
+    let mechanism = dynamics.mechanism();
+    mechanism.check_configuration(&initial.configuration)?;
+    mechanism.check_speeds("speeds", &initial.speeds)?;
+    driver::Driver::new(dynamics, initial, options, inputs)?.run(observer)
+}

@@ -1,0 +1,55 @@
+//! What an integration starts from, shows on the way, and returns.
+
+use alloc::vec::Vec;
+
+/// State of a mechanism at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// s.
+    pub time: f64,
+    /// All joints' Q.
+    pub configuration: Vec<f64>,
+    /// v̄ of all joints, in either form.
+    pub speeds: Vec<f64>,
+}
+
+/// What an observer sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<'a> {
+    /// s.
+    pub time: f64,
+    /// How many steps were accepted so far; 0 for the initial state.
+    pub number: usize,
+    /// All joints' Q.
+    pub configuration: &'a [f64],
+    /// v̄ of all joints.
+    pub speeds: &'a [f64],
+    /// p̄ of all joints, in the Hamiltonian form.
+    pub momenta: Option<&'a [f64]>,
+    /// Index of the last sample that falls on this time, if one does.
+    pub sample: Option<usize>,
+}
+
+/// The work done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Refused steps.
+    pub rejected: usize,
+    /// Evaluations of the equations of motion.
+    pub evaluations: usize,
+}
+
+/// What an integration returns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Where it ended.
+    pub state: State,
+    /// The states at the sample times that were reached, in order.
+    pub samples: Vec<State>,
+    /// The work done.
+    pub statistics: Statistics,
+    /// Whether the observer ended it before [`Options::t_end`](super::Options::t_end).
+    pub stopped: bool,
+}

@@ -1,0 +1,80 @@
+//! Coefficients of explicit Runge–Kutta methods.
+
+/// An explicit method; row i of `matrix` has i entries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tableau {
+    /// Order of the result.
+    pub order: u32,
+    /// c_i.
+    pub nodes: &'static [f64],
+    /// a_ij.
+    pub matrix: &'static [&'static [f64]],
+    /// b_i.
+    pub weights: &'static [f64],
+    /// b_i − b̂_i, for methods with an embedded one.
+    pub error_weights: Option<&'static [f64]>,
+    /// Whether the last stage is the first stage of the next step.
+    pub first_same_as_last: bool,
+}
+
+/// The classical method of order 4.
+pub(super) const CLASSICAL: Tableau = Tableau {
+    order: 4,
+    nodes: &[0.0, 0.5, 0.5, 1.0],
+    matrix: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
+    weights: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+    error_weights: None,
+    first_same_as_last: false,
+};
+
+/// J. R. Dormand and P. J. Prince, *A family of embedded Runge–Kutta formulae*, 1980: RK5(4)7M.
+pub(super) const DORMAND_PRINCE: Tableau = Tableau {
+    order: 5,
+    nodes: &[0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0],
+    matrix: &[
+        &[],
+        &[1.0 / 5.0],
+        &[3.0 / 40.0, 9.0 / 40.0],
+        &[44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0],
+        &[
+            19372.0 / 6561.0,
+            -25360.0 / 2187.0,
+            64448.0 / 6561.0,
+            -212.0 / 729.0,
+        ],
+        &[
+            9017.0 / 3168.0,
+            -355.0 / 33.0,
+            46732.0 / 5247.0,
+            49.0 / 176.0,
+            -5103.0 / 18656.0,
+        ],
+        &[
+            35.0 / 384.0,
+            0.0,
+            500.0 / 1113.0,
+            125.0 / 192.0,
+            -2187.0 / 6784.0,
+            11.0 / 84.0,
+        ],
+    ],
+    weights: &[
+        35.0 / 384.0,
+        0.0,
+        500.0 / 1113.0,
+        125.0 / 192.0,
+        -2187.0 / 6784.0,
+        11.0 / 84.0,
+        0.0,
+    ],
+    error_weights: Some(&[
+        71.0 / 57600.0,
+        0.0,
+        -71.0 / 16695.0,
+        71.0 / 1920.0,
+        -17253.0 / 339_200.0,
+        22.0 / 525.0,
+        -1.0 / 40.0,
+    ]),
+    first_same_as_last: true,
+};

@@ -1,0 +1,142 @@
+//! Construction of a mechanism: checks, all at once, then assembly.
+
+use super::check::CONFIGURATION_TOLERANCE;
+use super::{Body, BodySpec, MechanismError, Ranges};
+use crate::erased::Layout;
+use crate::spatial::{Pose, SpatialInertia};
+use alloc::collections::BTreeMap;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, Vector3};
+
+/// Smallest over largest pivot of X or S̄ at home: below it, rounding decides what the joint can do.
+const RANK_TOLERANCE: f64 = 1e-10;
+
+/// Everything that is wrong with the input of [`Mechanism::new`](super::Mechanism::new).
+pub(super) fn check(gravity: &Vector3<f64>, bodies: &[BodySpec]) -> Vec<MechanismError> {
+    let mut errors = Vec::new();
+    for (axis, &value) in ['x', 'y', 'z'].into_iter().zip(gravity) {
+        if !value.is_finite() {
+            errors.push(MechanismError::Gravity { axis, value });
+        }
+    }
+    check_names(bodies, &mut errors);
+    for (index, body) in bodies.iter().enumerate() {
+        check_body(index, body, &mut errors);
+        check_joint(body, &mut errors);
+    }
+    errors
+}
+
+fn check_names(bodies: &[BodySpec], errors: &mut Vec<MechanismError>) {
+    let mut names = BTreeMap::new();
+    for (index, body) in bodies.iter().enumerate() {
+        let first = *names.entry(body.name.as_str()).or_insert(index);
+        if first != index {
+            errors.push(MechanismError::DuplicateName {
+                body: body.name.clone(),
+                index,
+                first,
+            });
+        }
+    }
+}
+
+fn check_body(index: usize, body: &BodySpec, errors: &mut Vec<MechanismError>) {
+    if let Some(parent) = body.parent.filter(|&parent| parent >= index) {
+        errors.push(MechanismError::Parent {
+            body: body.name.clone(),
+            index,
+            parent,
+        });
+    }
+    let placements = [
+        ("placement", &body.placement),
+        ("child placement", &body.child_placement),
+    ];
+    for (which, pose) in placements {
+        if let Err(cause) = pose.check() {
+            errors.push(MechanismError::Placement {
+                body: body.name.clone(),
+                which,
+                cause,
+            });
+        }
+    }
+    if let Err(cause) = body.mass.check() {
+        errors.push(MechanismError::Mass {
+            body: body.name.clone(),
+            cause,
+        });
+    }
+}
+
+fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
+    let (joint, size) = (&body.joint, body.joint.layout());
+    let mut home = vec![0.0; size.configuration];
+    joint.home(&mut home);
+    let residual = joint.residual(&home);
+    // A comparison that NaN fails as well.
+    if !(residual <= CONFIGURATION_TOLERANCE) || home.iter().any(|value| !value.is_finite()) {
+        errors.push(MechanismError::Home {
+            joint: body.joint_name.clone(),
+            residual,
+            limit: CONFIGURATION_TOLERANCE,
+        });
+        return;
+    }
+    let mut twist_map = DMatrix::zeros(6, size.freedoms);
+    joint.twist_map_child(&home, twist_map.as_mut_slice());
+    let mut speed_basis = DMatrix::zeros(size.freedoms, size.speeds);
+    joint.speed_basis(&home, speed_basis.as_mut_slice());
+    for (which, matrix) in [("twist map", twist_map), ("speed basis", speed_basis)] {
+        let ratio = pivot_ratio(matrix);
+        if !(ratio >= RANK_TOLERANCE) {
+            errors.push(MechanismError::RankDeficient {
+                joint: body.joint_name.clone(),
+                which,
+                ratio,
+                limit: RANK_TOLERANCE,
+            });
+        }
+    }
+}
+
+/// Smallest over largest pivot of a matrix with at least as many rows as columns; 0 when it has fewer.
+fn pivot_ratio(matrix: DMatrix<f64>) -> f64 {
+    let (rows, columns) = matrix.shape();
+    if columns == 0 {
+        return 1.0;
+    }
+    if rows < columns {
+        return 0.0;
+    }
+    let triangle = matrix.col_piv_qr().unpack_r();
+    let pivots = triangle.diagonal().abs();
+    pivots.min() / pivots.max()
+}
+
+/// Offsets, joint frames and inertias of checked bodies.
+pub(super) fn assemble(specs: Vec<BodySpec>) -> (Vec<Body>, Layout) {
+    let mut layout = Layout::default();
+    let mut bodies: Vec<Body> = Vec::with_capacity(specs.len());
+    for spec in specs {
+        let ranges = Ranges::new(&layout, &spec.joint.layout());
+        layout = Layout {
+            configuration: ranges.configuration.end,
+            freedoms: ranges.freedoms.end,
+            speeds: ranges.speeds.end,
+            constraints: ranges.constraints.end,
+        };
+        let parent_frame = spec.parent.map_or_else(Pose::identity, |parent| {
+            *bodies[parent].child_placement()
+        });
+        bodies.push(Body {
+            ranges,
+            joint_frame: parent_frame * spec.placement,
+            joint_inertia: SpatialInertia::from(&spec.mass).transform(&spec.child_placement),
+            spec,
+        });
+    }
+    (bodies, layout)
+}

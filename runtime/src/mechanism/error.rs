@@ -1,0 +1,170 @@
+//! What a mechanism refuses, in its construction and in its state.
+
+use crate::spatial::{MassError, PoseError};
+use alloc::string::String;
+
+/// Why a mechanism cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MechanismError {
+    /// Gravity is NaN or infinite.
+    #[error("gravity component {axis} is {value}, not a finite number")]
+    Gravity {
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// Its value.
+        value: f64,
+    },
+    /// Two bodies share a name.
+    #[error("body {index} has the name `{body}`, which body {first} has already")]
+    DuplicateName {
+        /// The name.
+        body: String,
+        /// Index of the second body of that name.
+        index: usize,
+        /// Index of the first.
+        first: usize,
+    },
+    /// The parent does not come before its child.
+    #[error("body `{body}` (index {index}) has parent index {parent}: a parent comes before its children")]
+    Parent {
+        /// The body.
+        body: String,
+        /// Its index.
+        index: usize,
+        /// The parent's index as given.
+        parent: usize,
+    },
+    /// A fixed placement is no pose.
+    #[error("body `{body}`, {which}: {cause}")]
+    Placement {
+        /// The body.
+        body: String,
+        /// `placement` or `child placement`.
+        which: &'static str,
+        /// What is wrong with it.
+        cause: PoseError,
+    },
+    /// The mass properties are not those of a rigid body.
+    #[error("body `{body}`: {cause}")]
+    Mass {
+        /// The body.
+        body: String,
+        /// What is wrong with them.
+        cause: MassError,
+    },
+    /// The joint's home is not on its own manifold, or not finite.
+    #[error("joint `{joint}`: its home configuration is off its manifold by {residual:e}, more than {limit:e}")]
+    Home {
+        /// The joint.
+        joint: String,
+        /// Residual of the manifold's relations.
+        residual: f64,
+        /// Largest residual allowed.
+        limit: f64,
+    },
+    /// X or S̄ loses rank at home.
+    #[error(
+        "joint `{joint}`: its {which} is rank-deficient at home: the smallest pivot is {ratio:e} of the largest, the limit \
+         is {limit:e}"
+    )]
+    RankDeficient {
+        /// The joint.
+        joint: String,
+        /// `twist map` or `speed basis`.
+        which: &'static str,
+        /// Smallest over largest pivot.
+        ratio: f64,
+        /// Smallest ratio allowed.
+        limit: f64,
+    },
+}
+
+/// Why a state, or a part of one, is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StateError {
+    /// A vector of the wrong size.
+    #[error("{quantity} of {element} has {found} entries: it must have {expected}")]
+    Size {
+        /// Joint or `the mechanism`.
+        element: String,
+        /// Which vector.
+        quantity: &'static str,
+        /// Size it must have.
+        expected: usize,
+        /// Size given.
+        found: usize,
+    },
+    /// No body has that index.
+    #[error("there is no body of index {index}: the mechanism has {count}")]
+    UnknownBody {
+        /// The index given.
+        index: usize,
+        /// How many bodies there are.
+        count: usize,
+    },
+    /// A number is NaN or infinite.
+    #[error("joint `{joint}`: {quantity} entry `{entry}` is {value}, not a finite number")]
+    NotFinite {
+        /// The joint.
+        joint: String,
+        /// Which vector.
+        quantity: &'static str,
+        /// Name of the entry.
+        entry: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// Q is not on the joint's manifold.
+    #[error("joint `{joint}`: its configuration is off its manifold by {residual:e}, more than {limit:e}")]
+    OffManifold {
+        /// The joint.
+        joint: String,
+        /// Residual of the manifold's relations.
+        residual: f64,
+        /// Largest residual allowed.
+        limit: f64,
+    },
+    /// The pose given is no pose.
+    #[error("joint `{joint}`: {cause}")]
+    Pose {
+        /// The joint.
+        joint: String,
+        /// What is wrong with it.
+        cause: PoseError,
+    },
+    /// The joint cannot take the pose.
+    #[error(
+        "joint `{joint}` cannot take this pose: the nearest that was found is {angle:e} rad and {distance:e} m away, more \
+         than {limit:e}"
+    )]
+    OutOfReach {
+        /// The joint.
+        joint: String,
+        /// Angle that remains, rad.
+        angle: f64,
+        /// Distance that remains, m.
+        distance: f64,
+        /// Largest remainder allowed.
+        limit: f64,
+    },
+    /// The joint cannot move with the twist.
+    #[error("joint `{joint}` cannot move with this twist: {residual:e} of it remains, more than {limit:e}")]
+    TwistOutsideFreedoms {
+        /// The joint.
+        joint: String,
+        /// Norm of the part that no velocity produces.
+        residual: f64,
+        /// Largest remainder allowed.
+        limit: f64,
+    },
+    /// A velocity that the nonholonomic constraint forbids.
+    #[error("joint `{joint}`: its velocity violates the nonholonomic constraint, |Aᵀv| = {value:e}, more than {limit:e}")]
+    ConstraintViolated {
+        /// The joint.
+        joint: String,
+        /// Largest entry of Aᵀv.
+        value: f64,
+        /// Largest value allowed.
+        limit: f64,
+    },
+}

@@ -1,0 +1,140 @@
+//! Where the bodies of a mechanism are, how they move, and what that amounts to.
+
+use super::check::{WHOLE, check_size};
+use super::{Body, Mechanism, StateError};
+use crate::spatial::{Pose, SpatialInertia, split};
+use alloc::vec::Vec;
+use nalgebra::{DVectorView, Vector3, Vector6};
+
+/// Position and velocity of one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// The body frame in the world.
+    pub pose: Pose<f64>,
+    /// Twist relative to the world, in body axes, linear part of the point at the body's origin.
+    pub twist: Vector6<f64>,
+    /// Centre of mass, world axes, m.
+    pub position_com: Vector3<f64>,
+    /// Velocity of the centre of mass, world axes, m/s.
+    pub velocity_com: Vector3<f64>,
+    /// Kinetic energy, J.
+    pub kinetic_energy: f64,
+    /// Potential energy in gravity, zero at the world's origin, J.
+    pub potential_energy: f64,
+    /// Momentum about the world's origin, world axes: (angular, kg m²/s; linear, kg m/s).
+    pub momentum: Vector6<f64>,
+}
+
+impl BodyState {
+    /// Angular velocity in body axes, `vee(Rᵀ Ṙ)`, rad/s.
+    pub fn angular_velocity_body(&self) -> Vector3<f64> {
+        split(&self.twist).0
+    }
+
+    /// Angular velocity in world axes, rad/s.
+    pub fn angular_velocity_world(&self) -> Vector3<f64> {
+        self.pose.rotation * self.angular_velocity_body()
+    }
+
+    fn new(body: &Body, gravity: &Vector3<f64>, pose: Pose<f64>, twist: Vector6<f64>) -> Self {
+        let mass = body.mass();
+        let (angular, linear) = split(&twist);
+        let momentum = SpatialInertia::from(mass).apply(&twist);
+        let position_com = pose.transform_point(&mass.com);
+        Self {
+            pose,
+            twist,
+            position_com,
+            velocity_com: pose.rotation * (linear + angular.cross(&mass.com)),
+            kinetic_energy: 0.5 * twist.dot(&momentum),
+            potential_energy: -mass.mass * gravity.dot(&position_com),
+            momentum: pose.act_wrench(&momentum),
+        }
+    }
+}
+
+/// All bodies at one state of a mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kinematics {
+    /// In the order of [`Mechanism::bodies`].
+    pub bodies: Vec<BodyState>,
+    /// Total mass, kg.
+    pub mass: f64,
+    /// Centre of mass of all bodies, world axes, m; the origin when nothing has mass.
+    pub center_of_mass: Vector3<f64>,
+}
+
+impl Kinematics {
+    /// Kinetic energy, J.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.bodies.iter().map(|body| body.kinetic_energy).sum()
+    }
+
+    /// Potential energy in gravity, zero at the world's origin, J.
+    pub fn potential_energy(&self) -> f64 {
+        self.bodies.iter().map(|body| body.potential_energy).sum()
+    }
+
+    /// Kinetic and potential energy, J.
+    pub fn energy(&self) -> f64 {
+        self.kinetic_energy() + self.potential_energy()
+    }
+
+    /// Momentum about the world's origin, world axes: (angular; linear).
+    pub fn momentum(&self) -> Vector6<f64> {
+        self.bodies.iter().map(|body| body.momentum).sum()
+    }
+
+    /// Momentum about the centre of mass of all bodies, world axes: (angular; linear).
+    pub fn momentum_com(&self) -> Vector6<f64> {
+        Pose::from_translation(self.center_of_mass).act_wrench_inverse(&self.momentum())
+    }
+}
+
+impl Mechanism {
+    /// Pose and twist of every body, with energies and momenta.
+    ///
+    /// # Errors
+    /// When a vector has the wrong size.
+    pub fn kinematics(&self, q: &[f64], speeds: &[f64]) -> Result<Kinematics, StateError> {
+        check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
+        check_size(WHOLE, "speeds", self.layout.speeds, speeds.len())?;
+        let bodies = self.body_states(q, speeds);
+        let mass: f64 = self.bodies.iter().map(|body| body.mass().mass).sum();
+        let moment: Vector3<f64> = bodies
+            .iter()
+            .zip(&self.bodies)
+            .map(|(state, body)| state.position_com * body.mass().mass)
+            .sum();
+        let center_of_mass = if mass > 0.0 { moment / mass } else { moment };
+        Ok(Kinematics { bodies, mass, center_of_mass })
+    }
+
+    fn body_states(&self, q: &[f64], speeds: &[f64]) -> Vec<BodyState> {
+        let mut states: Vec<BodyState> = Vec::with_capacity(self.bodies.len());
+        for body in &self.bodies {
+            let (own, relative) = body.relative_motion(q, speeds);
+            let (pose, twist) = match body.parent().map(|parent| &states[parent]) {
+                Some(parent) => (
+                    parent.pose.compose(&own),
+                    own.act_twist_inverse(&parent.twist) + relative,
+                ),
+                None => (own, relative),
+            };
+            states.push(BodyState::new(body, &self.gravity, pose, twist));
+        }
+        states
+    }
+}
+
+impl Body {
+    /// Pose of the body frame in the parent's body frame, and twist relative to the parent in body axes.
+    fn relative_motion(&self, q: &[f64], speeds: &[f64]) -> (Pose<f64>, Vector6<f64>) {
+        let q = self.configuration(q);
+        let own = &speeds[self.ranges.speeds.clone()];
+        let twist = self.twist_map_child(q) * (self.speed_basis(q) * DVectorView::from_slice(own, own.len()));
+        let twist = Vector6::from_column_slice(twist.as_slice());
+        let pose = *self.placement() * self.joint().pose(q) * *self.child_placement();
+        (pose, self.child_placement().act_twist_inverse(&twist))
+    }
+}

@@ -1,0 +1,88 @@
+//! A tree of rigid bodies on joints: immutable, shared between threads, free of state.
+//!
+//! State lives with the caller, as slices: a configuration `q` (all joints' Q, one after the other), and speeds v̄ or
+//! momenta p̄. [`Body::ranges`] tells where a joint's share lies.
+
+mod body;
+mod build;
+mod check;
+mod error;
+mod initial;
+mod kinematics;
+mod reach;
+
+pub use body::{Body, BodySpec, Ranges};
+pub use check::CONFIGURATION_TOLERANCE;
+pub(crate) use check::{WHOLE, check_size};
+pub use error::{MechanismError, StateError};
+pub use initial::CONSTRAINT_TOLERANCE;
+pub use kinematics::{BodyState, Kinematics};
+pub use reach::REACH_TOLERANCE;
+
+use crate::erased::Layout;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::Vector3;
+
+/// A tree of bodies, its joints and gravity.
+#[derive(Clone, Debug)]
+pub struct Mechanism {
+    gravity: Vector3<f64>,
+    bodies: Vec<Body>,
+    layout: Layout,
+}
+
+impl Mechanism {
+    /// A mechanism in uniform gravity (world axes, m/s²), from its bodies, parents first.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the bodies, all at once.
+    pub fn new(gravity: Vector3<f64>, bodies: Vec<BodySpec>) -> Result<Self, Vec<MechanismError>> {
+        let errors = build::check(&gravity, &bodies);
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let (bodies, layout) = build::assemble(bodies);
+        Ok(Self { gravity, bodies, layout })
+    }
+
+    /// Acceleration of free fall, world axes, m/s².
+    pub const fn gravity(&self) -> &Vector3<f64> {
+        &self.gravity
+    }
+
+    /// The bodies, parents before children.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// The body of that index.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn body(&self, index: usize) -> Result<&Body, StateError> {
+        self.bodies.get(index).ok_or(StateError::UnknownBody {
+            index,
+            count: self.bodies.len(),
+        })
+    }
+
+    /// Index of the body called `name`.
+    pub fn body_index(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.name() == name)
+    }
+
+    /// Sizes of q; of v, p and τ; of v̄ and p̄; of λ.
+    pub const fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The configuration with every joint at home.
+    pub fn home(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.layout.configuration];
+        for body in &self.bodies {
+            body.joint().home(&mut q[body.ranges.configuration.clone()]);
+        }
+        q
+    }
+}

@@ -1,0 +1,77 @@
+//! The scalar that kernels are generic over: `f64`, `f32`, SIMD lanes, dual numbers.
+//!
+//! Kernels are pure and branch on data only through [`Scalar::select`], so that one source serves all of them.
+//! Functions whose textbook form loses digits near a removable singularity are primitives of their own here, with
+//! derivatives of their own; no branch is ever differentiated.
+
+mod dual;
+mod float;
+mod rotation;
+mod series;
+
+pub use dual::Dual;
+
+use core::ops::Neg;
+use nalgebra::{
+    ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Matrix3, Vector3,
+};
+use num_traits::{One, Zero};
+
+/// A real number, a bundle of them (SIMD lanes), or a truncated series (dual numbers).
+pub trait Scalar:
+    nalgebra::Scalar
+    + Copy
+    + Send
+    + Sync
+    + Zero
+    + One
+    + Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+{
+    /// The result of a comparison: `bool`, or one truth value a lane.
+    type Mask: Copy;
+
+    /// The constant `value`, in every lane.
+    fn from_f64(value: f64) -> Self;
+
+    /// `self * factor + addend`, fused only where the target has a fused instruction.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// Angle of the point `(x, self)` in the plane, in (−π, π].
+    fn atan2(self, x: Self) -> Self;
+
+    /// Exponential function.
+    fn exp(self) -> Self;
+
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+
+    /// Stumpff function `c_k(s) = Σ_j (−s)^j / (k + 2j)!` of `s = self`, entire in `s`.
+    ///
+    /// With `s = θ²`: `c_0 = cos θ`, `c_1 = sin θ / θ`, `c_2 = (1 − cos θ)/θ²`, `c_3 = (θ − sin θ)/θ³`. The derivative is
+    /// `dc_k/ds = (k c_{k+2} − c_{k+1}) / 2`, so the family is closed under differentiation.
+    fn stumpff(self, order: usize) -> Self;
+
+    /// `n`-th derivative in `s = self` of `G(s) = (1 − (θ/2) cot(θ/2)) / θ²`, `s = θ²`, for `|θ| < 2π`.
+    ///
+    /// `G` is the coefficient of `ad²` in `dexp⁻¹`; `G(0) = 1/12`.
+    fn dexp_inverse(self, derivative: usize) -> Self;
+
+    /// Rotation vector `r` with `exp(r~) = rotation` and `|r| ≤ π`, accurate at every angle.
+    fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self>;
+
+    /// Whether `self < other`, lane by lane.
+    fn less(self, other: Self) -> Self::Mask;
+
+    /// `if_true` where `mask` holds, else `if_false`, lane by lane.
+    fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+}

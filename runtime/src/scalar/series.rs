@@ -1,0 +1,133 @@
+//! Entire and meromorphic functions behind exponential maps, to a few units in the last place at every argument.
+//!
+//! Both families are written as sums of terms of one sign, or of terms that fall fast, wherever their textbook forms
+//! cancel; no case distinction shows in the value or in any derivative beyond rounding.
+
+use super::Scalar;
+use core::f64::consts::TAU;
+use num_traits::Float;
+
+/// 1/170! is the last inverse factorial that is a normal number.
+const FACTORIALS: usize = 171;
+
+/// Terms of the Stumpff series: the last one is below 1e-17 of the first wherever the series is used.
+const STUMPFF_TERMS: usize = 14;
+
+const INVERSE_FACTORIALS: [f64; FACTORIALS] = {
+    let mut table = [1.0; FACTORIALS];
+    // Exact up to 22!, beyond that the rounding of a product of few factors; entries past 18! only enter small terms.
+    let mut factorial = 1.0;
+    let mut n = 1;
+    while n < FACTORIALS {
+        factorial *= n as f64;
+        table[n] = 1.0 / factorial;
+        n += 1;
+    }
+    table
+};
+
+fn inverse_factorial<F: Scalar>(n: usize) -> F {
+    F::from_f64(INVERSE_FACTORIALS.get(n).copied().unwrap_or(0.0))
+}
+
+/// Stumpff function c_k(s), see [`Scalar::stumpff`].
+pub(super) fn stumpff<F: Float + Scalar>(s: F, order: usize) -> F {
+    // Beyond this the recurrence loses less than the alternating series does, below it more.
+    let series_limit = F::from_f64(0.25 * (order as f64 + 1.0) * (order as f64 + 2.0));
+    if order >= 3 && Float::abs(s) <= series_limit {
+        return stumpff_series(s, order);
+    }
+    let base = if order <= 2 { order } else { 2 - order % 2 };
+    let direct = stumpff_direct(s, base);
+    (base..order)
+        .step_by(2)
+        .fold(direct, |value, k| (inverse_factorial::<F>(k) - value) / s)
+}
+
+/// Σ_j (−s)^j / (k + 2j)!, summed from the smallest term.
+fn stumpff_series<F: Float + Scalar>(s: F, order: usize) -> F {
+    (0..STUMPFF_TERMS).rev().fold(F::from_f64(0.0), |sum, j| {
+        Scalar::mul_add(sum, -s, inverse_factorial(order + 2 * j))
+    })
+}
+
+/// c_0, c_1, c_2 by (hyperbolic) sines and cosines; c_2 by the half angle, because 1 − cos cancels.
+fn stumpff_direct<F: Float + Scalar>(s: F, order: usize) -> F {
+    let zero = F::from_f64(0.0);
+    let half = F::from_f64(0.5);
+    if s == zero {
+        return inverse_factorial(order);
+    }
+    let angle = Float::sqrt(Float::abs(s));
+    let sine = |x: F| if s > zero { Float::sin(x) } else { Float::sinh(x) };
+    match order {
+        0 if s > zero => Float::cos(angle),
+        0 => Float::cosh(angle),
+        1 => sine(angle) / angle,
+        _ => {
+            let ratio = sine(half * angle) / angle;
+            (ratio * ratio) + (ratio * ratio)
+        }
+    }
+}
+
+/// t_m = Σ_{j ≥ 3} j^(−2m−2) = ζ(2m + 2) − 1 − 4^(−m−1).
+const POLE_TAILS: [f64; 24] = [
+    0.394_934_066_848_226_44,
+    0.019_823_233_711_138_19,
+    0.001_718_061_984_449_139_7,
+    0.000_171_106_197_944_339_38,
+    1.801_262_781_808_533_7e-5,
+    1.945_928_308_048_298_6e-6,
+    2.129_787_087_048_292_6e-7,
+    2.347_034_615_187_157_3e-8,
+    2.595_999_374_839_856_5e-9,
+    2.877_174_665_461_131_5e-10,
+    3.192_362_617_049_000_4e-11,
+    3.544_275_868_854_612e-12,
+    3.936_345_173_849_847e-13,
+    4.372_632_654_299_232e-14,
+    4.857_804_189_667_247e-15,
+    5.397_137_809_202_939e-16,
+    5.996_555_960_166_588e-17,
+    6.662_675_132_429_289e-18,
+    7.402_869_382_385_771e-19,
+    8.225_346_069_033_827e-20,
+    9.139_233_192_043_923e-21,
+    1.015_467_841_223_081_8e-21,
+    1.128_296_030_524_118_2e-22,
+    1.253_661_274_394_284_8e-23,
+];
+
+/// n-th derivative of G, see [`Scalar::dexp_inverse`].
+///
+/// Partial fractions of the cotangent give `G(s) = 2 Σ_{j ≥ 1} 1 / ((2πj)² − s)`. With x = s/4π² the first two poles
+/// are taken as they stand and the others as the power series `Σ t_m x^m`, of radius 9. Every term is positive on
+/// (−2π, 2π), for every derivative, so that nothing cancels.
+pub(super) fn dexp_inverse<F: Float + Scalar>(s: F, derivative: usize) -> F {
+    let period = F::from_f64(TAU * TAU);
+    let x = s / period;
+    let pole = |square: f64| power(F::from_f64(1.0) / (F::from_f64(square) - x), derivative + 1);
+    let poles = pole(1.0) + pole(4.0);
+    let scale = F::from_f64(2.0 * factorial(derivative)) / power(period, derivative + 1);
+    scale * (poles + tail(x, derivative))
+}
+
+/// n-th derivative of `Σ t_m x^m`, divided by n!: its coefficients are binomial(m, n) t_m.
+fn tail<F: Float + Scalar>(x: F, derivative: usize) -> F {
+    let coefficient = |m: usize| {
+        let binomial = (0..derivative).fold(1.0, |b, i| b * (m - i) as f64 / (i + 1) as f64);
+        F::from_f64(binomial * POLE_TAILS[m])
+    };
+    (derivative..POLE_TAILS.len())
+        .rev()
+        .fold(F::from_f64(0.0), |sum, m| Scalar::mul_add(sum, x, coefficient(m)))
+}
+
+fn factorial(n: usize) -> f64 {
+    (1..=n).fold(1.0, |product, i| product * i as f64)
+}
+
+fn power<F: Float + Scalar>(base: F, exponent: usize) -> F {
+    (0..exponent).fold(F::from_f64(1.0), |product, _| product * base)
+}

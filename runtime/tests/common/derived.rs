@@ -1,0 +1,278 @@
+//! Joints from H, X, Φ and S̄ alone: every other kernel follows by dual numbers from its definition.
+//!
+//! Slow, but nothing in it is derived by hand, so that no sign can be wrong twice.
+
+use core::array;
+use hamel::joint::{Joint, Structure, Structures, VelocityFrame};
+use hamel::scalar::{Dual, Scalar};
+use hamel::spatial::{Pose, join, vee};
+use nalgebra::{SMatrix, SVector, Vector6};
+
+/// What the author of a joint declares.
+pub trait Declared<const N: usize, const K: usize, const S: usize, const C: usize>:
+    Clone + core::fmt::Debug + Send + Sync + 'static
+{
+    const NAME: &'static str;
+    const COORDINATES: [&'static str; N];
+    const FREEDOMS: [&'static str; K];
+    const SPEEDS: [&'static str; S];
+    const VELOCITY_FRAME: VelocityFrame;
+
+    fn home<T: Scalar>(&self) -> SVector<T, N>;
+    fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T>;
+    /// X in the parent frame.
+    fn twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K>;
+    fn retract<T: Scalar>(&self, q: &SVector<T, N>, phi: &SVector<T, K>) -> SVector<T, N>;
+    fn local<T: Scalar>(&self, q: &SVector<T, N>, target: &SVector<T, N>) -> SVector<T, K>;
+    fn speed_basis<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, S>;
+    fn constraint<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, C>;
+    fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N>;
+    fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T;
+}
+
+/// The joint that a declaration amounts to.
+#[derive(Clone, Debug)]
+pub struct Derived<D>(pub D);
+
+/// `numbers` moved along `direction`, as the first-order part of a dual number.
+fn along<T: Scalar, const D: usize>(
+    numbers: &SVector<T, D>,
+    direction: &SVector<T, D>,
+) -> SVector<Dual<T>, D> {
+    SVector::from_fn(|i, _| Dual::new(numbers[i], direction[i]))
+}
+
+fn unit<T: Scalar, const D: usize>(k: usize) -> SVector<T, D> {
+    SVector::from_fn(|i, _| if i == k { T::one() } else { T::zero() })
+}
+
+fn constant<T: Scalar, const D: usize>(numbers: &SVector<T, D>) -> SVector<Dual<T>, D> {
+    numbers.map(Dual::constant)
+}
+
+fn slope<T: Scalar, const R: usize, const C: usize>(m: &SMatrix<Dual<T>, R, C>) -> SMatrix<T, R, C> {
+    m.map(|entry| entry.derivative)
+}
+
+/// `matrix⁻¹ side` by elimination without pivoting: the matrices here are positive or near the identity.
+fn solve<T: Scalar, const K: usize, const R: usize>(
+    mut matrix: SMatrix<T, K, K>,
+    mut side: SMatrix<T, K, R>,
+) -> SMatrix<T, K, R> {
+    for p in 0..K {
+        for i in (0..K).filter(|&i| i != p) {
+            let factor = matrix[(i, p)] / matrix[(p, p)];
+            for j in 0..K {
+                let term = factor * matrix[(p, j)];
+                matrix[(i, j)] -= term;
+            }
+            for j in 0..R {
+                let term = factor * side[(p, j)];
+                side[(i, j)] -= term;
+            }
+        }
+    }
+    SMatrix::from_fn(|i, j| side[(i, j)] / matrix[(i, i)])
+}
+
+impl<D> Derived<D> {
+    /// S(Q, ϕ) of (23): `X(Φ) S = J`, by least squares.
+    fn map_at<T: Scalar, const N: usize, const K: usize, const S: usize, const C: usize>(
+        &self,
+        q: &SVector<T, N>,
+        phi: &SVector<T, K>,
+    ) -> SMatrix<T, K, K>
+    where
+        D: Declared<N, K, S, C>,
+    {
+        let mut jacobian = SMatrix::<T, 6, K>::zeros();
+        for k in 0..K {
+            let moved = self.0.retract(&constant(q), &along(phi, &unit(k)));
+            let pose = self.0.pose(&moved);
+            let (rotation, rate) = (
+                pose.rotation.map(|entry| entry.value),
+                pose.rotation.map(|entry| entry.derivative),
+            );
+            let omega = vee(&(rate * rotation.transpose()));
+            let origin = pose.translation.map(|entry| entry.value);
+            let linear = slope(&pose.translation) - omega.cross(&origin);
+            jacobian.set_column(k, &join(&omega, &linear));
+        }
+        let x = self.0.twist_map(&self.0.retract(q, phi));
+        solve(x.transpose() * x, x.transpose() * jacobian)
+    }
+
+    /// Derivative of `function` of Q along ϕ = direction.
+    fn slope_along<
+        T: Scalar,
+        const N: usize,
+        const K: usize,
+        const S: usize,
+        const C: usize,
+        const R: usize,
+        const W: usize,
+    >(
+        &self,
+        q: &SVector<T, N>,
+        direction: &SVector<T, K>,
+        function: impl Fn(&SVector<Dual<T>, N>) -> SMatrix<Dual<T>, R, W>,
+    ) -> SMatrix<T, R, W>
+    where
+        D: Declared<N, K, S, C>,
+    {
+        let moved = self.0.retract(&constant(q), &along(&SVector::zeros(), direction));
+        slope(&function(&moved))
+    }
+
+    fn twist_basis_slope<T: Scalar, const N: usize, const K: usize, const S: usize, const C: usize>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, S>
+    where
+        D: Declared<N, K, S, C>,
+    {
+        let v = self.0.speed_basis(q) * speeds;
+        let rate = self.velocity_map_inverse(q) * v;
+        self.slope_along(q, &rate, |q| self.twist_map_child(q) * self.0.speed_basis(q))
+    }
+}
+
+impl<D, const N: usize, const K: usize, const S: usize, const C: usize> Joint<N, K, S, C> for Derived<D>
+where
+    D: Declared<N, K, S, C>,
+{
+    const NAME: &'static str = D::NAME;
+    const COORDINATES: [&'static str; N] = D::COORDINATES;
+    const FREEDOMS: [&'static str; K] = D::FREEDOMS;
+    const SPEEDS: [&'static str; S] = D::SPEEDS;
+    const VELOCITY_FRAME: VelocityFrame = D::VELOCITY_FRAME;
+    const STRUCTURES: Structures = Structures {
+        twist_map: Structure::General,
+        twist_map_child: Structure::General,
+        twist_map_child_gradient: Structure::General,
+        velocity_map: Structure::General,
+        velocity_map_gradient: Structure::General,
+        gamma: Structure::General,
+        speed_basis: if C == 0 { Structure::Identity } else { Structure::General },
+        speed_basis_gradient: Structure::General,
+        retract_differential: Structure::General,
+        bias_acceleration: Structure::General,
+        bias_momentum: Structure::General,
+    };
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+
+    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        core::iter::empty()
+    }
+
+    fn home<T: Scalar>(&self) -> SVector<T, N> {
+        self.0.home()
+    }
+
+    fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T> {
+        self.0.pose(q)
+    }
+
+    fn twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+        self.0.twist_map(q)
+    }
+
+    fn twist_map_child<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+        self.0.pose(q).act_twist_inverse_columns(&self.0.twist_map(q))
+    }
+
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
+        array::from_fn(|k| self.slope_along(q, &unit(k), |q| self.twist_map_child(q)))
+    }
+
+    fn velocity_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, K> {
+        self.map_at(q, &SVector::zeros())
+    }
+
+    fn velocity_map_inverse<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, K> {
+        let map = self.velocity_map(q);
+        // Normal equations: S₀ itself can need pivots (a rotation does).
+        solve(map.transpose() * map, map.transpose())
+    }
+
+    fn velocity_map_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, K>; K] {
+        array::from_fn(|k| slope(&self.map_at(&constant(q), &along(&SVector::zeros(), &unit(k)))))
+    }
+
+    fn gamma<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SMatrix<T, K, K> {
+        let (inverse, gradient) = (self.velocity_map_inverse(q), self.velocity_map_gradient(q));
+        let rate = inverse * v;
+        // Σ_k γ_k v_k = S⁻ᵀ (Ṡ − ∂S·rate)ᵀ with (Ṡ)_jl = Σ_m ∂S_jl/∂ϕ_m rate_m, (∂S·rate)_jl = Σ_m ∂S_jm/∂ϕ_l rate_m
+        let difference = SMatrix::<T, K, K>::from_fn(|j, l| {
+            (0..K).fold(T::zero(), |sum, m| {
+                sum + (gradient[m][(j, l)] - gradient[l][(j, m)]) * rate[m]
+            })
+        });
+        inverse.transpose() * difference.transpose()
+    }
+
+    fn j22<T: Scalar>(&self, q: &SVector<T, N>, p: &SVector<T, K>) -> SMatrix<T, K, K> {
+        let (inverse, gradient) = (self.velocity_map_inverse(q), self.velocity_map_gradient(q));
+        let slope = SMatrix::<T, K, K>::from_fn(|i, m| {
+            (0..K).fold(T::zero(), |sum, l| sum + gradient[m][(l, i)] * p[l])
+        });
+        inverse.transpose() * (slope.transpose() - slope) * inverse
+    }
+
+    fn constraint<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, C> {
+        self.0.constraint(q)
+    }
+
+    fn speed_basis<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, S> {
+        self.0.speed_basis(q)
+    }
+
+    fn speed_basis_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, S>; K] {
+        array::from_fn(|k| self.slope_along(q, &unit(k), |q| self.0.speed_basis(q)))
+    }
+
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SVector<T, N> {
+        self.slope_along(q, &(self.velocity_map_inverse(q) * v), |q| *q)
+    }
+
+    fn retract<T: Scalar>(&self, q: &SVector<T, N>, phi: &SVector<T, K>) -> SVector<T, N> {
+        self.0.retract(q, phi)
+    }
+
+    fn local<T: Scalar>(&self, q: &SVector<T, N>, target: &SVector<T, N>) -> SVector<T, K> {
+        self.0.local(q, target)
+    }
+
+    fn retract_differential_inverse<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        phi: &SVector<T, K>,
+        rate: &SVector<T, K>,
+    ) -> SVector<T, K> {
+        let map = self.map_at(q, phi);
+        let v = self.velocity_map(&self.0.retract(q, phi)) * rate;
+        solve(map.transpose() * map, map.transpose() * v)
+    }
+
+    fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N> {
+        self.0.project(q)
+    }
+
+    fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T {
+        self.0.residual(q)
+    }
+
+    fn bias_acceleration<T: Scalar>(&self, q: &SVector<T, N>, speeds: &SVector<T, S>) -> SVector<T, 6> {
+        self.twist_basis_slope(q, speeds) * speeds
+    }
+
+    fn bias_momentum<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+        h: &Vector6<T>,
+    ) -> SVector<T, S> {
+        self.twist_basis_slope(q, speeds).transpose() * h
+    }
+}

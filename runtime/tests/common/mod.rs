@@ -1,0 +1,7 @@
+//! Joints and mechanisms that the tests of this crate share.
+#![allow(dead_code, reason = "each test file uses its own part of this module")]
+
+pub mod derived;
+pub mod joints;
+pub mod random;
+pub mod trees;

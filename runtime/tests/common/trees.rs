@@ -1,0 +1,94 @@
+//! Random mechanisms from the joints of this module, and random states of them.
+
+use super::joints;
+use super::random::Random;
+use hamel::erased::AnyJoint;
+use hamel::mechanism::{BodySpec, Mechanism};
+use hamel::spatial::{MassProperties, Pose, so3};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+pub fn pose(random: &mut Random) -> Pose<f64> {
+    Pose::new(so3::exp(&random.rotation_vector()), random.vector())
+}
+
+/// A body of point masses, so that its inertia is physical.
+pub fn mass(random: &mut Random) -> MassProperties {
+    let rotation = so3::exp(&random.rotation_vector());
+    let second = random.vector::<3>().map(|entry| 0.05 + entry.abs());
+    let principal = Matrix3::from_diagonal(&Vector3::new(
+        second.y + second.z,
+        second.z + second.x,
+        second.x + second.y,
+    ));
+    let inertia = rotation * principal * rotation.transpose();
+    let symmetric = (inertia + inertia.transpose()) * 0.5;
+    MassProperties::new(1.5 + random.next(), random.vector(), symmetric).expect("physical by construction")
+}
+
+pub fn body(
+    name: &str,
+    parent: Option<usize>,
+    joint: Arc<dyn AnyJoint>,
+    placement: Pose<f64>,
+    mass: MassProperties,
+) -> BodySpec {
+    BodySpec {
+        name: name.into(),
+        joint_name: format!("{name} joint"),
+        parent,
+        joint,
+        placement,
+        child_placement: Pose::identity(),
+        mass,
+    }
+}
+
+pub const GRAVITY: Vector3<f64> = Vector3::new(0.3, -0.2, -9.81);
+
+/// A tree on the given joints: body i hangs on a random body before it.
+pub fn tree(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism> {
+    let bodies = joints.iter().enumerate().map(|(i, joint)| {
+        let choice = ((random.next() + 1.0) * 0.5 * (i + 1) as f64) as usize;
+        let parent = (i > 0).then(|| choice.min(i - 1));
+        let mut spec = body(&format!("body {i}"), parent, Arc::clone(joint), pose(random), mass(random));
+        spec.child_placement = pose(random);
+        spec
+    });
+    Arc::new(Mechanism::new(GRAVITY, bodies.collect()).expect("valid by construction"))
+}
+
+/// One to six joints, mixed, every type at the root of some tree.
+pub fn trees() -> Vec<Arc<Mechanism>> {
+    let all = [
+        joints::revolute(),
+        joints::ball(),
+        joints::planar(),
+        joints::planar_euclidean(),
+        joints::cart(),
+        joints::drift(),
+    ];
+    (0..12)
+        .map(|seed| {
+            let mut random = Random::new(seed);
+            let count = 1 + seed as usize % 6;
+            let chosen: Vec<_> = (0..count)
+                .map(|i| Arc::clone(&all[(seed as usize + 5 * i) % all.len()]))
+                .collect();
+            tree(&mut random, &chosen)
+        })
+        .collect()
+}
+
+/// A configuration far from home on every joint.
+pub fn configuration(random: &mut Random, mechanism: &Mechanism) -> Vec<f64> {
+    mechanism
+        .bodies()
+        .iter()
+        .enumerate()
+        .flat_map(|(i, body)| {
+            let phi = random.vec(body.ranges().freedoms.len());
+            mechanism.configuration_from_local(i, &phi).expect("finite")
+        })
+        .collect()
+}
