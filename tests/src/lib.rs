@@ -1,0 +1,32 @@
+//! What the suites share: specs by name, seeded random input, oracles.
+
+use hamel_codegen::derived::Derived;
+use std::path::{Path, PathBuf};
+
+/// The folder of the joint library's specs.
+pub fn spec_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../joint-specs")
+}
+
+/// Names of all joints of the library, from its folder.
+///
+/// # Panics
+/// Where the folder cannot be read: the suites cannot run without it.
+pub fn spec_names() -> Vec<String> {
+    let entries = std::fs::read_dir(spec_folder()).expect("the joint library is beside this crate");
+    let paths = entries.map(|entry| entry.expect("a folder entry").path());
+    let specs = paths.filter(|path| path.extension().is_some_and(|extension| extension == "joint"));
+    let mut names: Vec<String> = specs.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    names
+}
+
+/// The joint of that name, derived anew from its spec.
+///
+/// # Panics
+/// Where the spec is missing or refused; the message shows the errors.
+pub fn derived(name: &str) -> Derived {
+    let file = format!("{name}.joint");
+    let source = std::fs::read_to_string(spec_folder().join(&file)).expect("the spec can be read");
+    hamel_codegen::derive(&source, &file).unwrap_or_else(|errors| panic!("{errors}"))
+}
