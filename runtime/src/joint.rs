@@ -184,7 +184,11 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T;
 
     /// c(Q, v̄) = Ẋ̄^c v̄ with X̄ = X S̄: velocity product term of the recursive forms, a twist rate in the child frame.
-    fn bias_acceleration<T: Scalar>(&self, q: &SVector<T, N>, speeds: &SVector<T, S>) -> SVector<T, 6>;
+    fn bias_acceleration<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SVector<T, 6>;
 
     /// Ẋ̄^cᵀ h for a momentum `h` (moment; linear) in the child frame: its dual.
     fn bias_momentum<T: Scalar>(

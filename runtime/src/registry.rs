@@ -90,7 +90,11 @@ pub fn check_parameters<const P: usize>(
         expected: P,
         found: values.len(),
     })?;
-    match parameters.iter().zip(array).find(|(_, value)| !value.is_finite()) {
+    match parameters
+        .iter()
+        .zip(array)
+        .find(|(_, value)| !value.is_finite())
+    {
         Some((info, value)) => Err(ParameterError::NotFinite {
             joint,
             parameter: info.name,

@@ -27,7 +27,12 @@ fn cases() -> Vec<Case> {
             let q = configuration(&mut random, &mechanism);
             let speeds = random.vec(mechanism.layout().speeds);
             let efforts = random.vec(mechanism.layout().freedoms);
-            Case { mechanism, q, speeds, efforts }
+            Case {
+                mechanism,
+                q,
+                speeds,
+                efforts,
+            }
         })
         .collect()
 }
@@ -40,7 +45,10 @@ fn vector(slice: &[f64]) -> DVector<f64> {
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let scale = a.iter().chain(b).fold(1.0_f64, |m, x| m.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |m, (x, y)| m.max((x - y).abs())) / scale
+    a.iter()
+        .zip(b)
+        .fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()))
+        / scale
 }
 
 /// Six joints, terms of size 1 to 100, some hundred roundings each: 1e-12 leaves an order of magnitude.
@@ -49,9 +57,19 @@ const ROUNDING: f64 = 1e-12;
 #[test]
 fn mass_matrix_gives_the_kinetic_energy() {
     for case in cases() {
-        let expansion = Reference::new(Arc::clone(&case.mechanism)).expansion(&case.q).expect("sizes fit");
-        let v = vector(&case.mechanism.velocity_from_speeds(&case.q, &case.speeds).expect("sizes fit"));
-        let kinematics = case.mechanism.kinematics(&case.q, &case.speeds).expect("sizes fit");
+        let expansion = Reference::new(Arc::clone(&case.mechanism))
+            .expansion(&case.q)
+            .expect("sizes fit");
+        let v = vector(
+            &case
+                .mechanism
+                .velocity_from_speeds(&case.q, &case.speeds)
+                .expect("sizes fit"),
+        );
+        let kinematics = case
+            .mechanism
+            .kinematics(&case.q, &case.speeds)
+            .expect("sizes fit");
         let mass = &expansion.mass_matrix;
         assert!((mass - mass.transpose()).amax() <= ROUNDING * mass.amax());
         let energy = 0.5 * v.dot(&(mass * &v));
@@ -74,7 +92,8 @@ fn gradients_are_those_of_the_moved_mechanism() {
                     let own = body.ranges().freedoms.clone();
                     let phi: Vec<f64> = own.map(|i| if i == k { size } else { 0.0 }).collect();
                     let range = body.ranges().configuration.clone();
-                    body.joint().retract(&case.q[range.clone()], &phi, &mut q[range]);
+                    body.joint()
+                        .retract(&case.q[range.clone()], &phi, &mut q[range]);
                 }
                 reference.expansion(&q).expect("sizes fit")
             };
@@ -84,7 +103,10 @@ fn gradients_are_those_of_the_moved_mechanism() {
             let tolerance = 1e-7 * expansion.mass_matrix.amax().max(1.0);
             assert!((slope - &expansion.mass_matrix_gradient[k]).amax() < tolerance);
             let slope = (ahead.potential - behind.potential) / (2.0 * step);
-            assert!((slope - expansion.potential_gradient[k]).abs() < 1e-6 * expansion.potential.abs().max(10.0));
+            assert!(
+                (slope - expansion.potential_gradient[k]).abs()
+                    < 1e-6 * expansion.potential.abs().max(10.0)
+            );
             let slope = (ahead.speed_basis - behind.speed_basis) / (2.0 * step);
             assert!((slope - &expansion.speed_basis_gradient[k]).amax() < 1e-8);
         }
@@ -110,7 +132,9 @@ fn theorem_3_is_the_newton_euler_recursion() {
         assert!(difference(&efforts, expected.as_slice()) < ROUNDING);
 
         let mut forces = vec![0.0; case.mechanism.layout().constraints];
-        recursion.constraint_force(&case.efforts, &mut forces).expect("independent");
+        recursion
+            .constraint_force(&case.efforts, &mut forces)
+            .expect("independent");
         let lambda = reference
             .constraint_force(&case.q, &case.speeds, &case.efforts)
             .expect("regular");
@@ -124,14 +148,19 @@ fn theorem_2_holds_with_the_constraint_force() {
         let reference = Reference::new(Arc::clone(&case.mechanism));
         let expansion = reference.expansion(&case.q).expect("sizes fit");
         let (speeds, efforts) = (vector(&case.speeds), vector(&case.efforts));
-        let lambda = reference.constraint_force(&case.q, &case.speeds, &case.efforts).expect("regular");
+        let lambda = reference
+            .constraint_force(&case.q, &case.speeds, &case.efforts)
+            .expect("regular");
         let total = efforts.clone() + &expansion.constraint * lambda;
         let v = &expansion.speed_basis * &speeds;
-        let v_rate = expansion.accelerations(&case.mechanism, &v, &total).expect("regular");
+        let v_rate = expansion
+            .accelerations(&case.mechanism, &v, &total)
+            .expect("regular");
         let reduced = expansion
             .reduced_accelerations(&case.mechanism, &speeds, &efforts)
             .expect("regular");
-        let expected = &expansion.speed_basis * reduced + expansion.speed_basis_rate(&speeds) * &speeds;
+        let expected =
+            &expansion.speed_basis * reduced + expansion.speed_basis_rate(&speeds) * &speeds;
         assert!(difference(v_rate.as_slice(), expected.as_slice()) < 10.0 * ROUNDING);
 
         // (27) is (24) in p: ṗ = M v̇ + Ṁ v.
@@ -145,7 +174,9 @@ fn theorem_2_holds_with_the_constraint_force() {
 fn skew_compatible_matrix_is_skew_and_acts_alike() {
     let mut printed_is_skew = true;
     for case in cases() {
-        let expansion = Reference::new(Arc::clone(&case.mechanism)).expansion(&case.q).expect("sizes fit");
+        let expansion = Reference::new(Arc::clone(&case.mechanism))
+            .expansion(&case.q)
+            .expect("sizes fit");
         let v = &expansion.speed_basis * vector(&case.speeds);
         let coriolis = expansion.coriolis_matrix(&v);
         let skew = expansion.coriolis_matrix_skew(&v);
@@ -168,7 +199,9 @@ fn power_balance() {
         let mut reference = Reference::new(Arc::clone(&case.mechanism));
         let size = case.speeds.len();
         let mut momenta = vec![0.0; size];
-        reference.momenta(&case.q, &case.speeds, &mut momenta).expect("sizes fit");
+        reference
+            .momenta(&case.q, &case.speeds, &mut momenta)
+            .expect("sizes fit");
         let (mut speeds, mut rates) = (vec![0.0; size], vec![0.0; size]);
         reference
             .momentum_rates(
@@ -179,11 +212,15 @@ fn power_balance() {
                 &mut rates,
             )
             .expect("regular");
-        assert!(difference(&speeds, &case.speeds) < 1e-11, "M̄ has a condition of some hundreds");
+        assert!(
+            difference(&speeds, &case.speeds) < 1e-11,
+            "M̄ has a condition of some hundreds"
+        );
         let expansion = reference.expansion(&case.q).expect("sizes fit");
         let v = &expansion.speed_basis * vector(&case.speeds);
         let gradient = expansion.reduced_hamiltonian_gradient(&vector(&case.speeds));
-        let power = vector(&case.speeds).dot(&vector(&rates)) + gradient.dot(&expansion.local_rate(&v));
+        let power =
+            vector(&case.speeds).dot(&vector(&rates)) + gradient.dot(&expansion.local_rate(&v));
         let scale = gradient.amax().max(1.0);
         assert!((power - v.dot(&vector(&case.efforts))).abs() < ROUNDING * scale * size as f64);
     }
@@ -193,7 +230,9 @@ fn power_balance() {
 #[test]
 fn both_forms_are_the_same_equations() {
     for case in cases() {
-        let expansion = Reference::new(Arc::clone(&case.mechanism)).expansion(&case.q).expect("sizes fit");
+        let expansion = Reference::new(Arc::clone(&case.mechanism))
+            .expansion(&case.q)
+            .expect("sizes fit");
         let (speeds, efforts) = (vector(&case.speeds), vector(&case.efforts));
         let rate = expansion
             .reduced_accelerations(&case.mechanism, &speeds, &efforts)
@@ -218,19 +257,30 @@ fn free_planar_body_has_its_coriolis_terms() {
     let mass = MassProperties::new(2.0, Vector3::zeros(), Matrix3::identity()).expect("physical");
     let body = support::body("disc", None, joints::planar(), Pose::identity(), mass);
     let mechanism = Arc::new(Mechanism::new(Vector3::zeros(), vec![body]).expect("valid"));
-    let q = mechanism.configuration_from_local(0, &[0.4, -1.0, 2.0]).expect("finite");
+    let q = mechanism
+        .configuration_from_local(0, &[0.4, -1.0, 2.0])
+        .expect("finite");
     let v = [1.3, -0.7, 0.9];
     let mut rates = [0.0; 3];
     Reference::new(mechanism)
         .accelerations(&q, &v, &[0.5, 0.8, -0.6], &mut rates)
         .expect("regular");
     let expected = [0.5, 0.8 / 2.0 + v[0] * v[2], -0.6 / 2.0 - v[0] * v[1]];
-    assert!(difference(&rates, &expected) < 1e-14, "a handful of roundings");
+    assert!(
+        difference(&rates, &expected) < 1e-14,
+        "a handful of roundings"
+    );
 }
 
 #[test]
 fn massless_end_names_its_joint() {
-    let body = support::body("ghost", None, joints::revolute(), Pose::identity(), MassProperties::massless());
+    let body = support::body(
+        "ghost",
+        None,
+        joints::revolute(),
+        Pose::identity(),
+        MassProperties::massless(),
+    );
     let mechanism = Arc::new(Mechanism::new(Vector3::zeros(), vec![body]).expect("valid"));
     let error = Reference::new(mechanism)
         .accelerations(&[0.0], &[1.0], &[0.0], &mut [0.0])
@@ -248,9 +298,15 @@ fn wrong_sizes_are_errors() {
     let error = reference
         .accelerations(&[0.0; 8], &[0.0; 3], &[0.0; 3], &mut [0.0; 3])
         .expect_err("a ball has nine entries");
-    assert_eq!(error.to_string(), "configuration of the mechanism has 8 entries: it must have 9");
+    assert_eq!(
+        error.to_string(),
+        "configuration of the mechanism has 8 entries: it must have 9"
+    );
     let error = NewtonEuler::new(mechanism)
         .inverse_dynamics(&[0.0; 9], &[0.0; 3], &[0.0; 2], &mut [0.0; 3])
         .expect_err("three accelerations");
-    assert_eq!(error.to_string(), "accelerations of the mechanism has 2 entries: it must have 3");
+    assert_eq!(
+        error.to_string(),
+        "accelerations of the mechanism has 2 entries: it must have 3"
+    );
 }

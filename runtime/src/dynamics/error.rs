@@ -22,7 +22,9 @@ pub enum DynamicsError {
         limit: f64,
     },
     /// The constraint matrix A has lost rank.
-    #[error("the nonholonomic constraints are dependent, so that λ is not determined: A has lost rank")]
+    #[error(
+        "the nonholonomic constraints are dependent, so that λ is not determined: A has lost rank"
+    )]
     DependentConstraints,
     /// A vector has the wrong size or holds a number that is not finite.
     #[error(transparent)]

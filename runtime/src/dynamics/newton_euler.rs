@@ -135,7 +135,12 @@ impl NewtonEuler {
     /// # Errors
     /// When `efforts` has the wrong size.
     pub fn joint_efforts(&self, efforts: &mut [f64]) -> Result<(), StateError> {
-        check_size(WHOLE, "efforts", self.mechanism.layout().freedoms, efforts.len())?;
+        check_size(
+            WHOLE,
+            "efforts",
+            self.mechanism.layout().freedoms,
+            efforts.len(),
+        )?;
         for (body, step) in self.mechanism.bodies().iter().zip(&self.steps) {
             efforts[body.ranges().freedoms.clone()].copy_from_slice(&step.freedoms);
         }
@@ -147,7 +152,11 @@ impl NewtonEuler {
     ///
     /// # Errors
     /// When a vector has the wrong size; when A has lost rank.
-    pub fn constraint_force(&self, efforts: &[f64], forces: &mut [f64]) -> Result<(), DynamicsError> {
+    pub fn constraint_force(
+        &self,
+        efforts: &[f64],
+        forces: &mut [f64],
+    ) -> Result<(), DynamicsError> {
         let layout = self.mechanism.layout();
         check_size(WHOLE, "efforts", layout.freedoms, efforts.len())?;
         check_size(WHOLE, "constraint forces", layout.constraints, forces.len())?;
@@ -185,7 +194,11 @@ impl NewtonEuler {
 }
 
 /// `(AᵀA)⁻¹ Aᵀ (X^cᵀF − τ)` of one joint; a joint has six constraints at most, unused rows are those of the identity.
-fn joint_constraint_force(step: &Step, efforts: &[f64], forces: &mut [f64]) -> Result<(), DynamicsError> {
+fn joint_constraint_force(
+    step: &Step,
+    efforts: &[f64],
+    forces: &mut [f64],
+) -> Result<(), DynamicsError> {
     let (rows, size) = (efforts.len(), forces.len());
     let column = |i: usize| &step.constraint[i * rows..(i + 1) * rows];
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
@@ -215,6 +228,10 @@ fn multiply(matrix: &[f64], x: &[f64], out: &mut [f64]) {
 /// `out = matrixᵀ · x`, the matrix column by column.
 fn multiply_transposed(matrix: &[f64], x: &[f64], out: &mut [f64]) {
     for (sum, column) in out.iter_mut().zip(matrix.chunks_exact(x.len().max(1))) {
-        *sum = column.iter().zip(x).map(|(entry, weight)| entry * weight).sum();
+        *sum = column
+            .iter()
+            .zip(x)
+            .map(|(entry, weight)| entry * weight)
+            .sum();
     }
 }

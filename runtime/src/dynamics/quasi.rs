@@ -58,7 +58,11 @@ impl<const N: usize> QuasiTerms<N> {
         let velocity_map = system.velocity_map(q);
         let along = |k: usize| {
             SVector::<Dual<f64>, N>::from_fn(|i, _| {
-                if i == k { Dual::variable(q[i]) } else { Dual::constant(q[i]) }
+                if i == k {
+                    Dual::variable(q[i])
+                } else {
+                    Dual::constant(q[i])
+                }
             })
         };
         Ok(Self {
@@ -115,7 +119,9 @@ impl<const N: usize> QuasiTerms<N> {
         let momentum = self.mass_matrix * v;
         let mass_rate = weighted_sum(&self.mass_matrix_gradient, &rate);
         let gamma = weighted_sum(&self.gamma(), v);
-        let slope = self.velocity_map_inverse.tr_mul(&self.lagrangian_gradient(v));
+        let slope = self
+            .velocity_map_inverse
+            .tr_mul(&self.lagrangian_gradient(v));
         let forces = efforts - mass_rate * v - gamma * momentum + slope;
         Ok(self.factors()?.solve(&forces))
     }
@@ -124,7 +130,9 @@ impl<const N: usize> QuasiTerms<N> {
     pub fn j22(&self, p: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         // (∂(Sᵀp)/∂q)_im = Σ_l ∂S_li/∂q_m p_l
         let slope: SMatrix<f64, N, N> = SMatrix::from_fn(|i, m| {
-            (0..N).map(|l| self.velocity_map_gradient[m][(l, i)] * p[l]).sum()
+            (0..N)
+                .map(|l| self.velocity_map_gradient[m][(l, i)] * p[l])
+                .sum()
         });
         let inverse = &self.velocity_map_inverse;
         inverse.transpose() * (slope.transpose() - slope) * inverse
@@ -141,7 +149,9 @@ impl<const N: usize> QuasiTerms<N> {
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), QuasiError> {
         let v = self.factors()?.solve(p);
         // ∂H/∂q at fixed p is −∂L/∂q at fixed v.
-        let slope = self.velocity_map_inverse.tr_mul(&self.lagrangian_gradient(&v));
+        let slope = self
+            .velocity_map_inverse
+            .tr_mul(&self.lagrangian_gradient(&v));
         Ok((self.coordinate_rate(&v), self.j22(p) * v + slope + efforts))
     }
 
@@ -168,5 +178,7 @@ fn weighted_sum<const N: usize>(
     slices
         .iter()
         .zip(weights)
-        .fold(SMatrix::zeros(), |sum, (slice, &weight)| sum + slice * weight)
+        .fold(SMatrix::zeros(), |sum, (slice, &weight)| {
+            sum + slice * weight
+        })
 }

@@ -46,8 +46,14 @@ impl<'a> Driver<'a> {
     ) -> Result<Self, IntegrateError> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
         let (time, tableau) = (initial.time, options.method.tableau());
-        let stepper = Stepper::new(tableau, &mut flow, time, &initial.configuration, &initial.speeds)
-            .map_err(|cause| at_state(time, cause))?;
+        let stepper = Stepper::new(
+            tableau,
+            &mut flow,
+            time,
+            &initial.configuration,
+            &initial.speeds,
+        )
+        .map_err(|cause| at_state(time, cause))?;
         Ok(Self {
             flow,
             stepper,
@@ -80,11 +86,18 @@ impl<'a> Driver<'a> {
         let order = self.options.method.tableau().order;
         let step = match self.options.method {
             Method::Rk4 { dt } => dt,
-            Method::DormandPrince { tolerance, max_step, first_step } => first_step
+            Method::DormandPrince {
+                tolerance,
+                max_step,
+                first_step,
+            } => first_step
                 .unwrap_or_else(|| self.first_step(tolerance, order))
                 .min(max_step),
         };
-        Pacing { step, controller: Controller::new(order) }
+        Pacing {
+            step,
+            controller: Controller::new(order),
+        }
     }
 
     /// A step over which the state changes by about `tolerance^(1/order)`.
@@ -97,7 +110,10 @@ impl<'a> Driver<'a> {
     /// The next sample time, or the end.
     fn target(&self) -> f64 {
         let samples = &self.options.samples;
-        samples.get(self.samples.len()).copied().unwrap_or(self.options.t_end)
+        samples
+            .get(self.samples.len())
+            .copied()
+            .unwrap_or(self.options.t_end)
     }
 
     /// One accepted step.
@@ -127,8 +143,15 @@ impl<'a> Driver<'a> {
     }
 
     fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
-        let outcome = self.stepper.attempt(&mut self.flow, self.clock.time(), step);
-        let Method::DormandPrince { tolerance, max_step, .. } = self.options.method else {
+        let outcome = self
+            .stepper
+            .attempt(&mut self.flow, self.clock.time(), step);
+        let Method::DormandPrince {
+            tolerance,
+            max_step,
+            ..
+        } = self.options.method
+        else {
             return outcome;
         };
         if let Err(cause) = outcome {
@@ -136,8 +159,7 @@ impl<'a> Driver<'a> {
             return Err(cause);
         }
         let (error, joint) = self.stepper.error(&self.flow, step, tolerance);
-        // A comparison that NaN fails as well.
-        if !(error <= 1.0) {
+        if error.is_nan() || error > 1.0 {
             pacing.step = step * pacing.controller.reject(Some(error));
             return Err(self.inaccurate(joint, error));
         }
@@ -149,8 +171,16 @@ impl<'a> Driver<'a> {
     }
 
     fn inaccurate(&self, joint: usize, ratio: f64) -> StepFailure {
-        let name = self.flow.mechanism.bodies().get(joint).map_or("", |body| body.joint_name());
-        StepFailure::Inaccurate { joint: name.into(), ratio }
+        let name = self
+            .flow
+            .mechanism
+            .bodies()
+            .get(joint)
+            .map_or("", |body| body.joint_name());
+        StepFailure::Inaccurate {
+            joint: name.into(),
+            ratio,
+        }
     }
 
     /// Ends the integration where no smaller step can help.
@@ -163,7 +193,12 @@ impl<'a> Driver<'a> {
         if pacing.step > limit {
             return Ok(());
         }
-        Err(IntegrateError::StepUnderflow { time, step: pacing.step, limit, cause })
+        Err(IntegrateError::StepUnderflow {
+            time,
+            step: pacing.step,
+            limit,
+            cause,
+        })
     }
 
     fn accept(&mut self, step: f64, lands: bool) -> Result<(), IntegrateError> {
@@ -173,7 +208,9 @@ impl<'a> Driver<'a> {
             self.clock.advance(step);
         }
         let time = self.clock.time();
-        self.stepper.accept(&mut self.flow, time).map_err(|cause| at_state(time, cause))?;
+        self.stepper
+            .accept(&mut self.flow, time)
+            .map_err(|cause| at_state(time, cause))?;
         self.statistics.steps += 1;
         Ok(())
     }

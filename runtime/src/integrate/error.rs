@@ -57,7 +57,9 @@ pub enum IntegrateError {
         end: f64,
     },
     /// A sample time out of order or out of range.
-    #[error("sample {index} is at {time} s: sample times ascend, and this one must lie between {earliest} s and {end} s")]
+    #[error(
+        "sample {index} is at {time} s: sample times ascend, and this one must lie between {earliest} s and {end} s"
+    )]
     Sample {
         /// Its index.
         index: usize,

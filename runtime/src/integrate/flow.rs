@@ -129,8 +129,10 @@ impl<'a> Flow<'a> {
             let (own, size) = (&body.ranges().freedoms, body.ranges().freedoms.len());
             let twist_map = &mut self.twist_map[..6 * size];
             let velocity_map = &mut self.matrix[..size * size];
-            body.joint().twist_map_child(body.configuration(q), twist_map);
-            body.joint().velocity_map(body.configuration(q), velocity_map);
+            body.joint()
+                .twist_map_child(body.configuration(q), twist_map);
+            body.joint()
+                .velocity_map(body.configuration(q), velocity_map);
             let columns = velocity_map.chunks_exact(size.max(1));
             let targets = maps[3 * own.start..3 * own.end].chunks_exact_mut(3);
             for (column, target) in columns.zip(targets) {
@@ -142,8 +144,19 @@ impl<'a> Flow<'a> {
     }
 
     /// v̄ and ẏ at the current configuration.
-    fn dynamic_rates(&mut self, time: f64, y: &[f64], rates: &mut Rates) -> Result<(), DynamicsError> {
-        let Self { dynamics, inputs, configuration, efforts, .. } = self;
+    fn dynamic_rates(
+        &mut self,
+        time: f64,
+        y: &[f64],
+        rates: &mut Rates,
+    ) -> Result<(), DynamicsError> {
+        let Self {
+            dynamics,
+            inputs,
+            configuration,
+            efforts,
+            ..
+        } = self;
         match self.form {
             Form::Lagrangian => {
                 rates.speeds.copy_from_slice(y);

@@ -53,14 +53,25 @@ impl Method {
 
     fn check(&self) -> Result<(), IntegrateError> {
         match *self {
-            Self::Rk4 { dt } => require("dt", dt, dt > 0.0 && dt.is_finite(), "positive and finite"),
-            Self::DormandPrince { tolerance, max_step, first_step } => {
+            Self::Rk4 { dt } => {
+                require("dt", dt, dt > 0.0 && dt.is_finite(), "positive and finite")
+            }
+            Self::DormandPrince {
+                tolerance,
+                max_step,
+                first_step,
+            } => {
                 let smallest = 4.0 * f64::EPSILON;
                 let allowed = tolerance >= smallest && tolerance <= 0.1;
                 require("tolerance", tolerance, allowed, "between 8.9e-16 and 0.1")?;
                 require("max_step", max_step, max_step > 0.0, "positive")?;
                 let first = first_step.unwrap_or(1.0);
-                require("first_step", first, first > 0.0 && first.is_finite(), "positive and finite")
+                require(
+                    "first_step",
+                    first,
+                    first > 0.0 && first.is_finite(),
+                    "positive and finite",
+                )
             }
         }
     }
@@ -75,7 +86,11 @@ fn require(
     if allowed {
         return Ok(());
     }
-    Err(IntegrateError::Option { option, value, requirement })
+    Err(IntegrateError::Option {
+        option,
+        value,
+        requirement,
+    })
 }
 
 /// What an integration is asked to do.
@@ -96,14 +111,22 @@ impl Options {
         require("initial time", start, start.is_finite(), "finite")?;
         require("t_end", self.t_end, self.t_end.is_finite(), "finite")?;
         if self.t_end < start {
-            return Err(IntegrateError::TimeOrder { start, end: self.t_end });
+            return Err(IntegrateError::TimeOrder {
+                start,
+                end: self.t_end,
+            });
         }
         self.method.check()?;
         let mut earliest = start;
         for (index, &time) in self.samples.iter().enumerate() {
             // A comparison that NaN fails as well.
             if !(time >= earliest && time <= self.t_end) {
-                return Err(IntegrateError::Sample { index, time, earliest, end: self.t_end });
+                return Err(IntegrateError::Sample {
+                    index,
+                    time,
+                    earliest,
+                    end: self.t_end,
+                });
             }
             earliest = time;
         }

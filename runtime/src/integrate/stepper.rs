@@ -66,7 +66,13 @@ impl Stepper {
             self.check_motion(flow)?;
             let (_, rest) = self.stages.split_at_mut(i);
             let at = time + step * tableau.nodes[i];
-            flow.evaluate(at, &self.configuration, &self.phi, &self.next_y, &mut rest[0])?;
+            flow.evaluate(
+                at,
+                &self.configuration,
+                &self.phi,
+                &self.next_y,
+                &mut rest[0],
+            )?;
             check_finite(flow, &rest[0])?;
         }
         if !tableau.first_same_as_last {
@@ -83,7 +89,11 @@ impl Stepper {
         };
         let sum = |entry: &dyn Fn(&Rates) -> f64| {
             let terms = weights.iter().zip(&self.stages);
-            (step * terms.map(|(weight, rates)| weight * entry(rates)).sum::<f64>()).abs()
+            (step
+                * terms
+                    .map(|(weight, rates)| weight * entry(rates))
+                    .sum::<f64>())
+            .abs()
         };
         let mut worst = (0.0, 0);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
@@ -103,7 +113,12 @@ impl Stepper {
 
     /// Makes the step just tried the state, recentred: ϕ is 0 there.
     pub(super) fn accept(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
-        retract(&flow.mechanism, &self.configuration, &self.phi, &mut self.next_configuration);
+        retract(
+            &flow.mechanism,
+            &self.configuration,
+            &self.phi,
+            &mut self.next_configuration,
+        );
         for body in flow.mechanism.bodies() {
             let own = &mut self.next_configuration[body.ranges().configuration.clone()];
             body.joint().project(own);
@@ -125,7 +140,13 @@ impl Stepper {
     /// Rates at the state with ϕ = 0: stage 0 of the next step.
     fn evaluate_state(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
         self.phi.fill(0.0);
-        flow.evaluate(time, &self.configuration, &self.phi, &self.y, &mut self.stages[0])?;
+        flow.evaluate(
+            time,
+            &self.configuration,
+            &self.phi,
+            &self.y,
+            &mut self.stages[0],
+        )?;
         check_finite(flow, &self.stages[0])
     }
 

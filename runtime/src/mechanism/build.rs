@@ -76,8 +76,8 @@ fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
     let mut home = vec![0.0; size.configuration];
     joint.home(&mut home);
     let residual = joint.residual(&home);
-    // A comparison that NaN fails as well.
-    if !(residual <= CONFIGURATION_TOLERANCE) || home.iter().any(|value| !value.is_finite()) {
+    let finite = home.iter().all(|value| value.is_finite()) && residual.is_finite();
+    if !finite || residual > CONFIGURATION_TOLERANCE {
         errors.push(MechanismError::Home {
             joint: body.joint_name.clone(),
             residual,
@@ -91,7 +91,7 @@ fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
     joint.speed_basis(&home, speed_basis.as_mut_slice());
     for (which, matrix) in [("twist map", twist_map), ("speed basis", speed_basis)] {
         let ratio = pivot_ratio(matrix);
-        if !(ratio >= RANK_TOLERANCE) {
+        if ratio.is_nan() || ratio < RANK_TOLERANCE {
             errors.push(MechanismError::RankDeficient {
                 joint: body.joint_name.clone(),
                 which,
@@ -128,9 +128,9 @@ pub(super) fn assemble(specs: Vec<BodySpec>) -> (Vec<Body>, Layout) {
             speeds: ranges.speeds.end,
             constraints: ranges.constraints.end,
         };
-        let parent_frame = spec.parent.map_or_else(Pose::identity, |parent| {
-            *bodies[parent].child_placement()
-        });
+        let parent_frame = spec
+            .parent
+            .map_or_else(Pose::identity, |parent| *bodies[parent].child_placement());
         bodies.push(Body {
             ranges,
             joint_frame: parent_frame * spec.placement,

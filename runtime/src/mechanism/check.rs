@@ -35,7 +35,11 @@ impl Body {
         names: &[&'static str],
         values: &[f64],
     ) -> Result<(), StateError> {
-        match names.iter().zip(values).find(|(_, value)| !value.is_finite()) {
+        match names
+            .iter()
+            .zip(values)
+            .find(|(_, value)| !value.is_finite())
+        {
             Some((&entry, &value)) => Err(StateError::NotFinite {
                 joint: self.joint_name().into(),
                 quantity,
@@ -49,7 +53,12 @@ impl Body {
     /// Whether `q`, this joint's Q alone, is finite and on the joint's manifold.
     pub(super) fn check_configuration(&self, q: &[f64]) -> Result<(), StateError> {
         let element = self.joint_name();
-        check_size(element, "configuration", self.ranges.configuration.len(), q.len())?;
+        check_size(
+            element,
+            "configuration",
+            self.ranges.configuration.len(),
+            q.len(),
+        )?;
         self.check_finite("configuration", self.joint().coordinates(), q)?;
         let residual = self.joint().residual(q);
         if residual <= CONFIGURATION_TOLERANCE {
@@ -94,7 +103,8 @@ impl Mechanism {
     pub fn project(&self, q: &mut [f64]) -> Result<(), StateError> {
         check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
         for body in &self.bodies {
-            body.joint().project(&mut q[body.ranges.configuration.clone()]);
+            body.joint()
+                .project(&mut q[body.ranges.configuration.clone()]);
         }
         Ok(())
     }

@@ -25,7 +25,9 @@ pub enum MechanismError {
         first: usize,
     },
     /// The parent does not come before its child.
-    #[error("body `{body}` (index {index}) has parent index {parent}: a parent comes before its children")]
+    #[error(
+        "body `{body}` (index {index}) has parent index {parent}: a parent comes before its children"
+    )]
     Parent {
         /// The body.
         body: String,
@@ -53,7 +55,9 @@ pub enum MechanismError {
         cause: MassError,
     },
     /// The joint's home is not on its own manifold, or not finite.
-    #[error("joint `{joint}`: its home configuration is off its manifold by {residual:e}, more than {limit:e}")]
+    #[error(
+        "joint `{joint}`: its home configuration is off its manifold by {residual:e}, more than {limit:e}"
+    )]
     Home {
         /// The joint.
         joint: String,
@@ -115,7 +119,9 @@ pub enum StateError {
         value: f64,
     },
     /// Q is not on the joint's manifold.
-    #[error("joint `{joint}`: its configuration is off its manifold by {residual:e}, more than {limit:e}")]
+    #[error(
+        "joint `{joint}`: its configuration is off its manifold by {residual:e}, more than {limit:e}"
+    )]
     OffManifold {
         /// The joint.
         joint: String,
@@ -148,7 +154,9 @@ pub enum StateError {
         limit: f64,
     },
     /// The joint cannot move with the twist.
-    #[error("joint `{joint}` cannot move with this twist: {residual:e} of it remains, more than {limit:e}")]
+    #[error(
+        "joint `{joint}` cannot move with this twist: {residual:e} of it remains, more than {limit:e}"
+    )]
     TwistOutsideFreedoms {
         /// The joint.
         joint: String,
@@ -158,7 +166,9 @@ pub enum StateError {
         limit: f64,
     },
     /// A velocity that the nonholonomic constraint forbids.
-    #[error("joint `{joint}`: its velocity violates the nonholonomic constraint, |Aᵀv| = {value:e}, more than {limit:e}")]
+    #[error(
+        "joint `{joint}`: its velocity violates the nonholonomic constraint, |Aᵀv| = {value:e}, more than {limit:e}"
+    )]
     ConstraintViolated {
         /// The joint.
         joint: String,

@@ -62,7 +62,7 @@ impl Mechanism {
         let velocity = least_squares(&map, &target);
         let residual = (&map * &velocity - &target).norm();
         let limit = CONSTRAINT_TOLERANCE * target.norm().max(1.0);
-        if !(residual <= limit) {
+        if residual.is_nan() || residual > limit {
             return Err(StateError::TwistOutsideFreedoms {
                 joint: body.joint_name().into(),
                 residual,
@@ -104,7 +104,10 @@ impl Mechanism {
         check_size(WHOLE, "speeds", self.layout.speeds, speeds.len())?;
         let mut velocity = vec![0.0; self.layout.freedoms];
         for body in &self.bodies {
-            let own = DVectorView::from_slice(&speeds[body.ranges.speeds.clone()], body.ranges.speeds.len());
+            let own = DVectorView::from_slice(
+                &speeds[body.ranges.speeds.clone()],
+                body.ranges.speeds.len(),
+            );
             let v = body.speed_basis(body.configuration(q)) * own;
             velocity[body.ranges.freedoms.clone()].copy_from_slice(v.as_slice());
         }

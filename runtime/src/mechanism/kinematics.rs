@@ -107,7 +107,11 @@ impl Mechanism {
             .map(|(state, body)| state.position_com * body.mass().mass)
             .sum();
         let center_of_mass = if mass > 0.0 { moment / mass } else { moment };
-        Ok(Kinematics { bodies, mass, center_of_mass })
+        Ok(Kinematics {
+            bodies,
+            mass,
+            center_of_mass,
+        })
     }
 
     fn body_states(&self, q: &[f64], speeds: &[f64]) -> Vec<BodyState> {
@@ -132,7 +136,8 @@ impl Body {
     fn relative_motion(&self, q: &[f64], speeds: &[f64]) -> (Pose<f64>, Vector6<f64>) {
         let q = self.configuration(q);
         let own = &speeds[self.ranges.speeds.clone()];
-        let twist = self.twist_map_child(q) * (self.speed_basis(q) * DVectorView::from_slice(own, own.len()));
+        let twist = self.twist_map_child(q)
+            * (self.speed_basis(q) * DVectorView::from_slice(own, own.len()));
         let twist = Vector6::from_column_slice(twist.as_slice());
         let pose = *self.placement() * self.joint().pose(q) * *self.child_placement();
         (pose, self.child_placement().act_twist_inverse(&twist))

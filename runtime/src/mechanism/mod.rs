@@ -43,7 +43,11 @@ impl Mechanism {
             return Err(errors);
         }
         let (bodies, layout) = build::assemble(bodies);
-        Ok(Self { gravity, bodies, layout })
+        Ok(Self {
+            gravity,
+            bodies,
+            layout,
+        })
     }
 
     /// Acceleration of free fall, world axes, m/s².

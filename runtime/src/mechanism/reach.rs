@@ -57,7 +57,8 @@ impl Body {
         let target = DVector::from_column_slice(from.error.as_slice());
         let velocity = least_squares(&self.twist_map_child(&from.q), &target);
         let mut inverse = DMatrix::zeros(freedoms, freedoms);
-        self.joint().velocity_map_inverse(&from.q, inverse.as_mut_slice());
+        self.joint()
+            .velocity_map_inverse(&from.q, inverse.as_mut_slice());
         inverse * velocity
     }
 
@@ -66,8 +67,9 @@ impl Body {
         let mut best = self.approach(start, target);
         for _ in 0..STEPS {
             let full = self.gauss_newton_step(&best);
-            let nearer = (0..HALVINGS).find_map(|halvings| {
-                let phi = &full * 0.5_f64.powi(halvings as i32);
+            let shares = core::iter::successors(Some(1.0), |share| Some(0.5 * share));
+            let nearer = shares.take(HALVINGS).find_map(|share: f64| {
+                let phi = &full * share;
                 let next = self.approach(self.moved(&best.q, &phi), target);
                 (next.error.norm() < best.error.norm()).then_some(next)
             });
@@ -82,9 +84,9 @@ impl Body {
     fn starts(&self) -> impl Iterator<Item = Vec<f64>> + '_ {
         let freedoms = self.ranges.freedoms.len();
         let home = self.home();
-        let elsewhere = STARTS.into_iter().flat_map(move |size| {
-            (0..freedoms).flat_map(move |k| [(k, size), (k, -size)])
-        });
+        let elsewhere = STARTS
+            .into_iter()
+            .flat_map(move |size| (0..freedoms).flat_map(move |k| [(k, size), (k, -size)]));
         core::iter::once(home.clone()).chain(elsewhere.map(move |(k, size)| {
             let mut phi = DVector::zeros(freedoms);
             phi[k] = size;
@@ -118,7 +120,10 @@ impl Mechanism {
             if found.error.norm() <= limit {
                 return Ok(found.q);
             }
-            if nearest.as_ref().is_none_or(|best| found.error.norm() < best.error.norm()) {
+            if nearest
+                .as_ref()
+                .is_none_or(|best| found.error.norm() < best.error.norm())
+            {
                 nearest = Some(found);
             }
         }
@@ -141,7 +146,12 @@ impl Mechanism {
         phi: &[f64],
     ) -> Result<Vec<f64>, StateError> {
         let body = self.body(body)?;
-        check_size(body.joint_name(), "phi", body.ranges.freedoms.len(), phi.len())?;
+        check_size(
+            body.joint_name(),
+            "phi",
+            body.ranges.freedoms.len(),
+            phi.len(),
+        )?;
         body.check_finite("phi", body.joint().freedoms(), phi)?;
         Ok(body.moved(&body.home(), &DVector::from_column_slice(phi)))
     }

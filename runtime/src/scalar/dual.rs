@@ -60,7 +60,10 @@ impl<T: Scalar> Div for Dual<T> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self::new(value, (self.derivative - value * other.derivative) / other.value)
+        Self::new(
+            value,
+            (self.derivative - value * other.derivative) / other.value,
+        )
     }
 }
 
@@ -151,7 +154,8 @@ impl<T: Scalar> Scalar for Dual<T> {
         let slope = if order == 0 {
             -self.value.stumpff(1)
         } else {
-            T::from_f64(order as f64) * self.value.stumpff(order + 2) - self.value.stumpff(order + 1)
+            T::from_f64(order as f64) * self.value.stumpff(order + 2)
+                - self.value.stumpff(order + 1)
         };
         Self::new(
             self.value.stumpff(order),
@@ -174,8 +178,7 @@ impl<T: Scalar> Scalar for Dual<T> {
         let omega = vee(&(value.transpose() * rate));
         let turn = r.cross(&omega);
         let square = r.x * r.x + r.y * r.y + r.z * r.z;
-        let derivative =
-            omega + turn * T::from_f64(0.5) + r.cross(&turn) * square.dexp_inverse(0);
+        let derivative = omega + turn * T::from_f64(0.5) + r.cross(&turn) * square.dexp_inverse(0);
         Vector3::from_fn(|i, _| Self::new(r[i], derivative[i]))
     }
 

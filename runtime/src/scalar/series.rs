@@ -59,7 +59,13 @@ fn stumpff_direct<F: Float + Scalar>(s: F, order: usize) -> F {
         return inverse_factorial(order);
     }
     let angle = Float::sqrt(Float::abs(s));
-    let sine = |x: F| if s > zero { Float::sin(x) } else { Float::sinh(x) };
+    let sine = |x: F| {
+        if s > zero {
+            Float::sin(x)
+        } else {
+            Float::sinh(x)
+        }
+    };
     match order {
         0 if s > zero => Float::cos(angle),
         0 => Float::cosh(angle),
@@ -73,29 +79,29 @@ fn stumpff_direct<F: Float + Scalar>(s: F, order: usize) -> F {
 
 /// t_m = Σ_{j ≥ 3} j^(−2m−2) = ζ(2m + 2) − 1 − 4^(−m−1).
 const POLE_TAILS: [f64; 24] = [
-    0.394_934_066_848_226_44,
-    0.019_823_233_711_138_19,
+    0.394_934_066_848_226_46,
+    0.019_823_233_711_138_193,
     0.001_718_061_984_449_139_7,
     0.000_171_106_197_944_339_38,
     1.801_262_781_808_533_7e-5,
-    1.945_928_308_048_298_6e-6,
-    2.129_787_087_048_292_6e-7,
-    2.347_034_615_187_157_3e-8,
+    1.945_928_308_048_298_7e-6,
+    2.129_788_087_048_292_5e-7,
+    2.347_034_615_187_173_2e-8,
     2.595_999_374_839_856_5e-9,
-    2.877_174_665_461_131_5e-10,
-    3.192_362_617_049_000_4e-11,
-    3.544_275_868_854_612e-12,
-    3.936_345_173_849_847e-13,
+    2.877_174_665_461_131_6e-10,
+    3.192_362_617_049_000_6e-11,
+    3.544_275_868_854_612_3e-12,
+    3.936_345_173_849_846_7e-13,
     4.372_632_654_299_232e-14,
     4.857_804_189_667_247e-15,
     5.397_137_809_202_939e-16,
-    5.996_555_960_166_588e-17,
+    5.996_555_960_166_587e-17,
     6.662_675_132_429_289e-18,
-    7.402_869_382_385_771e-19,
-    8.225_346_069_033_827e-20,
-    9.139_233_192_043_923e-21,
+    7.402_869_382_385_77e-19,
+    8.225_346_069_033_828e-20,
+    9.139_233_192_043_922e-21,
     1.015_467_841_223_081_8e-21,
-    1.128_296_030_524_118_2e-22,
+    1.128_296_030_524_118_3e-22,
     1.253_661_274_394_284_8e-23,
 ];
 
@@ -105,12 +111,13 @@ const POLE_TAILS: [f64; 24] = [
 /// are taken as they stand and the others as the power series `Σ t_m x^m`, of radius 9. Every term is positive on
 /// (−2π, 2π), for every derivative, so that nothing cancels.
 pub(super) fn dexp_inverse<F: Float + Scalar>(s: F, derivative: usize) -> F {
-    let period = F::from_f64(TAU * TAU);
-    let x = s / period;
-    let pole = |square: f64| power(F::from_f64(1.0) / (F::from_f64(square) - x), derivative + 1);
-    let poles = pole(1.0) + pole(4.0);
-    let scale = F::from_f64(2.0 * factorial(derivative)) / power(period, derivative + 1);
-    scale * (poles + tail(x, derivative))
+    let period = TAU * TAU;
+    let order = derivative + 1;
+    let pole = |square: f64| power(F::from_f64(1.0) / (F::from_f64(square) - s), order);
+    let poles = pole(period) + pole(4.0 * period);
+    let scale = F::from_f64(1.0 / period);
+    let others = tail(s * scale, derivative) * power(scale, order);
+    F::from_f64(2.0 * factorial(derivative)) * (poles + others)
 }
 
 /// n-th derivative of `Σ t_m x^m`, divided by n!: its coefficients are binomial(m, n) t_m.
@@ -121,7 +128,9 @@ fn tail<F: Float + Scalar>(x: F, derivative: usize) -> F {
     };
     (derivative..POLE_TAILS.len())
         .rev()
-        .fold(F::from_f64(0.0), |sum, m| Scalar::mul_add(sum, x, coefficient(m)))
+        .fold(F::from_f64(0.0), |sum, m| {
+            Scalar::mul_add(sum, x, coefficient(m))
+        })
 }
 
 fn factorial(n: usize) -> f64 {

@@ -60,7 +60,11 @@ impl Pose<f64> {
 
 /// Entries in column-major order with three rows.
 fn check_finite(part: &'static str, entries: &[f64]) -> Result<(), PoseError> {
-    match entries.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+    match entries
+        .iter()
+        .enumerate()
+        .find(|(_, value)| !value.is_finite())
+    {
         Some((index, &value)) => Err(PoseError::NotFinite {
             part,
             row: index % 3 + 1,

@@ -80,7 +80,11 @@ impl MassProperties {
     /// # Errors
     /// Those of [`MassProperties::check`].
     pub fn new(mass: f64, com: Vector3<f64>, inertia_com: Matrix3<f64>) -> Result<Self, MassError> {
-        let properties = Self { mass, com, inertia_com };
+        let properties = Self {
+            mass,
+            com,
+            inertia_com,
+        };
         properties.check().map(|()| properties)
     }
 
@@ -151,11 +155,18 @@ impl MassProperties {
         let eigenvalues = self.inertia_com.symmetric_eigenvalues();
         let (smallest, largest) = (eigenvalues.min(), eigenvalues.max());
         if smallest < -limit {
-            return Err(MassError::NotPositive { moment: smallest, limit });
+            return Err(MassError::NotPositive {
+                moment: smallest,
+                limit,
+            });
         }
         let sum = self.inertia_com.trace() - largest;
         if largest > sum + limit {
-            return Err(MassError::Triangle { largest, sum, limit });
+            return Err(MassError::Triangle {
+                largest,
+                sum,
+                limit,
+            });
         }
         Ok(())
     }

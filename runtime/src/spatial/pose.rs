@@ -17,7 +17,10 @@ pub struct Pose<T> {
 impl<T: Scalar> Pose<T> {
     /// The pose of a given rotation matrix and origin.
     pub const fn new(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
-        Self { rotation, translation }
+        Self {
+            rotation,
+            translation,
+        }
     }
 
     /// The frame itself.
@@ -57,8 +60,12 @@ impl<T: Scalar> Pose<T> {
     /// The 4×4 matrix H.
     pub fn matrix(&self) -> Matrix4<T> {
         let mut matrix = Matrix4::identity();
-        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.rotation);
-        matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.translation);
+        matrix
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&self.rotation);
+        matrix
+            .fixed_view_mut::<3, 1>(0, 3)
+            .copy_from(&self.translation);
         matrix
     }
 
@@ -66,9 +73,13 @@ impl<T: Scalar> Pose<T> {
     pub fn adjoint(&self) -> Matrix6<T> {
         let mut matrix = Matrix6::zeros();
         let lower = hat(&self.translation) * self.rotation;
-        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.rotation);
+        matrix
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&self.rotation);
         matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&lower);
-        matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.rotation);
+        matrix
+            .fixed_view_mut::<3, 3>(3, 3)
+            .copy_from(&self.rotation);
         matrix
     }
 
@@ -84,7 +95,10 @@ impl<T: Scalar> Pose<T> {
     pub fn act_twist_inverse(&self, twist: &Vector6<T>) -> Vector6<T> {
         let (angular, linear) = split(twist);
         let linear = linear - self.translation.cross(&angular);
-        join(&self.rotation.tr_mul(&angular), &self.rotation.tr_mul(&linear))
+        join(
+            &self.rotation.tr_mul(&angular),
+            &self.rotation.tr_mul(&linear),
+        )
     }
 
     /// `Ad_H⁻ᵀ W`: child coordinates of a wrench or momentum to parent coordinates.
@@ -99,11 +113,17 @@ impl<T: Scalar> Pose<T> {
     pub fn act_wrench_inverse(&self, wrench: &Vector6<T>) -> Vector6<T> {
         let (moment, force) = split(wrench);
         let moment = moment - self.translation.cross(&force);
-        join(&self.rotation.tr_mul(&moment), &self.rotation.tr_mul(&force))
+        join(
+            &self.rotation.tr_mul(&moment),
+            &self.rotation.tr_mul(&force),
+        )
     }
 
     /// [`Pose::act_twist`] on each column.
-    pub fn act_twist_columns<const C: usize>(&self, columns: &SMatrix<T, 6, C>) -> SMatrix<T, 6, C> {
+    pub fn act_twist_columns<const C: usize>(
+        &self,
+        columns: &SMatrix<T, 6, C>,
+    ) -> SMatrix<T, 6, C> {
         map_columns(columns, |column| self.act_twist(column))
     }
 
@@ -116,7 +136,10 @@ impl<T: Scalar> Pose<T> {
     }
 
     /// [`Pose::act_wrench`] on each column.
-    pub fn act_wrench_columns<const C: usize>(&self, columns: &SMatrix<T, 6, C>) -> SMatrix<T, 6, C> {
+    pub fn act_wrench_columns<const C: usize>(
+        &self,
+        columns: &SMatrix<T, 6, C>,
+    ) -> SMatrix<T, 6, C> {
         map_columns(columns, |column| self.act_wrench(column))
     }
 }

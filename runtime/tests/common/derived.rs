@@ -50,7 +50,9 @@ fn constant<T: Scalar, const D: usize>(numbers: &SVector<T, D>) -> SVector<Dual<
     numbers.map(Dual::constant)
 }
 
-fn slope<T: Scalar, const R: usize, const C: usize>(m: &SMatrix<Dual<T>, R, C>) -> SMatrix<T, R, C> {
+fn slope<T: Scalar, const R: usize, const C: usize>(
+    m: &SMatrix<Dual<T>, R, C>,
+) -> SMatrix<T, R, C> {
     m.map(|entry| entry.derivative)
 }
 
@@ -120,11 +122,19 @@ impl<D> Derived<D> {
     where
         D: Declared<N, K, S, C>,
     {
-        let moved = self.0.retract(&constant(q), &along(&SVector::zeros(), direction));
+        let moved = self
+            .0
+            .retract(&constant(q), &along(&SVector::zeros(), direction));
         slope(&function(&moved))
     }
 
-    fn twist_basis_slope<T: Scalar, const N: usize, const K: usize, const S: usize, const C: usize>(
+    fn twist_basis_slope<
+        T: Scalar,
+        const N: usize,
+        const K: usize,
+        const S: usize,
+        const C: usize,
+    >(
         &self,
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
@@ -134,11 +144,14 @@ impl<D> Derived<D> {
     {
         let v = self.0.speed_basis(q) * speeds;
         let rate = self.velocity_map_inverse(q) * v;
-        self.slope_along(q, &rate, |q| self.twist_map_child(q) * self.0.speed_basis(q))
+        self.slope_along(q, &rate, |q| {
+            self.twist_map_child(q) * self.0.speed_basis(q)
+        })
     }
 }
 
-impl<D, const N: usize, const K: usize, const S: usize, const C: usize> Joint<N, K, S, C> for Derived<D>
+impl<D, const N: usize, const K: usize, const S: usize, const C: usize> Joint<N, K, S, C>
+    for Derived<D>
 where
     D: Declared<N, K, S, C>,
 {
@@ -154,7 +167,11 @@ where
         velocity_map: Structure::General,
         velocity_map_gradient: Structure::General,
         gamma: Structure::General,
-        speed_basis: if C == 0 { Structure::Identity } else { Structure::General },
+        speed_basis: if C == 0 {
+            Structure::Identity
+        } else {
+            Structure::General
+        },
         speed_basis_gradient: Structure::General,
         retract_differential: Structure::General,
         bias_acceleration: Structure::General,
@@ -179,7 +196,9 @@ where
     }
 
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
-        self.0.pose(q).act_twist_inverse_columns(&self.0.twist_map(q))
+        self.0
+            .pose(q)
+            .act_twist_inverse_columns(&self.0.twist_map(q))
     }
 
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
@@ -263,7 +282,11 @@ where
         self.0.residual(q)
     }
 
-    fn bias_acceleration<T: Scalar>(&self, q: &SVector<T, N>, speeds: &SVector<T, S>) -> SVector<T, 6> {
+    fn bias_acceleration<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SVector<T, 6> {
         self.twist_basis_slope(q, speeds) * speeds
     }
 

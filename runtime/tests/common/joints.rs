@@ -97,7 +97,9 @@ fn orthonormalised<T: Scalar>(rotation: &Matrix3<T>) -> Matrix3<T> {
 
 impl Declared<9, 3, 3, 0> for Ball {
     const NAME: &'static str = "ball";
-    const COORDINATES: [&'static str; 9] = ["q11", "q12", "q13", "q21", "q22", "q23", "q31", "q32", "q33"];
+    const COORDINATES: [&'static str; 9] = [
+        "q11", "q12", "q13", "q21", "q22", "q23", "q31", "q32", "q33",
+    ];
     const FREEDOMS: [&'static str; 3] = ["e1", "e2", "e3"];
     const SPEEDS: [&'static str; 3] = ["e1", "e2", "e3"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Parent;
@@ -129,7 +131,10 @@ impl Declared<9, 3, 3, 0> for Ball {
     fn residual<T: Scalar>(&self, q: &SVector<T, 9>) -> T {
         let rotation = matrix_of(q);
         let error = rotation.transpose() * rotation - Matrix3::identity();
-        error.iter().fold(T::zero(), |sum, &entry| sum + entry * entry).sqrt()
+        error
+            .iter()
+            .fold(T::zero(), |sum, &entry| sum + entry * entry)
+            .sqrt()
     }
 }
 
@@ -173,7 +178,10 @@ fn plane_residual<T: Scalar>(q: &SVector<T, 6>) -> T {
         q[0] - q[4],
         q[1] + q[3],
     ];
-    error.iter().fold(T::zero(), |sum, &entry| sum + entry * entry).sqrt()
+    error
+        .iter()
+        .fold(T::zero(), |sum, &entry| sum + entry * entry)
+        .sqrt()
 }
 
 fn plane_project<T: Scalar>(q: &SVector<T, 6>) -> SVector<T, 6> {
@@ -211,7 +219,13 @@ macro_rules! on_se2 {
                 SMatrix::identity()
             }
             fn constraint<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, $constraints> {
-                SMatrix::from_fn(|i, j| if i == j + $speeds { T::one() } else { T::zero() })
+                SMatrix::from_fn(|i, j| {
+                    if i == j + $speeds {
+                        T::one()
+                    } else {
+                        T::zero()
+                    }
+                })
             }
             fn project<T: Scalar>(&self, q: &SVector<T, 6>) -> SVector<T, 6> {
                 plane_project(q)

@@ -23,7 +23,8 @@ pub fn mass(random: &mut Random) -> MassProperties {
     ));
     let inertia = rotation * principal * rotation.transpose();
     let symmetric = (inertia + inertia.transpose()) * 0.5;
-    MassProperties::new(1.5 + random.next(), random.vector(), symmetric).expect("physical by construction")
+    MassProperties::new(1.5 + random.next(), random.vector(), symmetric)
+        .expect("physical by construction")
 }
 
 pub fn body(
@@ -51,7 +52,13 @@ pub fn tree(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism>
     let bodies = joints.iter().enumerate().map(|(i, joint)| {
         let choice = ((random.next() + 1.0) * 0.5 * (i + 1) as f64) as usize;
         let parent = (i > 0).then(|| choice.min(i - 1));
-        let mut spec = body(&format!("body {i}"), parent, Arc::clone(joint), pose(random), mass(random));
+        let mut spec = body(
+            &format!("body {i}"),
+            parent,
+            Arc::clone(joint),
+            pose(random),
+            mass(random),
+        );
         spec.child_placement = pose(random);
         spec
     });

@@ -63,7 +63,9 @@ impl Expansion {
     fn add_velocity_maps(&mut self, body: &Body, q: &[f64]) {
         let (joint, own) = (body.joint(), body.ranges().freedoms.clone());
         let size = own.len();
-        set_block(&mut self.velocity_map, &own, &own, |out| joint.velocity_map(q, out));
+        set_block(&mut self.velocity_map, &own, &own, |out| {
+            joint.velocity_map(q, out)
+        });
         set_block(&mut self.velocity_map_inverse, &own, &own, |out| {
             joint.velocity_map_inverse(q, out);
         });
@@ -76,8 +78,12 @@ impl Expansion {
     fn add_constraint(&mut self, body: &Body, q: &[f64]) {
         let (joint, ranges) = (body.joint(), body.ranges());
         let (own, speeds) = (&ranges.freedoms, &ranges.speeds);
-        set_block(&mut self.constraint, own, &ranges.constraints, |out| joint.constraint(q, out));
-        set_block(&mut self.speed_basis, own, speeds, |out| joint.speed_basis(q, out));
+        set_block(&mut self.constraint, own, &ranges.constraints, |out| {
+            joint.constraint(q, out)
+        });
+        set_block(&mut self.speed_basis, own, speeds, |out| {
+            joint.speed_basis(q, out)
+        });
         let mut slices = vec![0.0; own.len() * own.len() * speeds.len()];
         joint.speed_basis_gradient(q, &mut slices);
         set_gradient_blocks(&mut self.speed_basis_gradient, own, speeds, &slices);
@@ -126,6 +132,8 @@ fn set_gradient_blocks(
 ) {
     let size = (rows.len() * columns.len()).max(1);
     for (k, slice) in rows.clone().zip(slices.chunks_exact(size)) {
-        set_block(&mut gradient[k], rows, columns, |out| out.copy_from_slice(slice));
+        set_block(&mut gradient[k], rows, columns, |out| {
+            out.copy_from_slice(slice)
+        });
     }
 }

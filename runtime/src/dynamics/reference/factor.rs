@@ -28,8 +28,7 @@ pub(super) fn factor(
     for row in 0..diagonal.len() {
         let root = factors.l_dirty()[(row, row)];
         let pivot = root * root;
-        // A comparison that NaN fails as well.
-        if !(pivot > limit(row)) {
+        if pivot.is_nan() || pivot <= limit(row) {
             return Err(singular(mechanism, space, row, pivot, limit(row)));
         }
     }
@@ -59,7 +58,9 @@ fn singular(
             Space::Freedoms => (&body.ranges().freedoms, body.joint().freedoms()),
             Space::Speeds => (&body.ranges().speeds, body.joint().speeds()),
         };
-        let name = range.contains(&row).then(|| names.get(row - range.start))??;
+        let name = range
+            .contains(&row)
+            .then(|| names.get(row - range.start))??;
         Some((body.joint_name(), *name))
     });
     let (joint, speed) = owner.unwrap_or(("", ""));

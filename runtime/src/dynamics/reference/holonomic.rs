@@ -83,7 +83,9 @@ impl Expansion {
 
     /// `(∂(Sᵀp)/∂ϕ)_im = Σ_l ∂S_li/∂ϕ_m p_l`, K×K: column m is ∂Sᵀ/∂ϕ_m p.
     fn momentum_map_gradient(&self, p: &DVector<f64>) -> DMatrix<f64> {
-        from_columns(p.len(), &self.velocity_map_gradient, |slope| slope.tr_mul(p))
+        from_columns(p.len(), &self.velocity_map_gradient, |slope| {
+            slope.tr_mul(p)
+        })
     }
 
     /// `Σ_k ( ∂S_km/∂ϕ_s − ∂S_ks/∂ϕ_m ) p_k`, row m, column s.
@@ -104,7 +106,9 @@ pub(super) fn combine(slices: &[DMatrix<f64>], weights: &DVector<f64>) -> DMatri
     slices
         .iter()
         .zip(weights)
-        .fold(DMatrix::zeros(rows, columns), |sum, (slice, &weight)| sum + slice * weight)
+        .fold(DMatrix::zeros(rows, columns), |sum, (slice, &weight)| {
+            sum + slice * weight
+        })
 }
 
 /// The matrix whose column m is `column(slices_m)`.

@@ -81,9 +81,9 @@ impl Dynamics for Reference {
         let speeds = vector("speeds", layout.speeds, speeds)?;
         let efforts = vector("efforts", layout.freedoms, efforts)?;
         check_size(WHOLE, "rates", layout.speeds, rates.len())?;
-        let solution = self
-            .expansion(q)?
-            .reduced_accelerations(&self.mechanism, &speeds, &efforts)?;
+        let solution =
+            self.expansion(q)?
+                .reduced_accelerations(&self.mechanism, &speeds, &efforts)?;
         rates.copy_from_slice(solution.as_slice());
         Ok(())
     }

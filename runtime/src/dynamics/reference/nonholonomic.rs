@@ -11,7 +11,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 impl Expansion {
     /// `M̄ = S̄ᵀ M S̄`, one row a speed.
     pub fn reduced_mass_matrix(&self) -> DMatrix<f64> {
-        self.speed_basis.tr_mul(&(&self.mass_matrix * &self.speed_basis))
+        self.speed_basis
+            .tr_mul(&(&self.mass_matrix * &self.speed_basis))
     }
 
     /// `S̄̇ = Σ_k ∂S̄/∂ϕ_k (S⁻¹S̄v̄)_k`, K×S.
@@ -23,7 +24,8 @@ impl Expansion {
     /// `C̄ = S̄ᵀ M Σ_i (S⁻¹S̄v̄)_i ∂S̄/∂ϕ_i + S̄ᵀ Ĉ S̄`, S×S, (34).
     pub fn reduced_coriolis_matrix(&self, speeds: &DVector<f64>) -> DMatrix<f64> {
         let coriolis = self.coriolis_matrix(&(&self.speed_basis * speeds));
-        let inner = &self.mass_matrix * self.speed_basis_rate(speeds) + coriolis * &self.speed_basis;
+        let inner =
+            &self.mass_matrix * self.speed_basis_rate(speeds) + coriolis * &self.speed_basis;
         self.speed_basis.tr_mul(&inner)
     }
 
@@ -67,7 +69,9 @@ impl Expansion {
         let basis = &self.speed_basis;
         let p = &self.mass_matrix * (basis * speeds);
         // (∂(S̄ᵀp)/∂ϕ)_im = Σ_l ∂S̄_li/∂ϕ_m p_l at fixed p.
-        let slope = from_columns(speeds.len(), &self.speed_basis_gradient, |slice| slice.tr_mul(&p));
+        let slope = from_columns(speeds.len(), &self.speed_basis_gradient, |slice| {
+            slice.tr_mul(&p)
+        });
         let turn = slope * &self.velocity_map_inverse * basis;
         basis.tr_mul(&(self.j22(&p) * basis)) + &turn - turn.transpose()
     }

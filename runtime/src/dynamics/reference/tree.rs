@@ -32,7 +32,10 @@ impl BodyMotion {
         inertia: &SpatialInertia<f64>,
     ) -> Vector6<f64> {
         let gravity = self.pose.rotation.tr_mul(gravity);
-        join(&inertia.first_moment.cross(&gravity), &(gravity * inertia.mass))
+        join(
+            &inertia.first_moment.cross(&gravity),
+            &(gravity * inertia.mass),
+        )
     }
 
     /// m gᵀ r of the centre of mass: minus the potential energy.
@@ -41,7 +44,8 @@ impl BodyMotion {
         gravity: &Vector3<f64>,
         inertia: &SpatialInertia<f64>,
     ) -> f64 {
-        let moment = self.pose.rotation * inertia.first_moment + self.pose.translation * inertia.mass;
+        let moment =
+            self.pose.rotation * inertia.first_moment + self.pose.translation * inertia.mass;
         gravity.dot(&moment)
     }
 }
@@ -103,5 +107,7 @@ fn next(body: &Body, parent: &BodyMotion, q: &[f64], velocity_map: &DMatrix<f64>
 
 /// Columns that belong to the joint itself: what is carried over from the parent is zero there.
 fn set_columns(matrix: &mut Matrix6xX<f64>, start: usize, columns: &Matrix6xX<f64>) {
-    matrix.columns_mut(start, columns.ncols()).copy_from(columns);
+    matrix
+        .columns_mut(start, columns.ncols())
+        .copy_from(columns);
 }

@@ -1,0 +1,9 @@
+//! Integration: order, conservation, agreement of the two forms, closed forms, sample times, refusals.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod motion;
+mod order;
+mod requests;
+mod support;

@@ -1,0 +1,80 @@
+//! Errors fall with the step as the tableaus promise.
+
+use crate::common::joints;
+use crate::common::random::Random;
+use crate::common::trees::tree;
+use crate::support::{distance, fixed_steps, mixed, options, run, start};
+use hamel::dynamics::Reference;
+use hamel::integrate::{Form, Method, integrate, no_observer};
+use std::sync::Arc;
+
+#[test]
+fn methods_have_their_order_in_both_forms() {
+    let mechanism = mixed();
+    let initial = start(&mechanism, 5);
+    let reference = run(
+        &mechanism,
+        &initial,
+        &options(Form::Lagrangian, Method::dormand_prince(1e-13), 0.2),
+    )
+    .state;
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        for (order, method) in [
+            (
+                4.0,
+                &(|step| Method::Rk4 { dt: step }) as &dyn Fn(f64) -> Method,
+            ),
+            (5.0, &fixed_steps),
+        ] {
+            let error = |steps: f64| {
+                let options = options(form, method(0.2 / steps), 0.2);
+                distance(&run(&mechanism, &initial, &options).state, &reference)
+            };
+            let measured = (error(10.0) / error(20.0)).log2();
+            // Where the leading coefficient happens to be small, the next order shows: one more at most.
+            assert!(
+                measured > order - 0.2 && measured < order + 1.2,
+                "{form:?}: order {measured} instead of {order}"
+            );
+        }
+    }
+}
+
+#[test]
+fn inputs_that_vary_in_time_keep_the_order() {
+    let mechanism = tree(&mut Random::new(2), &[joints::ball(), joints::revolute()]);
+    let initial = start(&mechanism, 3);
+    let mut dynamics = Reference::new(Arc::clone(&mechanism));
+    let mut end = |form: Form, method: Method| {
+        let mut inputs = |time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]| {
+            assert!(efforts.iter().all(|&effort| effort == 0.0));
+            for (effort, speed) in efforts.iter_mut().zip(speeds) {
+                *effort = (3.0 * time).cos() * q[1] - 0.5 * speed;
+            }
+        };
+        let options = options(form, method, 0.5);
+        integrate(
+            &mut dynamics,
+            &initial,
+            &options,
+            &mut inputs,
+            &mut no_observer,
+        )
+        .expect("integrates")
+        .state
+    };
+    let reference = end(Form::Lagrangian, Method::dormand_prince(1e-13));
+    let other = end(Form::Hamiltonian, Method::dormand_prince(1e-13));
+    assert!(
+        distance(&reference, &other) < 1e-11,
+        "a hundred steps of 1e-13"
+    );
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        let coarse = distance(&end(form, Method::Rk4 { dt: 0.05 }), &reference);
+        let fine = distance(&end(form, Method::Rk4 { dt: 0.025 }), &reference);
+        assert!(
+            ((coarse / fine).log2() - 4.0).abs() < 0.5,
+            "{coarse:e} {fine:e}"
+        );
+    }
+}

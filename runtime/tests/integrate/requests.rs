@@ -1,0 +1,303 @@
+//! What a caller asks for, gets, and is refused.
+
+use crate::common::joints;
+use crate::common::random::Random;
+use crate::common::trees::{GRAVITY, body, tree};
+use crate::support::{distance, fixed_steps, options, run, start};
+use hamel::dynamics::{Dynamics, DynamicsError, Reference};
+use hamel::integrate::{
+    Form, IntegrateError, Method, Options, State, StepFailure, integrate, no_inputs, no_observer,
+};
+use hamel::mechanism::Mechanism;
+use hamel::spatial::{MassProperties, Pose};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+#[test]
+fn sample_times_are_hit_exactly() {
+    let mechanism = tree(&mut Random::new(4), &[joints::revolute(), joints::ball()]);
+    let initial = State {
+        time: 0.25,
+        ..start(&mechanism, 8)
+    };
+    let samples = vec![0.25, 0.3, 0.3, 1.0 / 3.0, 0.7, 1.0];
+    for method in [Method::Rk4 { dt: 0.01 }, Method::dormand_prince(1e-10)] {
+        let options = Options {
+            form: Form::Lagrangian,
+            method,
+            t_end: 1.0,
+            samples: samples.clone(),
+        };
+        let mut dynamics = Reference::new(Arc::clone(&mechanism));
+        let (mut seen, mut last) = (Vec::new(), 0);
+        let mut observer = |step: &hamel::integrate::Step<'_>| {
+            seen.extend(step.sample.map(|_| step.time));
+            last = step.number;
+            ControlFlow::Continue(())
+        };
+        let solution = integrate(
+            &mut dynamics,
+            &initial,
+            &options,
+            &mut no_inputs,
+            &mut observer,
+        )
+        .expect("integrates");
+        let times: Vec<_> = solution.samples.iter().map(|state| state.time).collect();
+        assert_eq!(times, samples);
+        assert_eq!(seen, [0.25, 0.3, 1.0 / 3.0, 0.7, 1.0]);
+        assert_eq!(
+            (
+                solution.state.time,
+                solution.statistics.steps,
+                solution.stopped
+            ),
+            (1.0, last, false)
+        );
+        assert_eq!(&solution.state, &solution.samples[5]);
+        assert_eq!(solution.samples[0], initial);
+        // Landing on the way does not change the motion beyond the method's error.
+        let direct = run(
+            &mechanism,
+            &initial,
+            &Options {
+                samples: Vec::new(),
+                ..options
+            },
+        );
+        assert!(distance(&direct.state, &solution.state) < 1e-7);
+    }
+}
+
+#[test]
+fn work_is_counted() {
+    let mechanism = tree(&mut Random::new(4), &[joints::revolute()]);
+    let initial = start(&mechanism, 8);
+    let statistics = run(
+        &mechanism,
+        &initial,
+        &options(Form::Lagrangian, Method::Rk4 { dt: 0.01 }, 1.0),
+    )
+    .statistics;
+    assert_eq!(
+        (
+            statistics.steps,
+            statistics.rejected,
+            statistics.evaluations
+        ),
+        (100, 0, 1 + 4 * 100)
+    );
+    let statistics = run(
+        &mechanism,
+        &initial,
+        &options(Form::Lagrangian, fixed_steps(0.01), 1.0),
+    )
+    .statistics;
+    assert_eq!(
+        (
+            statistics.steps,
+            statistics.rejected,
+            statistics.evaluations
+        ),
+        (100, 0, 1 + 6 * 100)
+    );
+    let rough = Method::DormandPrince {
+        tolerance: 1e-10,
+        max_step: f64::INFINITY,
+        first_step: Some(1.0),
+    };
+    let statistics = run(&mechanism, &initial, &options(Form::Lagrangian, rough, 1.0)).statistics;
+    assert!(statistics.rejected > 0);
+    assert_eq!(
+        statistics.evaluations,
+        1 + 6 * (statistics.steps + statistics.rejected)
+    );
+}
+
+#[test]
+fn observer_ends_the_integration() {
+    let mechanism = tree(&mut Random::new(4), &[joints::revolute()]);
+    let initial = start(&mechanism, 8);
+    let mut dynamics = Reference::new(Arc::clone(&mechanism));
+    let options = options(Form::Hamiltonian, Method::Rk4 { dt: 0.01 }, 1.0);
+    let mut observer = |step: &hamel::integrate::Step<'_>| {
+        assert!(step.momenta.is_some());
+        if step.number == 7 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let solution = integrate(
+        &mut dynamics,
+        &initial,
+        &options,
+        &mut no_inputs,
+        &mut observer,
+    )
+    .expect("integrates");
+    assert!(solution.stopped);
+    assert_eq!(solution.statistics.steps, 7);
+    assert!((solution.state.time - 0.07).abs() < 1e-16);
+}
+
+fn refused(initial: &State, options: &Options) -> IntegrateError {
+    let mechanism = tree(&mut Random::new(4), &[joints::revolute()]);
+    let mut dynamics = Reference::new(mechanism);
+    integrate(
+        &mut dynamics,
+        initial,
+        options,
+        &mut no_inputs,
+        &mut no_observer,
+    )
+    .expect_err("refused")
+}
+
+#[test]
+fn bad_requests_are_named() {
+    let initial = State {
+        time: 0.0,
+        configuration: vec![0.0],
+        speeds: vec![1.0],
+    };
+    let with = |method: Method, t_end: f64, samples: &[f64]| {
+        let options = Options {
+            form: Form::Lagrangian,
+            method,
+            t_end,
+            samples: samples.to_vec(),
+        };
+        refused(&initial, &options).to_string()
+    };
+    let rk4 = Method::Rk4 { dt: 0.1 };
+    assert_eq!(
+        with(rk4, -1.0, &[]),
+        "t_end is -1 s: it lies before the initial time 0 s"
+    );
+    assert_eq!(with(rk4, f64::NAN, &[]), "t_end is NaN: it must be finite");
+    assert_eq!(
+        with(Method::Rk4 { dt: 0.0 }, 1.0, &[]),
+        "dt is 0: it must be positive and finite"
+    );
+    assert_eq!(
+        with(Method::dormand_prince(0.5), 1.0, &[]),
+        "tolerance is 0.5: it must be between 8.9e-16 and 0.1"
+    );
+    assert_eq!(
+        with(rk4, 1.0, &[0.5, 0.4]),
+        "sample 1 is at 0.4 s: sample times ascend, and this one must lie between 0.5 s and 1 s"
+    );
+    let lost = State {
+        speeds: vec![f64::NAN],
+        ..initial.clone()
+    };
+    assert_eq!(
+        refused(&lost, &options(Form::Lagrangian, rk4, 1.0)).to_string(),
+        "initial state: joint `body 0 joint`: speeds entry `turn` is NaN, not a finite number"
+    );
+    let short = State {
+        configuration: Vec::new(),
+        ..initial
+    };
+    assert_eq!(
+        refused(&short, &options(Form::Lagrangian, rk4, 1.0)).to_string(),
+        "initial state: configuration of the mechanism has 0 entries: it must have 1"
+    );
+}
+
+#[test]
+fn steps_beyond_half_a_turn_are_refused() {
+    let initial = State {
+        time: 0.0,
+        configuration: vec![0.0],
+        speeds: vec![40.0],
+    };
+    let error = refused(
+        &initial,
+        &options(Form::Lagrangian, Method::Rk4 { dt: 0.1 }, 1.0),
+    );
+    let IntegrateError::Step { cause, .. } = &error else {
+        panic!("another error: {error}");
+    };
+    assert!(matches!(&**cause, StepFailure::Turn { .. }), "{error}");
+}
+
+/// An effort that ends the motion in finite time, and one that is no number.
+#[test]
+fn singular_motion_underflows_with_a_cause() {
+    let mechanism = tree(&mut Random::new(4), &[joints::revolute()]);
+    let initial = State {
+        time: 0.0,
+        configuration: vec![0.0],
+        speeds: vec![1.0],
+    };
+    let mut dynamics = Reference::new(mechanism);
+    let options = options(Form::Lagrangian, Method::dormand_prince(1e-8), 1e3);
+    let mut blow_up = |_: f64, _: &[f64], speeds: &[f64], efforts: &mut [f64]| {
+        efforts[0] = 100.0 * speeds[0].powi(3);
+    };
+    let error = integrate(
+        &mut dynamics,
+        &initial,
+        &options,
+        &mut blow_up,
+        &mut no_observer,
+    )
+    .expect_err("blows up");
+    assert!(
+        matches!(error, IntegrateError::StepUnderflow { .. }),
+        "{error}"
+    );
+    assert!(error.to_string().contains("`body 0 joint`"), "{error}");
+    let mut wall = |time: f64, _: &[f64], _: &[f64], efforts: &mut [f64]| {
+        efforts[0] = if time > 0.5 { f64::NAN } else { 0.0 };
+    };
+    let error = integrate(
+        &mut dynamics,
+        &initial,
+        &options,
+        &mut wall,
+        &mut no_observer,
+    )
+    .expect_err("not a number");
+    let IntegrateError::StepUnderflow { time, cause, .. } = &error else {
+        panic!("another error: {error}");
+    };
+    assert!((time - 0.5).abs() < 1e-9);
+    assert!(matches!(&**cause, StepFailure::NotFinite { .. }));
+}
+
+#[test]
+fn singular_mass_is_an_error_of_the_initial_state() {
+    let ghost = body(
+        "ghost",
+        None,
+        joints::ball(),
+        Pose::identity(),
+        MassProperties::massless(),
+    );
+    let mechanism = Arc::new(Mechanism::new(GRAVITY, vec![ghost]).expect("valid"));
+    let initial = start(&mechanism, 1);
+    let mut dynamics = Reference::new(Arc::clone(&mechanism));
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        let options = options(form, Method::Rk4 { dt: 0.1 }, 1.0);
+        let error = integrate(
+            &mut dynamics,
+            &initial,
+            &options,
+            &mut no_inputs,
+            &mut no_observer,
+        )
+        .expect_err("singular");
+        let IntegrateError::AtState { time: 0.0, cause } = &error else {
+            panic!("another error: {error}");
+        };
+        let expected = matches!(
+            &**cause,
+            StepFailure::Dynamics(DynamicsError::SingularMass { .. })
+        );
+        assert!(expected, "{error}");
+    }
+    assert_eq!(dynamics.mechanism().bodies().len(), 1);
+}

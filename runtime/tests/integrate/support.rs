@@ -1,0 +1,70 @@
+//! What the tests of integration share.
+
+use crate::common::joints;
+use crate::common::random::Random;
+use crate::common::trees::{configuration, tree};
+use hamel::dynamics::Reference;
+use hamel::integrate::{Form, Method, Options, Solution, State, integrate, no_inputs, no_observer};
+use hamel::mechanism::Mechanism;
+use std::sync::Arc;
+
+pub fn options(form: Form, method: Method, t_end: f64) -> Options {
+    Options {
+        form,
+        method,
+        t_end,
+        samples: Vec::new(),
+    }
+}
+
+/// Dormand–Prince with steps of one size: no error is large enough to refuse one.
+pub fn fixed_steps(step: f64) -> Method {
+    Method::DormandPrince {
+        tolerance: 0.1,
+        max_step: step,
+        first_step: Some(step),
+    }
+}
+
+pub fn start(mechanism: &Mechanism, seed: u64) -> State {
+    let mut random = Random::new(seed);
+    State {
+        time: 0.0,
+        configuration: configuration(&mut random, mechanism),
+        speeds: random.vec(mechanism.layout().speeds),
+    }
+}
+
+/// Every joint type of the tests, two constraints, eleven speeds.
+pub fn mixed() -> Arc<Mechanism> {
+    let joints = [
+        joints::cart(),
+        joints::ball(),
+        joints::drift(),
+        joints::revolute(),
+        joints::planar(),
+    ];
+    tree(&mut Random::new(21), &joints)
+}
+
+pub fn run(mechanism: &Arc<Mechanism>, initial: &State, options: &Options) -> Solution {
+    let mut dynamics = Reference::new(Arc::clone(mechanism));
+    integrate(
+        &mut dynamics,
+        initial,
+        options,
+        &mut no_inputs,
+        &mut no_observer,
+    )
+    .expect("integrates")
+}
+
+/// Largest difference of configurations and speeds.
+pub fn distance(a: &State, b: &State) -> f64 {
+    let pairs = a
+        .configuration
+        .iter()
+        .zip(&b.configuration)
+        .chain(a.speeds.iter().zip(&b.speeds));
+    pairs.fold(0.0, |most, (x, y)| most.max((x - y).abs()))
+}

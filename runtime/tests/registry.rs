@@ -1,0 +1,131 @@
+//! The registry, and joints behind the object-safe trait.
+
+mod common;
+
+use common::joints;
+use hamel::erased::AnyJoint;
+use hamel::joint::{KERNEL_INTERFACE, assert_kernel_interface};
+use hamel::registry::{
+    DuplicateJoint, JointEntry, JointRegistry, ParameterError, ParameterInfo, check_parameters,
+};
+use std::sync::Arc;
+
+const _: () = assert_kernel_interface(KERNEL_INTERFACE);
+
+const PARAMETERS: [ParameterInfo; 1] = [ParameterInfo {
+    name: "lead",
+    unit: "m",
+    description: "advance of one turn",
+}];
+
+fn build(values: &[f64]) -> Result<Arc<dyn AnyJoint>, ParameterError> {
+    let [lead] = check_parameters("screw", &PARAMETERS, values)?;
+    if lead == 0.0 {
+        let (joint, parameter, requirement) = ("screw", "lead", "other than 0");
+        return Err(ParameterError::OutOfRange {
+            joint,
+            parameter,
+            value: lead,
+            requirement,
+        });
+    }
+    Ok(joints::revolute())
+}
+
+fn entry(name: &'static str) -> JointEntry {
+    JointEntry {
+        name,
+        summary: "a test entry",
+        parameters: &PARAMETERS,
+        build,
+    }
+}
+
+#[test]
+fn names_are_unique_and_sorted() {
+    let mut registry = JointRegistry::new();
+    registry
+        .extend([entry("screw"), entry("ball")])
+        .expect("two names");
+    assert_eq!(
+        registry.insert(entry("ball")),
+        Err(DuplicateJoint { name: "ball" })
+    );
+    assert_eq!(registry.names().collect::<Vec<_>>(), ["ball", "screw"]);
+    assert_eq!(registry.entries().count(), 2);
+    assert!(registry.get("helix").is_none());
+}
+
+#[test]
+fn parameters_are_checked() {
+    let build = entry("screw").build;
+    assert!(build(&[0.01]).is_ok());
+    let message = |values: &[f64]| build(values).expect_err("refused").to_string();
+    assert_eq!(
+        message(&[]),
+        "joint type `screw` takes 1 parameter(s), not 0"
+    );
+    assert_eq!(
+        message(&[f64::NAN]),
+        "parameter `lead` of joint type `screw` is NaN, not a finite number"
+    );
+    assert_eq!(
+        message(&[0.0]),
+        "parameter `lead` of joint type `screw` is 0: it must be other than 0"
+    );
+}
+
+/// γ and J22 are one matrix in two readings: Σ γ_k v_k p = −J22(p) v.
+#[test]
+fn erased_kernels_keep_their_meaning() {
+    for joint in [joints::ball(), joints::planar(), joints::planar_euclidean()] {
+        let layout = joint.layout();
+        let size = layout.freedoms;
+        let mut q = vec![0.0; layout.configuration];
+        joint.home(&mut q);
+        let mut moved = q.clone();
+        joint.retract(&q, &[0.4, -0.3, 0.9], &mut moved);
+        let (v, p) = ([0.3, -0.5, 0.2], [1.0, 0.7, -0.4]);
+        let (mut gamma, mut j22) = (vec![0.0; size * size], vec![0.0; size * size]);
+        joint.gamma(&moved, &v, &mut gamma);
+        joint.j22(&moved, &p, &mut j22);
+        for i in 0..size {
+            let sum: f64 = (0..size)
+                .map(|j| gamma[i + size * j] * p[j] + j22[i + size * j] * v[j])
+                .sum();
+            assert!(sum.abs() < 1e-14, "a dozen roundings");
+        }
+        let mut phi = vec![0.0; size];
+        joint.local(&q, &moved, &mut phi);
+        assert!((phi[0] - 0.4).abs() + (phi[1] + 0.3).abs() + (phi[2] - 0.9).abs() < 1e-14);
+        assert_eq!(joint.coordinates().len(), layout.configuration);
+        assert_eq!(
+            (joint.freedoms().len(), joint.speeds().len()),
+            (size, layout.speeds)
+        );
+    }
+}
+
+/// The ball of Example 1: S = Q, J22 = −p~ with velocity in parent axes.
+#[test]
+fn ball_joint_has_the_matrices_of_the_paper() {
+    let joint = joints::ball();
+    let mut q = [0.0; 9];
+    joint.retract(
+        &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        &[0.3, -0.8, 0.5],
+        &mut q,
+    );
+    let mut map = [0.0; 9];
+    joint.velocity_map(&q, &mut map);
+    for (n, entry) in map.iter().enumerate() {
+        // Column by column against row by row.
+        assert!((entry - q[3 * (n % 3) + n / 3]).abs() < 1e-15);
+    }
+    let mut j22 = [0.0; 9];
+    joint.j22(&q, &[1.0, 2.0, 3.0], &mut j22);
+    let expected = -hamel::spatial::hat(&nalgebra::Vector3::new(1.0, 2.0, 3.0));
+    for (found, expected) in j22.iter().zip(expected.iter()) {
+        assert!((found - expected).abs() < 1e-14);
+    }
+}
