@@ -10,8 +10,13 @@ use std::path::{Path, PathBuf};
 fn corpus() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/corpus/specs-bad");
     let entries = std::fs::read_dir(folder).expect("the corpus is part of the repository");
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("a readable folder").path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "joint"));
+    let mut files: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("a readable folder").path())
+        .collect();
+    files.retain(|path| {
+        path.extension()
+            .is_some_and(|extension| extension == "joint")
+    });
     files.sort();
     files
 }
@@ -35,8 +40,13 @@ fn messages_are_as_expected() {
         let expected = std::fs::read_to_string(&expected_path).unwrap_or_default();
         match message(&path) {
             Ok(found) if found == expected => {}
-            Ok(found) if update => std::fs::write(&expected_path, found).expect("a writable folder"),
-            Ok(found) => wrong.push(format!("{}:\n{found}\ninstead of\n{expected}", path.display())),
+            Ok(found) if update => {
+                std::fs::write(&expected_path, found).expect("a writable folder")
+            }
+            Ok(found) => wrong.push(format!(
+                "{}:\n{found}\ninstead of\n{expected}",
+                path.display()
+            )),
             Err(accepted) => wrong.push(accepted),
         }
     }
@@ -48,15 +58,25 @@ fn no_message_is_without_its_spec() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/corpus/specs-bad");
     for entry in std::fs::read_dir(folder).expect("the corpus is part of the repository") {
         let path = entry.expect("a readable folder").path();
-        assert!(path.with_extension("joint").exists(), "{} has no spec", path.display());
+        assert!(
+            path.with_extension("joint").exists(),
+            "{} has no spec",
+            path.display()
+        );
     }
 }
 
 /// Every code but that of the size of a file, which would be a large file.
 #[test]
 fn every_code_occurs() {
-    let messages: String = corpus().iter().filter_map(|path| message(path).ok()).collect();
-    let missing: BTreeSet<&str> =
-        code::ALL.iter().map(|(code, _)| *code).filter(|code| !messages.contains(&format!("[{code}]"))).collect();
+    let messages: String = corpus()
+        .iter()
+        .filter_map(|path| message(path).ok())
+        .collect();
+    let missing: BTreeSet<&str> = code::ALL
+        .iter()
+        .map(|(code, _)| *code)
+        .filter(|code| !messages.contains(&format!("[{code}]")))
+        .collect();
     assert_eq!(missing, BTreeSet::from([code::SIZE]));
 }

@@ -1,6 +1,7 @@
 //! The tree of a spec as it is written, with the bytes of the source that each part comes from.
 
 use crate::expr::Rational;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// A name and where it stands.
@@ -21,6 +22,18 @@ pub(super) struct File {
     pub partial: bool,
 }
 
+impl File {
+    /// All names that expressions of the file speak of.
+    pub fn used_names(&self) -> BTreeSet<&str> {
+        let mut names = BTreeSet::new();
+        self.statements
+            .iter()
+            .flat_map(Statement::nodes)
+            .for_each(|node| node.collect_names(&mut names));
+        names
+    }
+}
+
 /// `name: unit`.
 #[derive(Debug)]
 pub(super) struct Parameter {
@@ -34,6 +47,21 @@ pub(super) struct Parameter {
 pub(super) struct Statement {
     pub span: Range<usize>,
     pub kind: StatementKind,
+}
+
+impl Statement {
+    fn nodes(&self) -> Vec<&Node> {
+        match &self.kind {
+            StatementKind::Basis(basis) => basis
+                .elements
+                .iter()
+                .filter_map(|(_, value)| value.as_ref())
+                .collect(),
+            StatementKind::Let(_, value) => vec![value],
+            StatementKind::Assign(_, values) => values.iter().collect(),
+            _ => vec![],
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -96,6 +124,26 @@ impl Target {
 pub(super) struct Node {
     pub span: Range<usize>,
     pub kind: NodeKind,
+}
+
+impl Node {
+    fn collect_names<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
+        let mut all = |nodes: &'a [Node]| nodes.iter().for_each(|node| node.collect_names(names));
+        match &self.kind {
+            NodeKind::Number(_) => {}
+            NodeKind::Name(name) => _ = names.insert(name),
+            NodeKind::Call(_, arguments) => all(arguments),
+            NodeKind::Field(base, _) | NodeKind::Negative(base) => base.collect_names(names),
+            NodeKind::Index(base, indices) => {
+                all(indices);
+                base.collect_names(names);
+            }
+            NodeKind::Literal(rows) => rows.iter().for_each(|row| all(row)),
+            NodeKind::Sum(items) | NodeKind::Product(items) => {
+                items.iter().for_each(|(_, node)| node.collect_names(names))
+            }
+        }
+    }
 }
 
 /// Chains of one precedence are one node, so that the depth of the tree is that of the brackets.

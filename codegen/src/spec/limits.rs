@@ -14,11 +14,14 @@ pub(super) const LARGEST_MATRIX: usize = 12;
 /// Largest exponent of `pow`, up or down.
 pub(super) const LARGEST_POWER: u32 = 16;
 
+/// Most terms of an angle: sines and cosines of sums are expanded, and each term doubles them.
+pub(super) const LONGEST_ANGLE: usize = 6;
+
 const MOST_TERMS: usize = 5_000;
 const HIGHEST_DEGREE: u32 = 64;
 const LONGEST_COEFFICIENT: u64 = 1_024;
-const MOST_PARTS: usize = 20_000;
-const DEEPEST_FUNCTION: usize = 24;
+const MOST_PARTS: usize = 4_000;
+const DEEPEST_FUNCTION: usize = 12;
 
 /// What of the value is too large, if anything.
 pub(super) fn excess(value: &Value) -> Option<String> {
@@ -33,34 +36,48 @@ fn excess_of(expression: &Expr) -> Option<String> {
     for (monomial, coefficient) in expression.terms() {
         let digits = coefficient.numer().bits().max(coefficient.denom().bits());
         if digits > LONGEST_COEFFICIENT {
-            return Some(format!("a number of {digits} binary digits, at most {LONGEST_COEFFICIENT} are possible"));
+            return Some(format!(
+                "a number of {digits} binary digits, at most {LONGEST_COEFFICIENT} are possible"
+            ));
         }
         let degree = degree(monomial);
         if degree > HIGHEST_DEGREE {
-            return Some(format!("a term of degree {degree}, at most {HIGHEST_DEGREE} is possible"));
+            return Some(format!(
+                "a term of degree {degree}, at most {HIGHEST_DEGREE} is possible"
+            ));
         }
     }
     let mut parts = MOST_PARTS;
     match measure(expression, &mut parts, DEEPEST_FUNCTION) {
         true => None,
-        false => Some(format!("functions nested deeper than {DEEPEST_FUNCTION} levels or more than {MOST_PARTS} parts")),
+        false => Some(format!(
+            "functions nested deeper than {DEEPEST_FUNCTION} levels or more than {MOST_PARTS} parts"
+        )),
     }
 }
 
 fn degree(monomial: &Monomial) -> u32 {
-    monomial.factors().map(|(_, power)| power.unsigned_abs()).fold(0, u32::saturating_add)
+    monomial
+        .factors()
+        .map(|(_, power)| power.unsigned_abs())
+        .fold(0, u32::saturating_add)
 }
 
 /// Counts the parts of the expression, those inside functions included; false where there are too many, or too deep.
 fn measure(expression: &Expr, parts: &mut usize, depth: usize) -> bool {
-    let factors = expression.terms().flat_map(|(monomial, _)| monomial.factors());
+    let factors = expression
+        .terms()
+        .flat_map(|(monomial, _)| monomial.factors());
     for (atom, _) in factors {
         *parts = parts.saturating_sub(1);
         if *parts == 0 || depth == 0 {
             return false;
         }
         if let Atom::Apply(application) = atom
-            && !application.arguments.iter().all(|argument| measure(argument, parts, depth - 1))
+            && !application
+                .arguments
+                .iter()
+                .all(|argument| measure(argument, parts, depth - 1))
         {
             return false;
         }

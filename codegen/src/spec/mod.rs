@@ -1,7 +1,7 @@
 //! The spec language: text of a `.joint` file to a [`JointSpec`].
 //!
-//! Stages: [`scan`] bounds what may reach the tokenizer, [`tokens`] walks syn's token cursors with exact byte ranges,
-//! [`syntax`] builds the tree of [`ast`] and recovers at each `;`, [`evaluate`] turns expressions into symbols, [`declare`]
+//! Stages: `scan` bounds what may reach the tokenizer, `tokens` walks syn's token cursors with exact byte ranges,
+//! `syntax` builds the tree of `ast` and recovers at each `;`, `evaluate` turns expressions into symbols, `declare`
 //! assembles and checks the joint. All errors of a file come back together. The reference of the language is
 //! `joint-specs/README.md`.
 
@@ -15,6 +15,9 @@ mod scan;
 mod syntax;
 mod tokens;
 mod value;
+
+pub use evaluate::FUNCTIONS;
+pub use names::STATEMENTS;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::JointSpec;

@@ -5,18 +5,18 @@ use super::code;
 use crate::diagnostic::Diagnostic;
 use proc_macro2::{Ident, Span, TokenTree};
 
-/// What may begin a statement.
-pub(super) const STATEMENTS: &[&str] =
-    &["config", "basis", "local", "velocity", "speeds", "let", "Phi", "H", "X", "A", "S_bar"];
+/// Words that begin the statements of the language.
+pub const STATEMENTS: &[&str] = &[
+    "config", "basis", "local", "velocity", "speeds", "let", "Phi", "H", "X", "A", "S_bar",
+];
 
 /// Words that belong to the language.
-const WORDS: &[&str] = &["hamel", "joint", "of", "in", "child", "parent", "phi", "pi", "I", "O"];
-
-/// Joints whose type would carry the name of a type that generated code uses.
-const TYPES: &[&str] = &[
-    "clone", "copy", "debug", "default", "iterator", "joint", "none", "option", "pose", "result", "s_matrix", "s_vector", "scalar",
-    "send", "sized", "some", "string", "structure", "structures", "sync", "vec", "velocity_frame",
+const WORDS: &[&str] = &[
+    "hamel", "joint", "of", "in", "child", "parent", "phi", "pi", "I", "O",
 ];
+
+/// Most names that a suggestion lists.
+const MOST_SUGGESTIONS: usize = 3;
 
 /// How a name is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,13 +32,10 @@ pub(super) fn check(name: &Name, form: Form, functions: &[&str]) -> Option<Diagn
     form_error(name, form).or_else(|| reserved_error(name, functions))
 }
 
-/// Whether a joint may have the name; else why not.
-pub(super) fn check_joint(name: &Name, functions: &[&str]) -> Option<Diagnostic> {
-    let taken = || {
-        let message = format!("a joint cannot be called `{}`: generated code uses a type of that name", name.text);
-        Diagnostic::new(code::RESERVED, name.span.clone(), message).label("taken").help(format!("call it `{}_joint`, say", name.text))
-    };
-    check(name, Form::Snake, functions).or_else(|| TYPES.contains(&name.text.as_str()).then(taken))
+/// Whether a joint may have the name; else why not. No expression speaks of joints, so that only Rust's words are taken.
+pub(super) fn check_joint(name: &Name) -> Option<Diagnostic> {
+    let taken = || is_rust_keyword(&name.text).then(|| reserved(name, "a keyword of Rust"));
+    form_error(name, Form::Snake).or_else(taken)
 }
 
 fn form_error(name: &Name, form: Form) -> Option<Diagnostic> {
@@ -54,18 +51,25 @@ fn form_error(name: &Name, form: Form) -> Option<Diagnostic> {
         Form::Snake => format!("`{text}` is not in snake case"),
         Form::Any => format!("`{text}` is not a name of ASCII letters, digits and underscores"),
     };
-    let error = Diagnostic::new(code::FORM, name.span.clone(), message).label("this name is taken over into Rust");
+    let error = Diagnostic::new(code::FORM, name.span.clone(), message)
+        .label("this name is taken over into Rust");
     let suggestion = snake_case(text);
-    Some(match form == Form::Snake && !suggestion.is_empty() && suggestion != text {
-        true => error.help(format!("write `{suggestion}`")),
-        false => error.help("begin with an ASCII letter"),
-    })
+    Some(
+        match form == Form::Snake && !suggestion.is_empty() && suggestion != text {
+            true => error.help(format!("write `{suggestion}`")),
+            false => error.help("begin with an ASCII letter"),
+        },
+    )
 }
 
 fn snake_case(text: &str) -> String {
     let mut words = String::new();
-    for c in text.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '_') {
-        let boundary = c.is_ascii_uppercase() && words.ends_with(|p: char| p.is_ascii_lowercase() || p.is_ascii_digit());
+    for c in text
+        .chars()
+        .filter(|c| c.is_ascii_alphanumeric() || *c == '_')
+    {
+        let boundary = c.is_ascii_uppercase()
+            && words.ends_with(|p: char| p.is_ascii_lowercase() || p.is_ascii_digit());
         let repeated = c == '_' && (words.is_empty() || words.ends_with('_'));
         if boundary {
             words.push('_');
@@ -74,7 +78,10 @@ fn snake_case(text: &str) -> String {
             words.push(c.to_ascii_lowercase());
         }
     }
-    words.trim_end_matches('_').trim_start_matches(|c: char| c.is_ascii_digit()).to_owned()
+    words
+        .trim_end_matches('_')
+        .trim_start_matches(|c: char| c.is_ascii_digit())
+        .to_owned()
 }
 
 fn reserved_error(name: &Name, functions: &[&str]) -> Option<Diagnostic> {
@@ -88,8 +95,14 @@ fn reserved_error(name: &Name, functions: &[&str]) -> Option<Diagnostic> {
     } else {
         return None;
     };
-    let message = format!("`{text}` is {owner} and cannot be defined");
-    Some(Diagnostic::new(code::RESERVED, name.span.clone(), message).label("reserved").help("choose another name"))
+    Some(reserved(name, owner))
+}
+
+fn reserved(name: &Name, owner: &str) -> Diagnostic {
+    let message = format!("`{}` is {owner} and cannot be defined", name.text);
+    Diagnostic::new(code::RESERVED, name.span.clone(), message)
+        .label("reserved")
+        .help("choose another name")
 }
 
 /// Keywords of all editions, reserved ones included; of a name whose form was checked.
@@ -98,15 +111,34 @@ fn is_rust_keyword(text: &str) -> bool {
     text == "gen" || syn::parse2::<Ident>(TokenTree::from(ident).into()).is_err()
 }
 
-/// The most similar candidate, if any is similar enough to be meant.
-pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let lower = name.to_ascii_lowercase();
-    let likeness = |candidate: &str| strsim::damerau_levenshtein(&lower, &candidate.to_ascii_lowercase());
-    let close = |distance: usize, candidate: &str| distance <= 1.max(candidate.len() / 3) && distance < candidate.len();
-    candidates
+/// Advice that names the known names most similar to an unknown one, if any is similar enough to be meant.
+pub(super) fn suggestion<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<String> {
+    let distance =
+        |candidate: &str| strsim::damerau_levenshtein(&lookalike(name), &lookalike(candidate));
+    let near = |distance: usize, candidate: &str| {
+        distance <= 1.max(candidate.len() / 3) && distance < candidate.len()
+    };
+    let mut close: Vec<(usize, &str)> = candidates
         .into_iter()
-        .map(|candidate| (likeness(candidate), candidate))
-        .filter(|(distance, candidate)| close(*distance, candidate))
-        .min()
-        .map(|(_, candidate)| candidate)
+        .map(|candidate| (distance(candidate), candidate))
+        .filter(|(distance, candidate)| near(*distance, candidate))
+        .collect();
+    close.sort_unstable();
+    let best = close.first()?.0;
+    let names = close
+        .iter()
+        .take_while(|(distance, _)| *distance == best)
+        .take(MOST_SUGGESTIONS);
+    let names: Vec<String> = names
+        .map(|(_, candidate)| format!("`{candidate}`"))
+        .collect();
+    Some(format!("did you mean {}?", names.join(" or ")))
+}
+
+/// Case and the digit zero are easily mistaken.
+fn lookalike(name: &str) -> String {
+    name.to_ascii_lowercase().replace('0', "o")
 }

@@ -16,11 +16,18 @@ const GREEK: &str = "Φϕφπ\u{304}";
 /// Whether the text can be tokenized; else the reason is among the errors.
 pub(super) fn check(source: &str, errors: &mut Vec<Diagnostic>) -> bool {
     if source.len() > LARGEST_SOURCE {
-        let message = format!("a spec has at most {LARGEST_SOURCE} bytes, this one has {}", source.len());
+        let message = format!(
+            "a spec has at most {LARGEST_SOURCE} bytes, this one has {}",
+            source.len()
+        );
         errors.push(Diagnostic::new(code::SIZE, 0..0, message));
         return false;
     }
-    let mut scanner = Scanner { source, at: 0, open: vec![] };
+    let mut scanner = Scanner {
+        source,
+        at: 0,
+        open: vec![],
+    };
     match scanner.run() {
         Ok(()) => true,
         Err(error) => {
@@ -44,7 +51,9 @@ impl Scanner<'_> {
         while let Some(character) = self.rest().chars().next() {
             let here = self.at..self.at + character.len_utf8();
             match character {
-                '/' if self.rest().starts_with("//") => self.at += self.rest().find('\n').unwrap_or(self.rest().len()),
+                '/' if self.rest().starts_with("//") => {
+                    self.at += self.rest().find('\n').unwrap_or(self.rest().len())
+                }
                 '/' if self.rest().starts_with("/*") => self.block_comment()?,
                 _ => {
                     self.at = here.end;
@@ -55,8 +64,12 @@ impl Scanner<'_> {
         match self.open.pop() {
             None => Ok(()),
             Some((bracket, at)) => Err(Box::new(
-                Diagnostic::new(code::BRACKETS, at..at + 1, format!("`{bracket}` is never closed"))
-                    .label(format!("no `{}` for this one", partner(bracket))),
+                Diagnostic::new(
+                    code::BRACKETS,
+                    at..at + 1,
+                    format!("`{bracket}` is never closed"),
+                )
+                .label(format!("no `{}` for this one", partner(bracket))),
             )),
         }
     }
@@ -70,7 +83,12 @@ impl Scanner<'_> {
             '(' | '[' | '{' => self.opened(character, here),
             ')' | ']' | '}' => self.closed(character, here),
             ' ' | '\t' | '\r' | '\n' => Ok(()),
-            _ if character.is_ascii_alphanumeric() || PUNCTUATION.contains(character) || GREEK.contains(character) => Ok(()),
+            _ if character.is_ascii_alphanumeric()
+                || PUNCTUATION.contains(character)
+                || GREEK.contains(character) =>
+            {
+                Ok(())
+            }
             _ => Err(Box::new(unreadable(character, here))),
         }
     }
@@ -80,9 +98,13 @@ impl Scanner<'_> {
         match self.open.len() > DEEPEST {
             false => Ok(()),
             true => Err(Box::new(
-                Diagnostic::new(code::BRACKETS, here, format!("brackets nest deeper than {DEEPEST}"))
-                    .label("one too many")
-                    .help("name a part of the expression with `let`"),
+                Diagnostic::new(
+                    code::BRACKETS,
+                    here,
+                    format!("brackets nest deeper than {DEEPEST}"),
+                )
+                .label("one too many")
+                .help("name a part of the expression with `let`"),
             )),
         }
     }
@@ -91,12 +113,20 @@ impl Scanner<'_> {
         match self.open.pop() {
             Some((opened, _)) if partner(opened) == bracket => Ok(()),
             Some((opened, at)) => Err(Box::new(
-                Diagnostic::new(code::BRACKETS, here, format!("`{bracket}` does not close `{opened}`"))
-                    .label(format!("`{}` is expected before this", partner(opened)))
-                    .note(format!("`{opened}` stands in line {}", 1 + self.source[..at].matches('\n').count())),
+                Diagnostic::new(
+                    code::BRACKETS,
+                    here,
+                    format!("`{bracket}` does not close `{opened}`"),
+                )
+                .label(format!("`{}` is expected before this", partner(opened)))
+                .note(format!(
+                    "`{opened}` stands in line {}",
+                    1 + self.source[..at].matches('\n').count()
+                )),
             )),
             None => Err(Box::new(
-                Diagnostic::new(code::BRACKETS, here, format!("`{bracket}` closes nothing")).label("no bracket is open here"),
+                Diagnostic::new(code::BRACKETS, here, format!("`{bracket}` closes nothing"))
+                    .label("no bracket is open here"),
             )),
         }
     }
@@ -107,11 +137,23 @@ impl Scanner<'_> {
         let mut depth = 0;
         loop {
             let rest = self.rest();
-            let Some(next) = [rest.find("/*"), rest.find("*/")].into_iter().flatten().min() else {
-                let error = Diagnostic::new(code::BRACKETS, start..start + 2, "the comment is never closed");
+            let Some(next) = [rest.find("/*"), rest.find("*/")]
+                .into_iter()
+                .flatten()
+                .min()
+            else {
+                let error = Diagnostic::new(
+                    code::BRACKETS,
+                    start..start + 2,
+                    "the comment is never closed",
+                );
                 return Err(Box::new(error.label("no `*/` for this one")));
             };
-            depth += if rest[next..].starts_with("/*") { 1 } else { -1 };
+            depth += if rest[next..].starts_with("/*") {
+                1
+            } else {
+                -1
+            };
             self.at += next + 2;
             if depth == 0 {
                 return Ok(());
@@ -129,7 +171,11 @@ fn partner(bracket: char) -> char {
 }
 
 fn unreadable(character: char, here: Range<usize>) -> Diagnostic {
-    let error = Diagnostic::new(code::CHARACTER, here, format!("{character:?} is not a character of the language"));
+    let error = Diagnostic::new(
+        code::CHARACTER,
+        here,
+        format!("{character:?} is not a character of the language"),
+    );
     let error = error.label("outside a comment");
     match character {
         '"' | '\'' => error.help("the language has no texts; names stand without quotes"),

@@ -7,6 +7,9 @@ use proc_macro2::{Delimiter, Literal};
 use std::ops::Range;
 use syn::buffer::Cursor;
 
+/// Most characters of a token that a message shows.
+const LONGEST_SHOWN: usize = 40;
+
 /// The tokens between two brackets, or of a whole file.
 #[derive(Clone)]
 pub(super) struct Tokens<'a> {
@@ -22,7 +25,12 @@ impl<'a> Tokens<'a> {
     /// All tokens of a file.
     pub fn new(source: &'a str, cursor: Cursor<'a>) -> Self {
         let end = source.len()..source.len();
-        Self { source, cursor, previous: 0, end }
+        Self {
+            source,
+            cursor,
+            previous: 0,
+            end,
+        }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -44,17 +52,21 @@ impl<'a> Tokens<'a> {
     pub fn found(&self) -> String {
         match self.span() {
             span if span.is_empty() => "the end of the file".into(),
-            span => format!("`{}`", &self.source[span]),
+            span => format!("`{}`", shortened(&self.source[span])),
         }
     }
 
     /// Whether the next token is the first of its line.
     pub fn starts_line(&self) -> bool {
-        self.source[self.previous..self.span().start].contains('\n')
+        self.source
+            .get(self.previous..self.span().start)
+            .is_some_and(|between| between.contains('\n'))
     }
 
     pub fn peek(&self, character: char) -> bool {
-        self.cursor.punct().is_some_and(|(punct, _)| punct.as_char() == character)
+        self.cursor
+            .punct()
+            .is_some_and(|(punct, _)| punct.as_char() == character)
     }
 
     pub fn peek_group(&self, delimiter: Delimiter) -> bool {
@@ -64,12 +76,18 @@ impl<'a> Tokens<'a> {
     /// The next token as a name, without taking it.
     pub fn peek_name(&self) -> Option<Name> {
         let (ident, _) = self.cursor.ident()?;
-        Some(Name { text: ascii_spelling(&ident.to_string()), span: ident.span().byte_range() })
+        Some(Name {
+            text: ascii_spelling(&ident.to_string()),
+            span: ident.span().byte_range(),
+        })
     }
 
     pub fn name(&mut self) -> Option<Name> {
         let (ident, rest) = self.cursor.ident()?;
-        let name = Name { text: ascii_spelling(&ident.to_string()), span: ident.span().byte_range() };
+        let name = Name {
+            text: ascii_spelling(&ident.to_string()),
+            span: ident.span().byte_range(),
+        };
         self.advance(rest, name.span.end);
         Some(name)
     }
@@ -131,7 +149,9 @@ impl<'a> Tokens<'a> {
 
     /// Skips one token or group; false at the end.
     pub fn skip(&mut self) -> bool {
-        let Some((tree, rest)) = self.cursor.token_tree() else { return false };
+        let Some((tree, rest)) = self.cursor.token_tree() else {
+            return false;
+        };
         self.advance(rest, tree.span().byte_range().end);
         true
     }
@@ -139,12 +159,23 @@ impl<'a> Tokens<'a> {
     /// The error that something else stands here.
     pub fn expected(&self, what: &str) -> Box<Diagnostic> {
         let message = format!("expected {what}, found {}", self.found());
-        Box::new(Diagnostic::new(code::EXPECTED, self.span(), message).label(format!("expected {what}")))
+        Box::new(
+            Diagnostic::new(code::EXPECTED, self.span(), message).label(format!("expected {what}")),
+        )
     }
 
     fn advance(&mut self, rest: Cursor<'a>, end: usize) {
         self.cursor = rest;
         self.previous = end;
+    }
+}
+
+/// The first line of a token, and not too much of it.
+fn shortened(text: &str) -> String {
+    let line = text.lines().next().unwrap_or_default();
+    match line.char_indices().nth(LONGEST_SHOWN) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line.to_owned(),
     }
 }
 
@@ -163,10 +194,16 @@ fn ascii_spelling(name: &str) -> String {
 /// The text of a doc comment without its marks.
 fn doc_lines(comment: &str) -> Vec<String> {
     let unindented = |line: &str| line.strip_prefix(' ').unwrap_or(line).trim_end().to_owned();
-    if let Some(line) = comment.strip_prefix("///").or_else(|| comment.strip_prefix("//!")) {
+    if let Some(line) = comment
+        .strip_prefix("///")
+        .or_else(|| comment.strip_prefix("//!"))
+    {
         return vec![unindented(line)];
     }
-    let inner = comment.get(3..comment.len().saturating_sub(2)).unwrap_or_default().trim();
+    let inner = comment
+        .get(3..comment.len().saturating_sub(2))
+        .unwrap_or_default()
+        .trim();
     let unmarked = |line: &str| unindented(line.trim_start().trim_start_matches('*'));
     inner.lines().map(unmarked).collect()
 }

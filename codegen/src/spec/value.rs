@@ -37,12 +37,18 @@ impl Value {
     /// What it is, for error messages.
     pub fn describe(&self) -> String {
         match self {
-            Self::Scalar(_) => "a scalar".into(),
+            Self::Scalar(entry) => match entry.as_rational() {
+                Some(number) => format!("the number {number}"),
+                None => "a scalar".into(),
+            },
             Self::List(entries) => format!("a list of {}", entries.len()),
             Self::Matrix(matrix) => format!("a {}×{} matrix", matrix.rows(), matrix.columns()),
             Self::Pose(_) => "a pose".into(),
             Self::Element(kind, _) => format!("an element of {}", kind.name()),
-            Self::Tangent(kind, _) => format!("an element of {}", kind.algebra_name().unwrap_or_else(|| kind.name())),
+            Self::Tangent(kind, _) => format!(
+                "an element of {}",
+                kind.algebra_name().unwrap_or_else(|| kind.name())
+            ),
         }
     }
 
@@ -67,7 +73,9 @@ impl Value {
     /// As a matrix: matrices, lists as rows, elements of SO2 and SO3; not scalars.
     pub fn as_matrix(&self) -> Option<Matrix> {
         match self {
-            Self::Matrix(matrix) | Self::Element(Kind::So2 | Kind::So3, matrix) => Some(matrix.clone()),
+            Self::Matrix(matrix) | Self::Element(Kind::So2 | Kind::So3, matrix) => {
+                Some(matrix.clone())
+            }
             Self::List(entries) => Some(Matrix::column_vector(entries.clone()).transpose()),
             _ => None,
         }
@@ -110,7 +118,10 @@ impl Value {
                 rotation: matrix.block(0, 0, 3, 3),
                 translation: matrix.block(0, 3, 3, 1),
             }),
-            _ => Some(PoseExpr { rotation: self.as_rotation()?, translation: Matrix::zeros(3, 1) }),
+            _ => Some(PoseExpr {
+                rotation: self.as_rotation()?,
+                translation: Matrix::zeros(3, 1),
+            }),
         }
     }
 

@@ -13,45 +13,76 @@ const MOST_FACTORS: usize = 6;
 const MOST_SCALARS: usize = 24;
 
 /// The manifold, if it is declared and known.
-pub(super) fn manifold(file: &File, statements: &Once<'_>, errors: &mut Vec<Diagnostic>) -> Option<Declared<Manifold>> {
+pub(super) fn manifold(
+    file: &File,
+    statements: &Once<'_>,
+    errors: &mut Vec<Diagnostic>,
+) -> Option<Declared<Manifold>> {
     let Some(config) = statements.config else {
         if !file.partial {
             let message = format!("joint `{}` declares no configuration", file.name.text);
-            let error = Diagnostic::new(code::MISSING, file.name.span.clone(), message).label("config is missing");
+            let error = Diagnostic::new(code::MISSING, file.name.span.clone(), message)
+                .label("config is missing");
             errors.push(error.help("add `config Q: SO3;`, or another manifold"));
         }
         return None;
     };
-    let kinds: Vec<Option<(String, Kind)>> = config.value.iter().map(|factor| kind(factor, errors)).collect();
+    let kinds: Vec<Option<(String, Kind)>> = config
+        .value
+        .iter()
+        .map(|factor| kind(factor, errors))
+        .collect();
     let factors: Vec<(String, Kind)> = kinds.into_iter().collect::<Option<_>>()?;
-    let refuse = |message: String| Diagnostic::new(code::FREEDOMS, config.span.clone(), message).label("too large");
+    let refuse = |message: String| {
+        Diagnostic::new(code::FREEDOMS, config.span.clone(), message).label("too large")
+    };
     if factors.len() > MOST_FACTORS {
-        errors.push(refuse(format!("{} factors, at most {MOST_FACTORS} are possible", factors.len())));
+        errors.push(refuse(format!(
+            "{} factors, at most {MOST_FACTORS} are possible",
+            factors.len()
+        )));
         return None;
     }
-    let scalars: usize = factors.iter().map(|(name, kind)| Factor::new(name, *kind, Role::Coordinate, 0, true).coordinates.len()).sum();
+    let scalars: usize = factors
+        .iter()
+        .map(|(name, kind)| {
+            Factor::new(name, *kind, Role::Coordinate, 0, true)
+                .coordinates
+                .len()
+        })
+        .sum();
     if scalars > MOST_SCALARS {
-        errors.push(refuse(format!("a configuration of {scalars} scalars, at most {MOST_SCALARS} are possible")));
+        errors.push(refuse(format!(
+            "a configuration of {scalars} scalars, at most {MOST_SCALARS} are possible"
+        )));
         return None;
     }
     let manifold = Manifold::new(&factors).ok();
     let value = manifold.or_else(|| {
-        errors.push(refuse("the relations of this configuration have no normal form".into()));
+        errors.push(refuse(
+            "the relations of this configuration have no normal form".into(),
+        ));
         None
     })?;
-    Some(Declared { value, span: config.span.clone() })
+    Some(Declared {
+        value,
+        span: config.span.clone(),
+    })
 }
 
 fn kind((name, manifold): &(Name, Name), errors: &mut Vec<Diagnostic>) -> Option<(String, Kind)> {
     let kind = Kind::parse(&manifold.text);
     if kind.is_none() {
         let message = format!("`{}` is not a known manifold", manifold.text);
-        let error = Diagnostic::new(code::MANIFOLD, manifold.span.clone(), message).label("not known");
+        let error =
+            Diagnostic::new(code::MANIFOLD, manifold.span.clone(), message).label("not known");
         let known = Kind::names();
-        errors.push(match names::nearest(&manifold.text, known.iter().map(String::as_str)) {
-            Some(near) => error.help(format!("did you mean `{near}`?")),
-            None => error.help(format!("known are {}", known.join(", "))),
-        });
+        errors.push(
+            match names::suggestion(&manifold.text, known.iter().map(String::as_str)) {
+                Some(advice) => error.help(advice),
+                None => error.help(format!("known are {}", known.join(", "))),
+            },
+        );
     }
     Some((name.text.clone(), kind?))
 }

@@ -6,7 +6,7 @@ use super::super::names::{self, Form};
 use super::super::value::Value;
 use super::super::{code, evaluate};
 use super::Context;
-use super::once::At;
+use super::once::{At, Once};
 use crate::diagnostic::Diagnostic;
 use crate::matrix::Matrix;
 use crate::model::{Declared, PoseExpr};
@@ -19,19 +19,61 @@ pub(super) struct Matrices {
     pub speed_names: Option<Declared<Vec<String>>>,
 }
 
-/// Evaluates all of them, for a joint of `k` freedoms.
-pub(super) fn matrices(context: &Context<'_>, k: usize, evaluator: &mut Evaluator<'_>) -> Matrices {
-    let mut read = |target| context.statements.target(target).and_then(|statement| matrix(target, statement, k, evaluator));
-    let (twist_map, constraint, speed_basis) = (read(Target::TwistMap), read(Target::Constraint), read(Target::SpeedBasis));
-    check_pair(context, k, &constraint, &speed_basis, evaluator);
-    let speed_names = context.statements.speeds.map(|speeds| speed_names(context, speeds, &speed_basis, evaluator));
-    Matrices { twist_map, constraint, speed_basis, speed_names }
+/// Evaluates them where the freedoms are not known, for the errors in them.
+pub(super) fn evaluate_only(statements: &Once<'_>, evaluator: &mut Evaluator<'_>) {
+    for target in [Target::TwistMap, Target::Constraint, Target::SpeedBasis] {
+        if let Some(statement) = statements.target(target) {
+            value(target, statement, evaluator);
+        }
+    }
+}
+
+/// Evaluates all of them, for a joint of these freedoms.
+pub(super) fn matrices(
+    context: &Context<'_>,
+    freedoms: &[&str],
+    evaluator: &mut Evaluator<'_>,
+) -> Matrices {
+    let mut read = |target| {
+        context
+            .statements
+            .target(target)
+            .and_then(|statement| matrix(target, statement, freedoms, evaluator))
+    };
+    let (twist_map, constraint, speed_basis) = (
+        read(Target::TwistMap),
+        read(Target::Constraint),
+        read(Target::SpeedBasis),
+    );
+    check_pair(
+        context,
+        freedoms.len(),
+        &constraint,
+        &speed_basis,
+        evaluator,
+    );
+    let speed_names = context
+        .statements
+        .speeds
+        .map(|speeds| speed_names(context, speeds, &speed_basis, evaluator));
+    Matrices {
+        twist_map,
+        constraint,
+        speed_basis,
+        speed_names,
+    }
 }
 
 /// The only value of a statement other than Phi.
-fn value(target: Target, statement: At<'_, [Node]>, evaluator: &mut Evaluator<'_>) -> Option<Value> {
+fn value(
+    target: Target,
+    statement: At<'_, [Node]>,
+    evaluator: &mut Evaluator<'_>,
+) -> Option<Value> {
     let node = statement.value.first()?;
-    evaluator.bounded(target.name(), statement.span, |evaluator| evaluator.value(node))
+    evaluator.bounded(target.name(), statement.span, |evaluator| {
+        evaluator.value(node)
+    })
 }
 
 /// H: a pose, a rotation alone, or a homogeneous 4×4 matrix.
@@ -40,39 +82,76 @@ pub(super) fn pose(statement: At<'_, [Node]>, evaluator: &mut Evaluator<'_>) -> 
     if let Some(pose) = value.as_pose() {
         return Some(pose);
     }
-    let span = statement.value.first().map_or(statement.span, |node| &node.span).clone();
+    let span = statement
+        .value
+        .first()
+        .map_or(statement.span, |node| &node.span)
+        .clone();
     let Some(matrix) = value.as_shape(4, 4) else {
-        let error = Diagnostic::new(code::DECLARED_SHAPE, span, format!("H is a pose, found {}", value.describe())).label("not a pose");
-        evaluator.report(error.help("write pose(R, p), or a product of rot_z(q), trans(p) and their like"));
+        let error = Diagnostic::new(
+            code::DECLARED_SHAPE,
+            span,
+            format!("H is a pose, found {}", value.describe()),
+        )
+        .label("not a pose");
+        evaluator.report(
+            error.help("write pose(R, p), or a product of rot_z(q), trans(p) and their like"),
+        );
         return None;
     };
     let last = matrix.block(3, 0, 1, 4);
     if last != Matrix::integers(&[[0, 0, 0, 1]]) {
-        let error = Diagnostic::new(code::POSE, span, "the last row of a pose is [0, 0, 0, 1]").label("not a pose");
+        let error = Diagnostic::new(code::POSE, span, "the last row of a pose is [0, 0, 0, 1]")
+            .label("not a pose");
         evaluator.report(error.note(format!("it is {last}")));
         return None;
     }
-    Some(PoseExpr { rotation: matrix.block(0, 0, 3, 3), translation: matrix.block(0, 3, 3, 1) })
+    Some(PoseExpr {
+        rotation: matrix.block(0, 0, 3, 3),
+        translation: matrix.block(0, 3, 3, 1),
+    })
 }
 
-fn matrix(target: Target, statement: At<'_, [Node]>, k: usize, evaluator: &mut Evaluator<'_>) -> Option<Declared<Matrix>> {
+fn matrix(
+    target: Target,
+    statement: At<'_, [Node]>,
+    freedoms: &[&str],
+    evaluator: &mut Evaluator<'_>,
+) -> Option<Declared<Matrix>> {
+    let k = freedoms.len();
     let value = value(target, statement, evaluator)?;
     let matrix = match (target, &value) {
         (Target::TwistMap, _) => value.as_shape(6, k),
         (_, Value::List(entries)) if entries.len() == k => value.as_shape(k, 1),
-        _ => value.as_matrix().filter(|matrix| matrix.rows() == k && (1..k).contains(&matrix.columns())),
+        _ => value
+            .as_matrix()
+            .filter(|matrix| matrix.rows() == k && (1..k).contains(&matrix.columns())),
     };
     if matrix.is_none() {
-        let span = statement.value.first().map_or(statement.span, |node| &node.span).clone();
+        let span = statement
+            .value
+            .first()
+            .map_or(statement.span, |node| &node.span)
+            .clone();
         let shape = match target {
-            Target::TwistMap => format!("6×{k}: a twist for each of the {k} freedoms"),
-            Target::Constraint => format!("{k} rows, one for each freedom, and fewer columns, one for each constraint"),
+            Target::TwistMap => format!("the shape 6×{k}, a twist for each freedom"),
+            Target::Constraint => format!(
+                "{k} rows, one for each freedom, and fewer columns, one for each constraint"
+            ),
             _ => format!("{k} rows, one for each freedom, and fewer columns, one for each speed"),
         };
-        let message = format!("{} is {}, and must have the shape {shape}", target.name(), value.describe());
-        evaluator.report(Diagnostic::new(code::DECLARED_SHAPE, span, message).label("wrong shape"));
+        let message = format!(
+            "{} is {}; it must have {shape}",
+            target.name(),
+            value.describe()
+        );
+        let error = Diagnostic::new(code::DECLARED_SHAPE, span, message).label("wrong shape");
+        evaluator.report(error.note(format!("the freedoms are {}", freedoms.join(", "))));
     }
-    Some(Declared { value: matrix?, span: statement.span.clone() })
+    Some(Declared {
+        value: matrix?,
+        span: statement.span.clone(),
+    })
 }
 
 /// A and S_bar stand together, and their columns add up to the freedoms.
@@ -85,22 +164,35 @@ fn check_pair(
 ) {
     let of = |target| context.statements.target(target);
     let alone = match (of(Target::Constraint), of(Target::SpeedBasis)) {
-        (Some(here), None) => Some((here, "A", "S_bar", "`S_bar = …;`, a basis of the velocities that Aᵀ v = 0 allows")),
-        (None, Some(here)) => Some((here, "S_bar", "A", "`A = …;`, whose columns are the velocities that S_bar leaves out")),
+        (Some(here), None) => Some((
+            here,
+            "A",
+            "S_bar",
+            "`S_bar = …;`, a basis of the velocities that Aᵀ v = 0 allows",
+        )),
+        (None, Some(here)) => Some((
+            here,
+            "S_bar",
+            "A",
+            "`A = …;`, whose columns are the velocities that S_bar leaves out",
+        )),
         _ => None,
     };
     if let Some((here, present, absent, advice)) = alone.filter(|_| !context.file.partial) {
         let message = format!("{present} is declared and {absent} is not");
-        let error = Diagnostic::new(code::CONSTRAINT, here.span.clone(), message).label(format!("needs {absent} beside it"));
+        let error = Diagnostic::new(code::CONSTRAINT, here.span.clone(), message)
+            .label(format!("needs {absent} beside it"));
         evaluator.report(error.help(format!("add {advice}")));
     }
     if let (Some(a), Some(s)) = (constraint, speed_basis)
         && a.value.columns() + s.value.columns() != k
     {
         let (constraints, speeds) = (a.value.columns(), s.value.columns());
-        let message = format!("{constraints} constraints and {speeds} speeds do not make {k} freedoms");
+        let message = format!(
+            "the columns of A ({constraints}) and of S_bar ({speeds}) do not add up to the freedoms ({k})"
+        );
         let error = Diagnostic::new(code::CONSTRAINT, s.span.clone(), message);
-        evaluator.report(error.label(format!("{} columns are expected", k - constraints)));
+        evaluator.report(error.label(format!("expected columns: {}", k - constraints)));
     }
 }
 
@@ -112,23 +204,37 @@ fn speed_names(
 ) -> Declared<Vec<String>> {
     let mut list: Vec<String> = vec![];
     for name in speeds.value {
-        evaluator.errors.extend(names::check(name, Form::Snake, evaluate::FUNCTIONS));
+        evaluator
+            .errors
+            .extend(names::check(name, Form::Snake, evaluate::FUNCTIONS));
         if list.contains(&name.text) {
-            let error = Diagnostic::new(code::DUPLICATE_NAME, name.span.clone(), format!("speed `{}` is named twice", name.text));
+            let error = Diagnostic::new(
+                code::DUPLICATE_NAME,
+                name.span.clone(),
+                format!("speed `{}` is named twice", name.text),
+            );
             evaluator.report(error.label("named again here"));
         }
         list.push(name.text.clone());
     }
     let count = speed_basis.as_ref().map(|s| s.value.columns());
-    let undeclared = context.statements.target(Target::SpeedBasis).is_none() && !context.file.partial;
+    let undeclared =
+        context.statements.target(Target::SpeedBasis).is_none() && !context.file.partial;
     let message = match count {
-        Some(count) if count != list.len() => Some(format!("{} names for the {count} speeds of S_bar", list.len())),
+        Some(count) if count != list.len() => Some(format!(
+            "{} names for the {count} speeds of S_bar",
+            list.len()
+        )),
         None if undeclared => Some("names of speeds without S_bar".to_owned()),
         _ => None,
     };
     if let Some(message) = message {
-        let error = Diagnostic::new(code::SPEEDS, speeds.span.clone(), message).label("these speeds");
+        let error =
+            Diagnostic::new(code::SPEEDS, speeds.span.clone(), message).label("these speeds");
         evaluator.report(error.help("`speeds` names the columns of S_bar, in order"));
     }
-    Declared { value: list, span: speeds.span.clone() }
+    Declared {
+        value: list,
+        span: speeds.span.clone(),
+    }
 }

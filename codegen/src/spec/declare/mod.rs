@@ -23,18 +23,45 @@ use crate::model::{Declared, JointSpec, PoseExpr, VelocityFrame};
 /// The joint that the file declares; `None` where something essential is wrong. Reasons are among the errors.
 pub(super) fn joint(source: &str, file: &File, errors: &mut Vec<Diagnostic>) -> Option<JointSpec> {
     let statements = once::collect(source, file, errors);
-    let manifold = config::manifold(file, &statements, errors)?;
+    let manifold = config::manifold(file, &statements, errors);
     let before = errors.len();
     let result = budget::scope(limits::FILE_BUDGET, || {
         let mut evaluator = Evaluator::new(errors);
-        evaluator.lenient = file.partial;
-        declare(source, file, &statements, &manifold, &mut evaluator)
+        evaluator.lenient = file.partial || statements.config.is_none();
+        match &manifold {
+            Some(manifold) => declare(source, file, &statements, manifold, &mut evaluator),
+            None => {
+                without_manifold(source, file, &statements, &mut evaluator);
+                None
+            }
+        }
     });
     if result.is_err() && errors.len() == before {
-        let error = Diagnostic::new(code::TOO_LARGE, file.name.span.clone(), "the joint needs too many products of terms");
+        let error = Diagnostic::new(
+            code::TOO_LARGE,
+            file.name.span.clone(),
+            "the joint needs too many products of terms",
+        );
         errors.push(error.label("too much work"));
     }
     result.ok().flatten()
+}
+
+/// Looks for the errors that can be told while the configuration is not known.
+fn without_manifold(
+    source: &str,
+    file: &File,
+    statements: &Once<'_>,
+    evaluator: &mut Evaluator<'_>,
+) {
+    let mut scope = Scope::new(source, evaluator);
+    scope.joint(&file.name);
+    scope.parameters(&file.parameters);
+    scope.unknown_factors(statements.config);
+    scope.lets(&statements.lets);
+    pose(file, statements, evaluator);
+    matrices::evaluate_only(statements, evaluator);
+    scope::report_unused(file, statements, evaluator);
 }
 
 /// What the matrices of a joint are checked against.
@@ -56,16 +83,33 @@ fn declare(
     let parameters = scope.parameters(&file.parameters);
     scope.factors(statements.config, manifold.value.factors());
     scope.lets(&statements.lets);
-    let context = Context { file, statements, manifold };
+    let context = Context {
+        file,
+        statements,
+        manifold,
+    };
     let freedoms = freedoms::freedoms(&context, &mut scope);
-    let velocity = freedoms.as_ref().map(|freedoms| freedoms::velocity(&context, freedoms, evaluator));
-    let retract = freedoms.as_ref().and_then(|freedoms| retract::retract(&context, freedoms, evaluator));
-    let pose = pose(&context, evaluator);
-    let matrices = freedoms.as_ref().map(|freedoms| matrices::matrices(&context, freedoms.count(), evaluator));
+    let velocity = freedoms
+        .as_ref()
+        .map(|freedoms| freedoms::velocity(&context, freedoms, evaluator));
+    let retract = freedoms
+        .as_ref()
+        .and_then(|freedoms| retract::retract(&context, freedoms, evaluator));
+    let pose = pose(file, statements, evaluator);
+    let matrices = match &freedoms {
+        Some(freedoms) => Some(matrices::matrices(&context, &freedoms.names(), evaluator)),
+        None => {
+            matrices::evaluate_only(statements, evaluator);
+            None
+        }
+    };
     scope::report_unused(file, statements, evaluator);
     let (freedoms, matrices): (Freedoms, _) = (freedoms?, matrices?);
     Some(JointSpec {
-        name: Declared { value: file.name.text.clone(), span: file.name.span.clone() },
+        name: Declared {
+            value: file.name.text.clone(),
+            span: file.name.span.clone(),
+        },
         docs: file.docs.clone(),
         source: source.to_owned(),
         parameters,
@@ -81,26 +125,50 @@ fn declare(
     })
 }
 
-fn pose(context: &Context<'_>, evaluator: &mut Evaluator<'_>) -> Option<Declared<PoseExpr>> {
-    let Some(statement) = context.statements.target(Target::Pose) else {
-        if !context.file.partial {
-            let name = &context.file.name;
-            let error = Diagnostic::new(code::MISSING, name.span.clone(), format!("joint `{}` declares no H", name.text));
-            evaluator.report(error.label("H is missing").help("add `H = …;`, the pose of the child in the parent as a function of Q"));
+fn pose(
+    file: &File,
+    statements: &Once<'_>,
+    evaluator: &mut Evaluator<'_>,
+) -> Option<Declared<PoseExpr>> {
+    let Some(statement) = statements.target(Target::Pose) else {
+        if !file.partial {
+            let name = &file.name;
+            let error = Diagnostic::new(
+                code::MISSING,
+                name.span.clone(),
+                format!("joint `{}` declares no H", name.text),
+            );
+            evaluator.report(
+                error
+                    .label("H is missing")
+                    .help("add `H = …;`, the pose of the child in the parent as a function of Q"),
+            );
         }
         return None;
     };
     let value = matrices::pose(statement, evaluator)?;
-    Some(Declared { value, span: statement.span.clone() })
+    Some(Declared {
+        value,
+        span: statement.span.clone(),
+    })
 }
 
 impl Freedoms {
-    fn count(&self) -> usize {
-        self.list.value.len()
+    fn names(&self) -> Vec<&str> {
+        self.list
+            .value
+            .iter()
+            .map(|freedom| freedom.name.as_str())
+            .collect()
     }
 
     fn frame_needed(&self, manifold: &Manifold) -> bool {
-        let group = |factor: usize| !matches!(manifold.factors()[factor].kind, crate::manifold::Kind::Real(_));
+        let group = |factor: usize| {
+            !matches!(
+                manifold.factors()[factor].kind,
+                crate::manifold::Kind::Real(_)
+            )
+        };
         !self.local && self.list.value.iter().any(|freedom| group(freedom.factor))
     }
 }

@@ -45,10 +45,18 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
     for statement in &file.statements {
         let span = &statement.span;
         let (word, first) = match &statement.kind {
-            StatementKind::Config(value) => ("config", replace(&mut once.config, value.as_slice(), span)),
-            StatementKind::Local(value) => ("local", replace(&mut once.local, value.as_slice(), span)),
-            StatementKind::Velocity { child } => ("velocity", replace(&mut once.velocity, child, span)),
-            StatementKind::Speeds(value) => ("speeds", replace(&mut once.speeds, value.as_slice(), span)),
+            StatementKind::Config(value) => {
+                ("config", replace(&mut once.config, value.as_slice(), span))
+            }
+            StatementKind::Local(value) => {
+                ("local", replace(&mut once.local, value.as_slice(), span))
+            }
+            StatementKind::Velocity { child } => {
+                ("velocity", replace(&mut once.velocity, child, span))
+            }
+            StatementKind::Speeds(value) => {
+                ("speeds", replace(&mut once.speeds, value.as_slice(), span))
+            }
             StatementKind::Basis(value) => {
                 once.bases.push(At { value, span });
                 continue;
@@ -59,7 +67,10 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Assign(target, values) => {
                 let first = once.targets.get(target).map(|at| at.span);
-                once.targets.entry(*target).or_insert(At { value: values.as_slice(), span });
+                once.targets.entry(*target).or_insert(At {
+                    value: values.as_slice(),
+                    span,
+                });
                 (target.name(), first)
             }
         };
@@ -71,7 +82,11 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
 }
 
 /// Keeps the first; returns where that is, if this is the second.
-fn replace<'a, T: ?Sized>(slot: &mut Option<At<'a, T>>, value: &'a T, span: &'a Range<usize>) -> Option<&'a Range<usize>> {
+fn replace<'a, T: ?Sized>(
+    slot: &mut Option<At<'a, T>>,
+    value: &'a T,
+    span: &'a Range<usize>,
+) -> Option<&'a Range<usize>> {
     let first = slot.as_ref().map(|at| at.span);
     if slot.is_none() {
         *slot = Some(At { value, span });
@@ -80,8 +95,14 @@ fn replace<'a, T: ?Sized>(slot: &mut Option<At<'a, T>>, value: &'a T, span: &'a 
 }
 
 fn twice(source: &str, word: &str, first: &Range<usize>, span: &Range<usize>) -> Diagnostic {
-    let error = Diagnostic::new(code::DUPLICATE_STATEMENT, span.clone(), format!("`{word}` is declared twice"));
-    error.label("declared again here").note(format!("first declared in line {}", line(source, first)))
+    let error = Diagnostic::new(
+        code::DUPLICATE_STATEMENT,
+        span.clone(),
+        format!("`{word}` is declared twice"),
+    );
+    error
+        .label("declared again here")
+        .note(format!("first declared in line {}", line(source, first)))
 }
 
 /// The line in which a span starts, counted from 1.

@@ -1,10 +1,10 @@
 //! The names of a spec: each is defined once, in a form that Rust can take over, and used.
 
 use super::super::ast::{File, Name, Node, Parameter};
+use super::super::code;
 use super::super::evaluate::{Evaluator, FUNCTIONS};
 use super::super::names::{self, Form};
 use super::super::value::Value;
-use super::super::code;
 use super::once::{At, Once, line};
 use super::unit;
 use crate::diagnostic::Diagnostic;
@@ -24,11 +24,15 @@ pub(super) struct Scope<'s, 'e, 'a> {
 
 impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
     pub fn new(source: &'s str, evaluator: &'e mut Evaluator<'a>) -> Self {
-        Self { source, evaluator, claimed: BTreeMap::new() }
+        Self {
+            source,
+            evaluator,
+            claimed: BTreeMap::new(),
+        }
     }
 
     pub fn joint(&mut self, name: &Name) {
-        self.evaluator.errors.extend(names::check_joint(name, FUNCTIONS));
+        self.evaluator.errors.extend(names::check_joint(name));
     }
 
     /// Checks the form of the name, and that it is new.
@@ -42,12 +46,17 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
     /// Claims a name that is made from one of the spec.
     pub fn claim_text(&mut self, text: &str, span: &Range<usize>, owner: &str) {
         let Some((first, place)) = self.claimed.get(text) else {
-            self.claimed.insert(text.to_owned(), (owner.to_owned(), span.clone()));
+            self.claimed
+                .insert(text.to_owned(), (owner.to_owned(), span.clone()));
             return;
         };
         let message = format!("`{text}`, {owner}, is already {first}");
-        let error = Diagnostic::new(code::DUPLICATE_NAME, span.clone(), message).label("defined again here");
-        let error = error.note(format!("first defined in line {}", line(self.source, place)));
+        let error = Diagnostic::new(code::DUPLICATE_NAME, span.clone(), message)
+            .label("defined again here");
+        let error = error.note(format!(
+            "first defined in line {}",
+            line(self.source, place)
+        ));
         self.evaluator.report(error.help("choose another name"));
     }
 
@@ -57,10 +66,25 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
             self.claim(&parameter.name, Form::Snake, "a parameter");
             self.evaluator.errors.extend(unit::error(&parameter.unit));
             let symbol = Symbol::new(Role::Parameter, index, &parameter.name.text);
-            self.evaluator.define(&parameter.name.text, Some(Value::Scalar(Expr::symbol(&symbol))));
-            declared.push(model::Parameter { symbol, unit: parameter.unit.text.clone(), docs: parameter.docs.join("\n") });
+            self.evaluator.define(
+                &parameter.name.text,
+                Some(Value::Scalar(Expr::symbol(&symbol))),
+            );
+            declared.push(model::Parameter {
+                symbol,
+                unit: parameter.unit.text.clone(),
+                docs: parameter.docs.join("\n"),
+            });
         }
         declared
+    }
+
+    /// The factors of a `config` that is wrong, so that nothing more is said of them.
+    pub fn unknown_factors(&mut self, config: Option<At<'_, [(Name, Name)]>>) {
+        for (name, _) in config.map(|config| config.value).unwrap_or_default() {
+            self.claim(name, Form::Any, "a factor of the configuration");
+            self.evaluator.define(&name.text, None);
+        }
     }
 
     /// The factors of `config`, and their stored scalars.
@@ -72,17 +96,24 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
         }
         for ((name, _), factor) in names.iter().zip(factors) {
             let owner = format!("a stored scalar of `{}`", name.text);
-            for symbol in factor.coordinates.iter().filter(|symbol| *symbol.name != *name.text) {
-                self.claim_text(&symbol.name, &name.span, &owner);
+            for symbol in &factor.coordinates {
+                if *symbol.name != *name.text {
+                    self.claim_text(&symbol.name, &name.span, &owner);
+                }
+                self.claim_text(&format!("{}_target", symbol.name), &name.span, &owner);
             }
         }
     }
 
     /// `let`s in order: each sees those above it.
     pub fn lets(&mut self, lets: &[(&Name, &Node)]) {
+        self.evaluator
+            .expect(lets.iter().map(|(name, _)| name.text.clone()).collect());
         for (name, node) in lets {
             let statement = format!("let {}", name.text);
-            let value = self.evaluator.bounded(&statement, &node.span, |evaluator| evaluator.value(node));
+            let value = self
+                .evaluator
+                .bounded(&statement, &node.span, |evaluator| evaluator.value(node));
             self.claim(name, Form::Snake, "an auxiliary value");
             self.evaluator.define(&name.text, value);
         }
@@ -98,13 +129,33 @@ fn value_of(factor: &Factor) -> Value {
     }
 }
 
-/// Parameters and `let`s that nothing uses.
+/// Parameters and `let`s that nothing uses. Where a name is undefined, that one may be a misspelling of the unused.
 pub(super) fn report_unused(file: &File, statements: &Once<'_>, evaluator: &mut Evaluator<'_>) {
-    let parameters = file.parameters.iter().map(|parameter| (&parameter.name, "parameter"));
-    let lets = statements.lets.iter().map(|(name, _)| (*name, "auxiliary value"));
-    let unused: Vec<_> = parameters.chain(lets).filter(|(name, _)| !evaluator.is_used(&name.text)).collect();
-    for (name, what) in unused.into_iter().filter(|_| !file.partial) {
-        let error = Diagnostic::new(code::UNUSED, name.span.clone(), format!("{what} `{}` is never used", name.text));
+    let parameters = file
+        .parameters
+        .iter()
+        .map(|parameter| (&parameter.name, "parameter"));
+    let lets = statements
+        .lets
+        .iter()
+        .map(|(name, _)| (*name, "auxiliary value"));
+    let undefined = evaluator
+        .errors
+        .iter()
+        .any(|error| error.code == code::UNDEFINED);
+    if file.partial || undefined {
+        return;
+    }
+    let used = file.used_names();
+    for (name, what) in parameters
+        .chain(lets)
+        .filter(|(name, _)| !used.contains(name.text.as_str()))
+    {
+        let error = Diagnostic::new(
+            code::UNUSED,
+            name.span.clone(),
+            format!("{what} `{}` is never used", name.text),
+        );
         evaluator.report(error.label("never used").help("use it or remove it"));
     }
 }

@@ -27,12 +27,18 @@ impl Evaluator<'_> {
     }
 
     /// `base[i]` or `base[i, j]`, counted from 1.
-    pub(super) fn element(&mut self, base: &Node, indices: &[Node], span: &Range<usize>) -> Option<Value> {
+    pub(super) fn element(
+        &mut self,
+        base: &Node,
+        indices: &[Node],
+        span: &Range<usize>,
+    ) -> Option<Value> {
         let value = match (is_phi(base), &self.locals) {
             (true, Some(locals)) => Some(Value::column(locals.all.clone())),
             _ => self.value(base),
         };
-        let positions: Vec<Option<usize>> = indices.iter().map(|node| self.position(node)).collect();
+        let positions: Vec<Option<usize>> =
+            indices.iter().map(|node| self.position(node)).collect();
         let positions: Vec<usize> = positions.into_iter().collect::<Option<_>>()?;
         let found = element_of(&value?, &positions, span);
         self.settle(found)
@@ -40,10 +46,19 @@ impl Evaluator<'_> {
 
     fn position(&mut self, node: &Node) -> Option<usize> {
         let value = self.value(node)?;
-        let integer = value.as_scalar().and_then(Expr::as_rational).filter(num_rational::Ratio::is_integer);
-        let position = integer.and_then(|number| number.to_integer().to_usize()).filter(|&n| n > 0);
+        let integer = value
+            .as_scalar()
+            .and_then(Expr::as_rational)
+            .filter(num_rational::Ratio::is_integer);
+        let position = integer
+            .and_then(|number| number.to_integer().to_usize())
+            .filter(|&n| n > 0);
         if position.is_none() {
-            let error = Diagnostic::new(code::INDEX, node.span.clone(), "an index is a positive integer");
+            let error = Diagnostic::new(
+                code::INDEX,
+                node.span.clone(),
+                "an index is a positive integer",
+            );
             self.report(error.label("not an index").help("indices count from 1"));
         }
         position
@@ -104,7 +119,10 @@ fn element_of(value: &Value, positions: &[usize], span: &Range<usize>) -> Fallib
         _ => value.as_matrix(),
     };
     let Some(matrix) = stored else {
-        let error = misfit(span, format!("{} has no elements to index", value.describe()));
+        let error = misfit(
+            span,
+            format!("{} has no elements to index", value.describe()),
+        );
         return Err(Box::new(match parts(value) {
             [] => error,
             known => error.help(format!("its parts are {}", known.join(", "))),
@@ -116,13 +134,25 @@ fn element_of(value: &Value, positions: &[usize], span: &Range<usize>) -> Fallib
         [j] if rows == 1 => (1, j),
         [i, j] => (i, j),
         _ => {
-            let needed = if rows == 1 || columns == 1 { "one index" } else { "two indices" };
-            return Err(Box::new(misfit(span, format!("a {rows}×{columns} matrix takes {needed}, found {}", positions.len()))));
+            let needed = if rows == 1 || columns == 1 {
+                "one index"
+            } else {
+                "two indices"
+            };
+            return Err(Box::new(misfit(
+                span,
+                format!(
+                    "a {rows}×{columns} matrix takes {needed}, found {}",
+                    positions.len()
+                ),
+            )));
         }
     };
     if i > rows || j > columns {
         let message = format!("element ({i}, {j}) of a {rows}×{columns} matrix");
-        return Err(Box::new(Diagnostic::new(code::INDEX, span.clone(), message).label("outside the matrix")));
+        return Err(Box::new(
+            Diagnostic::new(code::INDEX, span.clone(), message).label("outside the matrix"),
+        ));
     }
     Ok(Value::Scalar(matrix.at(i - 1, j - 1).clone()))
 }

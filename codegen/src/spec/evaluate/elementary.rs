@@ -14,13 +14,18 @@ pub(super) fn of_one(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
     let constant = x.as_rational();
     let negative = constant.as_ref().is_some_and(Signed::is_negative);
     let value = match call.name {
-        "sin" => x.sin(),
-        "cos" => x.cos(),
-        "tan" => quotient(call, &x.sin(), &x.cos())?,
+        "sin" => call.cos_sin(x)?.1,
+        "cos" => call.cos_sin(x)?.0,
+        "tan" => {
+            let (cos, sin) = call.cos_sin(x)?;
+            quotient(call, &sin, &cos)?
+        }
         "exp" => x.exp(),
         "sqrt" if negative => return Err(call.undefined("square root of a negative number")),
         "sqrt" => x.sqrt(),
-        "log" if negative || x.is_zero() => return Err(call.undefined("logarithm of a number that is not positive")),
+        "log" if negative || x.is_zero() => {
+            return Err(call.undefined("logarithm of a number that is not positive"));
+        }
         "log" => x.ln(),
         _ => hyperbolic(call, x)?,
     };
@@ -47,7 +52,9 @@ pub(super) fn of_two(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
         return Err(call.refuse("two scalars", arguments));
     };
     match call.name {
-        "atan2" if first.is_zero() && second.is_zero() => Err(call.undefined("atan2(0, 0) is no angle")),
+        "atan2" if first.is_zero() && second.is_zero() => {
+            Err(call.undefined("atan2(0, 0) is no angle"))
+        }
         "atan2" => Ok(Value::Scalar(first.atan2(second))),
         _ => match second.as_rational() {
             Some(exponent) => Ok(Value::Scalar(power(call, first, &exponent)?)),
@@ -61,7 +68,10 @@ fn power(call: &Call<'_>, x: &Expr, exponent: &Rational) -> Fallible<Expr> {
     let size = exponent.abs();
     let limit = Rational::from_integer(limits::LARGEST_POWER.into());
     if size > limit || size.denom() > &limits::LARGEST_POWER.into() {
-        let message = format!("the exponent {exponent}: numerators and denominators go up to {}", limits::LARGEST_POWER);
+        let message = format!(
+            "the exponent {exponent}: numerators and denominators go up to {}",
+            limits::LARGEST_POWER
+        );
         return Err(call.undefined(&message));
     }
     if x.as_rational().is_some_and(|x| x.is_negative()) && !size.is_integer() {
@@ -80,6 +90,8 @@ fn power(call: &Call<'_>, x: &Expr, exponent: &Rational) -> Fallible<Expr> {
 }
 
 fn quotient(call: &Call<'_>, a: &Expr, b: &Expr) -> Fallible<Expr> {
-    let inverse = b.recip().ok_or_else(|| call.undefined("division by zero"))?;
+    let inverse = b
+        .recip()
+        .ok_or_else(|| call.undefined("division by zero"))?;
     Ok(a * &inverse)
 }

@@ -25,9 +25,20 @@ impl Locals {
         match (self.factors, self.by_factor.values().next()) {
             (1, Some(value)) => Ok(value.clone()),
             _ => {
-                let parts: Vec<String> = self.by_factor.keys().map(|name| format!("`phi.{name}`")).collect();
-                let error = Diagnostic::new(code::SHAPES, span.clone(), "`phi` belongs to several factors").label("of which factor?");
-                Err(Box::new(error.help(format!("write {}", parts.join(" or ")))))
+                let parts: Vec<String> = self
+                    .by_factor
+                    .keys()
+                    .map(|name| format!("`phi.{name}`"))
+                    .collect();
+                let error = Diagnostic::new(
+                    code::SHAPES,
+                    span.clone(),
+                    "`phi` belongs to several factors",
+                )
+                .label("of which factor?");
+                Err(Box::new(
+                    error.help(format!("write {}", parts.join(" or "))),
+                ))
             }
         }
     }
@@ -35,20 +46,34 @@ impl Locals {
     /// `phi.name`
     pub fn part(&self, name: &str, span: &Range<usize>) -> Fallible<Value> {
         let freedom = || self.by_freedom.get(name).cloned().map(Value::Scalar);
-        self.by_factor.get(name).cloned().or_else(freedom).ok_or_else(|| {
-            let error = Diagnostic::new(code::FIELD, span.clone(), format!("`{name}` is neither a factor nor a freedom"));
-            let error = error.label("no such part of phi");
-            let known: Vec<&str> = self.by_factor.keys().chain(self.by_freedom.keys()).map(String::as_str).collect();
-            Box::new(match names::nearest(name, known.iter().copied()) {
-                Some(near) => error.help(format!("did you mean `{near}`?")),
-                None => error.help(format!("phi has the parts {}", known.join(", "))),
+        self.by_factor
+            .get(name)
+            .cloned()
+            .or_else(freedom)
+            .ok_or_else(|| {
+                let error = Diagnostic::new(
+                    code::FIELD,
+                    span.clone(),
+                    format!("`{name}` is neither a factor nor a freedom"),
+                );
+                let error = error.label("no such part of phi");
+                let known: Vec<&str> = self
+                    .by_factor
+                    .keys()
+                    .chain(self.by_freedom.keys())
+                    .map(String::as_str)
+                    .collect();
+                Box::new(match names::suggestion(name, known.iter().copied()) {
+                    Some(advice) => error.help(advice),
+                    None => error.help(format!("phi has the parts {}", known.join(", "))),
+                })
             })
-        })
     }
 }
 
 /// The error that ϕ stands where it is not defined.
 pub(super) fn outside_phi(span: &Range<usize>) -> Diagnostic {
-    let error = Diagnostic::new(code::PHI, span.clone(), "`phi` is defined in Phi alone").label("not known here");
+    let error = Diagnostic::new(code::PHI, span.clone(), "`phi` is defined in Phi alone")
+        .label("not known here");
     error.help("H, X, A and S_bar depend on Q alone; the derivation moves them along Phi")
 }

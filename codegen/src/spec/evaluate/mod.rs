@@ -8,7 +8,7 @@ mod literal;
 mod local;
 mod rotation;
 
-pub(super) use function::NAMES as FUNCTIONS;
+pub use function::NAMES as FUNCTIONS;
 pub(super) use local::Locals;
 
 use super::ast::{Name, Node, NodeKind};
@@ -24,7 +24,8 @@ pub(super) struct Evaluator<'a> {
     pub errors: &'a mut Vec<Diagnostic>,
     /// `None` for a name whose definition is wrong: its uses are not reported again.
     names: BTreeMap<String, Option<Value>>,
-    used: BTreeSet<String>,
+    /// Names of `let`s, those still to come included.
+    expected: BTreeSet<String>,
     /// Local coordinates, inside Phi.
     locals: Option<Locals>,
     /// Whether a definition could not be read, so that unknown names may be right.
@@ -33,7 +34,13 @@ pub(super) struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     pub fn new(errors: &'a mut Vec<Diagnostic>) -> Self {
-        Self { errors, names: BTreeMap::new(), used: BTreeSet::new(), locals: None, lenient: false }
+        Self {
+            errors,
+            names: BTreeMap::new(),
+            expected: BTreeSet::new(),
+            locals: None,
+            lenient: false,
+        }
     }
 
     /// Reports an error.
@@ -47,16 +54,22 @@ impl<'a> Evaluator<'a> {
     }
 
     /// With names that only one statement knows; they hide others.
-    pub fn with_names<T>(&mut self, names: Vec<(String, Value)>, work: impl FnOnce(&mut Self) -> T) -> T {
+    pub fn with_names<T>(
+        &mut self,
+        names: Vec<(String, Value)>,
+        work: impl FnOnce(&mut Self) -> T,
+    ) -> T {
         let outer = self.names.clone();
-        self.names.extend(names.into_iter().map(|(name, value)| (name, Some(value))));
+        self.names
+            .extend(names.into_iter().map(|(name, value)| (name, Some(value))));
         let result = work(self);
         self.names = outer;
         result
     }
 
-    pub fn is_used(&self, name: &str) -> bool {
-        self.used.contains(name)
+    /// Says which names will be defined, for better advice.
+    pub fn expect(&mut self, names: BTreeSet<String>) {
+        self.expected = names;
     }
 
     /// With the local coordinates known, inside Phi.
@@ -68,7 +81,12 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Does the work of one statement within its budget; reports where the budget does not suffice.
-    pub fn bounded<T>(&mut self, statement: &str, span: &Range<usize>, work: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+    pub fn bounded<T>(
+        &mut self,
+        statement: &str,
+        span: &Range<usize>,
+        work: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
         if budget::is_exhausted() {
             return None;
         }
@@ -83,7 +101,10 @@ impl<'a> Evaluator<'a> {
         self.errors.truncate(before);
         let message = format!("`{statement}` needs more than {limit} products of terms");
         let error = Diagnostic::new(code::TOO_LARGE, span.clone(), message).label("too much work");
-        self.report(error.help("state it in shorter terms; powers of sums and cosines of sums grow fastest"));
+        self.report(
+            error
+                .help("state it in shorter terms; powers of sums and cosines of sums grow fastest"),
+        );
         None
     }
 
@@ -93,7 +114,11 @@ impl<'a> Evaluator<'a> {
         match limits::excess(&value) {
             None => Some(value),
             Some(excess) => {
-                let error = Diagnostic::new(code::TOO_LARGE, node.span.clone(), format!("this value has {excess}"));
+                let error = Diagnostic::new(
+                    code::TOO_LARGE,
+                    node.span.clone(),
+                    format!("this value has {excess}"),
+                );
                 self.report(error.label("too large"));
                 None
             }
@@ -141,7 +166,8 @@ impl<'a> Evaluator<'a> {
         operands: &[(bool, Node)],
         combine: impl Fn(&Value, bool, &Value, &Range<usize>) -> Fallible<Value>,
     ) -> Option<Value> {
-        let values: Vec<Option<Value>> = operands.iter().map(|(_, node)| self.value(node)).collect();
+        let values: Vec<Option<Value>> =
+            operands.iter().map(|(_, node)| self.value(node)).collect();
         let values: Vec<Value> = values.into_iter().collect::<Option<_>>()?;
         let start = operands.first()?.1.span.start;
         let mut operands = operands.iter().zip(values);
@@ -150,7 +176,8 @@ impl<'a> Evaluator<'a> {
             let span = start..node.span.end;
             result = self.settle(combine(&result, *inverse, &value, &span))?;
             if let Some(excess) = limits::excess(&result) {
-                let error = Diagnostic::new(code::TOO_LARGE, span, format!("this value has {excess}"));
+                let error =
+                    Diagnostic::new(code::TOO_LARGE, span, format!("this value has {excess}"));
                 self.report(error.label("too large"));
                 return None;
             }
@@ -159,7 +186,6 @@ impl<'a> Evaluator<'a> {
     }
 
     fn name(&mut self, name: &str, span: &Range<usize>) -> Option<Value> {
-        self.used.insert(name.to_owned());
         if let Some(value) = self.names.get(name) {
             return value.clone();
         }
@@ -183,15 +209,27 @@ impl<'a> Evaluator<'a> {
     }
 
     fn undefined(&self, name: &str, span: &Range<usize>) -> Diagnostic {
-        let error = Diagnostic::new(code::UNDEFINED, span.clone(), format!("`{name}` is not defined"));
+        let error = Diagnostic::new(
+            code::UNDEFINED,
+            span.clone(),
+            format!("`{name}` is not defined"),
+        );
         let error = error.label("not defined here");
         if FUNCTIONS.contains(&name) {
-            return error.help(format!("`{name}` is a function: write its arguments in parentheses"));
+            return error.help(format!(
+                "`{name}` is a function: write its arguments in parentheses"
+            ));
+        }
+        if self.expected.contains(name) {
+            return error.help(format!(
+                "`{name}` is defined below: move its `let` above this one"
+            ));
         }
         let known = self.names.keys().map(String::as_str).chain(["pi", "phi"]);
-        match names::nearest(name, known) {
-            Some(near) => error.help(format!("did you mean `{near}`?")),
-            None => error.help("names are those of parameters, of factors in `config`, and of `let`s above"),
+        match names::suggestion(name, known) {
+            Some(advice) => error.help(advice),
+            None => error
+                .help("names are those of parameters, of factors in `config`, and of `let`s above"),
         }
     }
 

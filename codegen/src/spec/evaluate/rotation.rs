@@ -9,9 +9,15 @@ use crate::matrix::Matrix;
 
 /// `rot_z(angle)`, `rot_z(Q)` for a Q that turns in a plane, and `rot(Q)` for one that turns in space.
 pub(super) fn rotation(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
-    let axis = call.name.strip_prefix("rot_").and_then(|axis| "xyz".find(axis));
+    let axis = call
+        .name
+        .strip_prefix("rot_")
+        .and_then(|axis| "xyz".find(axis));
     let matrix = match (axis, arguments) {
-        (Some(axis), [Value::Scalar(angle)]) => Some(about(axis, &angle.cos(), &angle.sin())),
+        (Some(axis), [Value::Scalar(angle)]) => {
+            let (cos, sin) = call.cos_sin(angle)?;
+            Some(about(axis, &cos, &sin))
+        }
         (Some(axis), [Value::Element(Kind::S1 | Kind::So2, m)]) => Some(planar(axis, m)),
         (Some(2), [Value::Element(Kind::Se2, m)]) => Some(planar(2, m)),
         (None, [Value::Element(Kind::S3, m)]) => Some(of_quaternion(&m.column(0))),
@@ -23,7 +29,9 @@ pub(super) fn rotation(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> 
         Some(_) => "an angle, or an element of S1 or SO2",
         None => "an element of SO3, S3 or SE3, or a pose",
     };
-    matrix.map(Value::Matrix).ok_or_else(|| call.refuse(takes, arguments))
+    matrix
+        .map(Value::Matrix)
+        .ok_or_else(|| call.refuse(takes, arguments))
 }
 
 /// Both columns of the plane's rotation are kept: a rotation matrix carries its own entries.
@@ -34,7 +42,10 @@ fn planar(axis: usize, m: &Matrix) -> Matrix {
 /// Right-handed rotation about an axis.
 fn about(axis: usize, cos: &Expr, sin: &Expr) -> Matrix {
     let entries = [cos.clone(), -sin, sin.clone(), cos.clone()];
-    embed(axis, &Matrix::from_fn(2, 2, |i, j| entries[2 * i + j].clone()))
+    embed(
+        axis,
+        &Matrix::from_fn(2, 2, |i, j| entries[2 * i + j].clone()),
+    )
 }
 
 /// The 2×2 rotation in the plane of the two axes that follow `axis`.
@@ -56,7 +67,11 @@ fn of_quaternion(q: &[Expr]) -> Matrix {
     let tilde = Matrix::tilde(vector);
     Matrix::from_fn(3, 3, |i, j| {
         let outer = &vector[i] * &vector[j];
-        let diagonal = if i == j { Expr::one() - &two * &square } else { Expr::zero() };
+        let diagonal = if i == j {
+            Expr::one() - &two * &square
+        } else {
+            Expr::zero()
+        };
         &diagonal + &(&two * &(&outer + &(&q[0] * tilde.at(i, j))))
     })
 }

@@ -43,14 +43,23 @@ fn either(tokens: &mut Tokens<'_>, first: char, second: char) -> Option<bool> {
     }
 }
 
-fn chain(span: Range<usize>, mut items: Vec<(bool, Node)>, kind: fn(Vec<(bool, Node)>) -> NodeKind) -> Fallible<Node> {
+fn chain(
+    span: Range<usize>,
+    mut items: Vec<(bool, Node)>,
+    kind: fn(Vec<(bool, Node)>) -> NodeKind,
+) -> Fallible<Node> {
     if items.len() > LONGEST_CHAIN {
         let message = format!("more than {LONGEST_CHAIN} operands in one chain");
-        return Err(Box::new(Diagnostic::new(code::TOO_LARGE, span, message).help("name a part of it with `let`")));
+        return Err(Box::new(
+            Diagnostic::new(code::TOO_LARGE, span, message).help("name a part of it with `let`"),
+        ));
     }
     match items.len() {
         1 => Ok(items.remove(0).1),
-        _ => Ok(Node { span, kind: kind(items) }),
+        _ => Ok(Node {
+            span,
+            kind: kind(items),
+        }),
     }
 }
 
@@ -63,7 +72,10 @@ fn signed(tokens: &mut Tokens<'_>) -> Fallible<Node> {
     let value = access(tokens)?;
     let span = start..value.span.end;
     Ok(match negative {
-        true => Node { span, kind: NodeKind::Negative(Box::new(value)) },
+        true => Node {
+            span,
+            kind: NodeKind::Negative(Box::new(value)),
+        },
         false => value,
     })
 }
@@ -81,10 +93,15 @@ fn access(tokens: &mut Tokens<'_>) -> Fallible<Node> {
         } else {
             return Ok(value);
         };
-        value = Node { span: start..tokens.previous, kind };
+        value = Node {
+            span: start..tokens.previous,
+            kind,
+        };
     }
     match tokens.peek('.') || tokens.peek_group(Delimiter::Bracket) {
-        true => Err(tokens.expected(&format!("at most {LONGEST_ACCESS} parts and indices in a row"))),
+        true => Err(tokens.expected(&format!(
+            "at most {LONGEST_ACCESS} parts and indices in a row"
+        ))),
         false => Ok(value),
     }
 }
@@ -92,26 +109,41 @@ fn access(tokens: &mut Tokens<'_>) -> Fallible<Node> {
 fn primary(tokens: &mut Tokens<'_>) -> Fallible<Node> {
     if let Some((literal, span)) = tokens.literal() {
         let number = number::rational(&literal.to_string(), &span)?;
-        return Ok(Node { span, kind: NodeKind::Number(number) });
+        return Ok(Node {
+            span,
+            kind: NodeKind::Number(number),
+        });
     }
     if let Some(name) = tokens.name() {
         return match tokens.group(Delimiter::Parenthesis) {
-            None => Ok(Node { span: name.span, kind: NodeKind::Name(name.text) }),
+            None => Ok(Node {
+                span: name.span,
+                kind: NodeKind::Name(name.text),
+            }),
             Some((inside, group)) => {
                 let span = name.span.start..group.end;
-                Ok(Node { span, kind: NodeKind::Call(name, list(inside, "an argument")?) })
+                Ok(Node {
+                    span,
+                    kind: NodeKind::Call(name, list(inside, "an argument")?),
+                })
             }
         };
     }
     if let Some((mut inside, span)) = tokens.group(Delimiter::Parenthesis) {
         let value = expression(&mut inside)?;
         return match inside.is_empty() {
-            true => Ok(Node { span, kind: value.kind }),
+            true => Ok(Node {
+                span,
+                kind: value.kind,
+            }),
             false => Err(leftover(&inside, "an operator or `)`")),
         };
     }
     if let Some((inside, span)) = tokens.group(Delimiter::Bracket) {
-        return Ok(Node { span, kind: NodeKind::Literal(rows(inside)?) });
+        return Ok(Node {
+            span,
+            kind: NodeKind::Literal(rows(inside)?),
+        });
     }
     Err(tokens.expected("a value"))
 }
@@ -122,7 +154,10 @@ fn list(mut tokens: Tokens<'_>, what: &str) -> Fallible<Vec<Node>> {
     while !tokens.is_empty() {
         items.push(expression(&mut tokens)?);
         if !tokens.is_empty() && !tokens.eat(',') {
-            return Err(leftover(&tokens, &format!("an operator, `,` or the end after {what}")));
+            return Err(leftover(
+                &tokens,
+                &format!("an operator, `,` or the end after {what}"),
+            ));
         }
     }
     Ok(items)
@@ -155,6 +190,7 @@ fn leftover(tokens: &Tokens<'_>, what: &str) -> Box<Diagnostic> {
 
 /// The error that a power is written as an operator.
 pub(super) fn power(span: Range<usize>) -> Box<Diagnostic> {
-    let error = Diagnostic::new(code::POWER, span, "the language has no operator for powers").label("not an operator");
+    let error = Diagnostic::new(code::POWER, span, "the language has no operator for powers")
+        .label("not an operator");
     Box::new(error.help("write pow(x, n)"))
 }

@@ -33,8 +33,15 @@ pub(super) fn file(source: &str, errors: &mut Vec<Diagnostic>) -> Option<File> {
 
 fn unreadable(source: &str, start: usize) -> Diagnostic {
     let start = source.floor_char_boundary(start);
-    let word = source[start..].split(|c: char| c.is_whitespace() || ",;()[]".contains(c)).next().unwrap_or_default();
-    let error = Diagnostic::new(code::CHARACTER, start..start + word.len(), format!("`{word}` cannot be read"));
+    let word = source[start..]
+        .split(|c: char| c.is_whitespace() || ",;()[]".contains(c))
+        .next()
+        .unwrap_or_default();
+    let error = Diagnostic::new(
+        code::CHARACTER,
+        start..start + word.len(),
+        format!("`{word}` cannot be read"),
+    );
     error.label("neither a name nor a number")
 }
 
@@ -48,18 +55,34 @@ fn read(mut tokens: Tokens<'_>, errors: &mut Vec<Diagnostic>) -> Option<File> {
         }
     };
     let before = errors.len();
-    let parameters = parameters.map(|inside| self::parameters(inside, errors)).unwrap_or_default();
+    let parameters = parameters
+        .map(|inside| self::parameters(inside, errors))
+        .unwrap_or_default();
     let Some((body, _)) = tokens.group(Delimiter::Brace) else {
         errors.push(*tokens.expected("`{` and the statements of the joint"));
         return None;
     };
     let statements = statement::all(body, errors);
     if !tokens.is_empty() {
-        let error = Diagnostic::new(code::SURPLUS, tokens.span(), format!("unexpected {} after the joint", tokens.found()));
-        errors.push(error.label("after the end of the joint").help("a file holds one joint; give each a file of its own"));
+        let error = Diagnostic::new(
+            code::SURPLUS,
+            tokens.span(),
+            format!("unexpected {} after the joint", tokens.found()),
+        );
+        errors.push(
+            error
+                .label("after the end of the joint")
+                .help("a file holds one joint; give each a file of its own"),
+        );
     }
     let partial = errors.len() > before;
-    Some(File { docs, name, parameters, statements, partial })
+    Some(File {
+        docs,
+        name,
+        parameters,
+        statements,
+        partial,
+    })
 }
 
 /// `hamel = 1;`
@@ -67,16 +90,27 @@ fn version(tokens: &mut Tokens<'_>) -> Fallible<()> {
     let first = tokens.span();
     let starts = tokens.peek_name().is_some_and(|name| name.text == "hamel");
     if !starts {
-        let error = Diagnostic::new(code::VERSION, first, "the version line is missing").label("expected before this");
-        return Err(Box::new(error.help(format!("begin the file with `hamel = {VERSION};`"))));
+        let error = Diagnostic::new(code::VERSION, first, "the version line is missing")
+            .label("expected before this");
+        return Err(Box::new(
+            error.help(format!("begin the file with `hamel = {VERSION};`")),
+        ));
     }
     tokens.name();
     tokens.expect('=', "`=` and the version of the language")?;
     match tokens.literal() {
         Some((literal, _)) if literal.to_string() == VERSION => {}
         Some((literal, span)) => {
-            let error = Diagnostic::new(code::VERSION, span, format!("version {literal} of the language is not known"));
-            return Err(Box::new(error.label("no such version").help(format!("this generator reads version {VERSION}"))));
+            let error = Diagnostic::new(
+                code::VERSION,
+                span,
+                format!("version {literal} of the language is not known"),
+            );
+            return Err(Box::new(
+                error
+                    .label("no such version")
+                    .help(format!("this generator reads version {VERSION}")),
+            ));
         }
         None => return Err(tokens.expected("the version of the language")),
     }
@@ -93,7 +127,9 @@ fn head<'a>(tokens: &mut Tokens<'a>) -> Fallible<Head<'a>> {
         _ => return Err(tokens.expected("`joint`")),
     };
     let name = tokens.expect_name("the name of the joint")?;
-    let parameters = tokens.group(Delimiter::Parenthesis).map(|(inside, _)| inside);
+    let parameters = tokens
+        .group(Delimiter::Parenthesis)
+        .map(|(inside, _)| inside);
     Ok((docs, name, parameters))
 }
 
@@ -128,10 +164,16 @@ fn unit(tokens: &mut Tokens<'_>) -> Fallible<Name> {
     let mut text = String::new();
     let mut span = tokens.span();
     loop {
-        let part = tokens.name().map(|name| name.text).or_else(|| Some(tokens.literal()?.0.to_string()));
+        let part = tokens
+            .name()
+            .map(|name| name.text)
+            .or_else(|| Some(tokens.literal()?.0.to_string()));
         text.push_str(&part.ok_or_else(|| tokens.expected("a unit"))?);
         span.end = tokens.previous;
-        match ['*', '/'].into_iter().find(|operator| tokens.eat(*operator)) {
+        match ['*', '/']
+            .into_iter()
+            .find(|operator| tokens.eat(*operator))
+        {
             Some(operator) => text.push(operator),
             None => return Ok(Name { text, span }),
         }

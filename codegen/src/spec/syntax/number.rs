@@ -14,11 +14,17 @@ const LONGEST: usize = 64;
 pub(super) fn rational(text: &str, span: &Range<usize>) -> Fallible<Rational> {
     let wrong = |message: String| Box::new(Diagnostic::new(code::NUMBER, span.clone(), message));
     if text.len() > LONGEST {
-        return Err(Box::new(wrong(format!("a number of more than {LONGEST} digits")).label("too long")));
+        return Err(Box::new(
+            wrong(format!("a number of more than {LONGEST} digits")).label("too long"),
+        ));
     }
     exact(text).ok_or_else(|| {
         let error = wrong(format!("`{text}` is not a number of the language"));
-        Box::new(error.label("not a decimal number").help("write digits, a point, an exponent: 12, 0.5, 1e-3; units belong to parameters"))
+        Box::new(
+            error.label("not a decimal number").help(
+                "write digits, a point, an exponent: 12, 0.5, 1e-3; units belong to parameters",
+            ),
+        )
     })
 }
 
@@ -29,7 +35,10 @@ fn exact(text: &str) -> Option<Rational> {
     if whole.is_empty() || !digits.bytes().all(|digit| digit.is_ascii_digit()) {
         return None;
     }
-    let power = exponent.parse::<i32>().ok()?.checked_sub(i32::try_from(fraction.len()).ok()?)?;
+    let power = exponent
+        .parse::<i32>()
+        .ok()?
+        .checked_sub(i32::try_from(fraction.len()).ok()?)?;
     if power.unsigned_abs() as usize > LONGEST {
         return None;
     }

@@ -9,7 +9,10 @@ use crate::diagnostic::Diagnostic;
 use proc_macro2::Delimiter;
 
 /// All statements of a joint; of each that cannot be read, one error.
-pub(in super::super) fn all(mut tokens: Tokens<'_>, errors: &mut Vec<Diagnostic>) -> Vec<Statement> {
+pub(in super::super) fn all(
+    mut tokens: Tokens<'_>,
+    errors: &mut Vec<Diagnostic>,
+) -> Vec<Statement> {
     let mut statements = vec![];
     loop {
         tokens.docs();
@@ -18,7 +21,10 @@ pub(in super::super) fn all(mut tokens: Tokens<'_>, errors: &mut Vec<Diagnostic>
         }
         let start = tokens.span().start;
         match statement(&mut tokens) {
-            Ok(kind) => statements.push(Statement { span: start..tokens.previous, kind }),
+            Ok(kind) => statements.push(Statement {
+                span: start..tokens.previous,
+                kind,
+            }),
             Err(error) => {
                 errors.push(*error);
                 recover(&mut tokens, start);
@@ -30,7 +36,9 @@ pub(in super::super) fn all(mut tokens: Tokens<'_>, errors: &mut Vec<Diagnostic>
 /// Goes on behind the next `;`, or at a line that begins a statement.
 fn recover(tokens: &mut Tokens<'_>, start: usize) {
     let begins_statement = |tokens: &Tokens<'_>| {
-        let known = tokens.peek_name().is_some_and(|name| STATEMENTS.contains(&name.text.as_str()));
+        let known = tokens
+            .peek_name()
+            .is_some_and(|name| STATEMENTS.contains(&name.text.as_str()));
         known && tokens.starts_line() && tokens.span().start > start
     };
     while !tokens.eat(';') {
@@ -45,7 +53,9 @@ fn statement(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
     let kind = match keyword.text.as_str() {
         "config" => StatementKind::Config(list(tokens, factor)?),
         "basis" => StatementKind::Basis(basis(tokens)?),
-        "local" => StatementKind::Local(list(tokens, |t| t.expect_name("the name of a local coordinate"))?),
+        "local" => StatementKind::Local(list(tokens, |t| {
+            t.expect_name("the name of a local coordinate")
+        })?),
         "speeds" => StatementKind::Speeds(list(tokens, |t| t.expect_name("the name of a speed"))?),
         "velocity" => velocity(tokens)?,
         "let" => {
@@ -66,11 +76,15 @@ fn statement(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
 
 fn unknown(keyword: &Name, tokens: &Tokens<'_>) -> Box<Diagnostic> {
     let message = format!("there is no statement `{}`", keyword.text);
-    let error = Diagnostic::new(code::STATEMENT, keyword.span.clone(), message).label("not a statement");
-    let near = names::nearest(&keyword.text, STATEMENTS.iter().copied());
-    Box::new(error.help(match near {
-        Some(near) => format!("did you mean `{near}`?"),
-        None if tokens.peek('=') => format!("an auxiliary value is defined by `let {} = …;`", keyword.text),
+    let error =
+        Diagnostic::new(code::STATEMENT, keyword.span.clone(), message).label("not a statement");
+    let advice = names::suggestion(&keyword.text, STATEMENTS.iter().copied());
+    Box::new(error.help(match advice {
+        Some(advice) => advice,
+        None if tokens.peek('=') => format!(
+            "an auxiliary value is defined by `let {} = …;`",
+            keyword.text
+        ),
         None => format!("statements are {}", STATEMENTS.join(", ")),
     }))
 }
@@ -81,14 +95,21 @@ fn unfinished(tokens: &Tokens<'_>) -> Box<Diagnostic> {
     }
     if tokens.is_empty() || tokens.starts_line() {
         let here = tokens.previous..tokens.previous;
-        let error = Diagnostic::new(code::EXPECTED, here, format!("expected `;`, found {}", tokens.found()));
+        let error = Diagnostic::new(
+            code::EXPECTED,
+            here,
+            format!("expected `;`, found {}", tokens.found()),
+        );
         return Box::new(error.label("expected `;` here"));
     }
     tokens.expected("an operator or `;`")
 }
 
 /// One or more items, separated by commas.
-fn list<'a, T>(tokens: &mut Tokens<'a>, item: impl Fn(&mut Tokens<'a>) -> Fallible<T>) -> Fallible<Vec<T>> {
+fn list<'a, T>(
+    tokens: &mut Tokens<'a>,
+    item: impl Fn(&mut Tokens<'a>) -> Fallible<T>,
+) -> Fallible<Vec<T>> {
     let mut items = vec![item(tokens)?];
     while tokens.eat(',') {
         items.push(item(tokens)?);
@@ -105,7 +126,10 @@ fn factor(tokens: &mut Tokens<'_>) -> Fallible<(Name, Name)> {
 fn basis(tokens: &mut Tokens<'_>) -> Fallible<Basis> {
     let elements = list(tokens, |tokens| {
         let name = tokens.expect_name("the name of a basis element")?;
-        let value = tokens.eat('=').then(|| expression::expression(tokens)).transpose()?;
+        let value = tokens
+            .eat('=')
+            .then(|| expression::expression(tokens))
+            .transpose()?;
         Ok((name, value))
     })?;
     keyword(tokens, "of")?;
@@ -120,7 +144,11 @@ fn basis(tokens: &mut Tokens<'_>) -> Fallible<Basis> {
         }
         None => None,
     };
-    Ok(Basis { elements, algebra, factor })
+    Ok(Basis {
+        elements,
+        algebra,
+        factor,
+    })
 }
 
 fn velocity(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
@@ -128,7 +156,9 @@ fn velocity(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
     match tokens.peek_name().map(|name| name.text).as_deref() {
         Some(frame @ ("child" | "parent")) => {
             tokens.name();
-            Ok(StatementKind::Velocity { child: frame == "child" })
+            Ok(StatementKind::Velocity {
+                child: frame == "child",
+            })
         }
         _ => Err(tokens.expected("`child` or `parent`")),
     }
