@@ -6,8 +6,10 @@
 //! holonomic and nonholonomic joints*.
 
 pub mod algebra;
+mod build;
 pub mod derived;
 pub mod diagnostic;
+pub mod emit;
 pub mod expand;
 pub mod expr;
 pub mod manifold;
@@ -17,4 +19,5 @@ mod pipeline;
 pub mod prove;
 pub mod spec;
 
+pub use build::{Build, BuildError, GENERATE_VARIABLE};
 pub use pipeline::{WORK_LIMIT, derive};

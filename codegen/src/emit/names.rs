@@ -2,24 +2,67 @@
 
 use super::formula::Node;
 use crate::derived::Derived;
-use crate::expr::{Function, Rational, Symbol};
+use crate::expr::{Function, Rational, Role, Symbol};
 use num_traits::{One, ToPrimitive};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Longest name made from a formula; longer formulas are named after their first symbol.
-const LONGEST: usize = 32;
+const LONGEST: usize = 44;
 
 /// Names that every kernel may use: its arguments, the constants, and what is imported.
 const RESERVED: &[&str] = &[
-    "q", "phi", "v", "p", "rate", "target", "speeds", "h", "zero", "one", "pi", "relations", "relation", "sum",
-    "nearest_rotation", "from_rows", "self", "core", "hamel", "std", "alloc",
+    "q",
+    "phi",
+    "v",
+    "p",
+    "rate",
+    "target",
+    "speeds",
+    "h",
+    "zero",
+    "one",
+    "pi",
+    "relations",
+    "relation",
+    "sum",
+    "rotation",
+    "nearest_rotation",
+    "from_rows",
+    "self",
+    "core",
+    "hamel",
+    "std",
+    "alloc",
 ];
 
 /// Names of types in emitted files, which a joint must not take.
 const RESERVED_TYPES: &[&str] = &[
-    "Arc", "AnyJoint", "Joint", "JointEntry", "Pose", "ParameterError", "ParameterInfo", "Scalar", "SMatrix", "SVector",
-    "Self", "Structure", "Structures", "VelocityFrame", "T", "Clone", "Copy", "Debug", "PartialEq", "Option", "Some", "None",
-    "Result", "Ok", "Err", "Iterator",
+    "Arc",
+    "AnyJoint",
+    "Joint",
+    "JointEntry",
+    "Pose",
+    "ParameterError",
+    "ParameterInfo",
+    "Scalar",
+    "SMatrix",
+    "SVector",
+    "Self",
+    "Structure",
+    "Structures",
+    "VelocityFrame",
+    "T",
+    "Clone",
+    "Copy",
+    "Debug",
+    "PartialEq",
+    "Option",
+    "Some",
+    "None",
+    "Result",
+    "Ok",
+    "Err",
+    "Iterator",
 ];
 
 /// The names that are taken.
@@ -29,12 +72,19 @@ pub struct NameSet {
 }
 
 impl NameSet {
+    fn is_free(&self, name: &str) -> bool {
+        !self.taken.contains(name)
+    }
+
     /// Takes a name: the one wished for, or that one with a number where it is taken or is a keyword.
     pub fn claim(&mut self, wish: &str) -> String {
         let wish = identifier(wish);
         let numbered = (2..).map(|n| format!("{wish}_{n}"));
-        let free = |name: &String| !self.taken.contains(name);
-        let name = std::iter::once(wish.clone()).chain(numbered).find(free).unwrap_or(wish);
+        let free = |name: &String| self.is_free(name);
+        let name = std::iter::once(wish.clone())
+            .chain(numbered)
+            .find(free)
+            .unwrap_or(wish);
         self.taken.insert(name.clone());
         name
     }
@@ -44,6 +94,22 @@ fn identifier(wish: &str) -> String {
     match syn::parse_str::<syn::Ident>(wish) {
         Ok(_) => wish.to_owned(),
         Err(_) => format!("{wish}_value"),
+    }
+}
+
+/// What is added to the name of a symbol whose own is taken.
+fn role_name(role: Role) -> &'static str {
+    match role {
+        Role::Parameter => "parameter",
+        Role::Coordinate => "coordinate",
+        Role::Target => "target",
+        Role::Local => "local",
+        Role::Velocity => "velocity",
+        Role::Speed => "speed",
+        Role::Momentum => "momentum",
+        Role::Wrench => "wrench",
+        Role::Inertia => "inertia",
+        Role::Intermediate => "value",
     }
 }
 
@@ -58,12 +124,21 @@ impl Names {
     /// Names for the parameters and for the arguments of all kernels.
     pub fn new(derived: &Derived) -> Self {
         let mut taken = NameSet::default();
-        taken.taken.extend(RESERVED.iter().map(|name| (*name).to_owned()));
+        taken
+            .taken
+            .extend(RESERVED.iter().map(|name| (*name).to_owned()));
         taken.taken.extend(number_words());
-        let mut names = Self { by_symbol: BTreeMap::new(), taken };
+        let mut names = Self {
+            by_symbol: BTreeMap::new(),
+            taken,
+        };
         let arguments = &derived.arguments;
         names.claim_coordinates(&arguments.configuration);
-        let parameters = derived.spec.parameters.iter().map(|parameter| &parameter.symbol);
+        let parameters = derived
+            .spec
+            .parameters
+            .iter()
+            .map(|parameter| &parameter.symbol);
         let others = [
             &arguments.target,
             &arguments.local,
@@ -72,7 +147,9 @@ impl Names {
             &arguments.momentum,
             &arguments.wrench,
         ];
-        parameters.chain(others.into_iter().flatten()).for_each(|symbol| names.claim(symbol));
+        parameters
+            .chain(others.into_iter().flatten())
+            .for_each(|symbol| names.claim(symbol));
         names
     }
 
@@ -89,19 +166,28 @@ impl Names {
     /// Gives a symbol its name.
     pub fn claim(&mut self, symbol: &Symbol) {
         if !self.by_symbol.contains_key(symbol) {
-            let name = self.taken.claim(&symbol.name);
+            let name = match self.taken.is_free(&symbol.name) {
+                true => self.taken.claim(&symbol.name),
+                false => self
+                    .taken
+                    .claim(&format!("{}_{}", symbol.name, role_name(symbol.role))),
+            };
             self.by_symbol.insert(symbol.clone(), name);
         }
     }
 
     /// Gives a symbol a name that is already its own.
     pub fn adopt(&mut self, symbol: &Symbol) {
-        self.by_symbol.entry(symbol.clone()).or_insert_with(|| symbol.name.to_string());
+        self.by_symbol
+            .entry(symbol.clone())
+            .or_insert_with(|| symbol.name.to_string());
     }
 
     /// The name of a symbol.
-    pub fn get(&self, symbol: &Symbol) -> &str {
-        self.by_symbol.get(symbol).map_or(&symbol.name, String::as_str)
+    pub fn get<'a>(&'a self, symbol: &'a Symbol) -> &'a str {
+        self.by_symbol
+            .get(symbol)
+            .map_or(&symbol.name, String::as_str)
     }
 
     /// All names that are taken.
@@ -125,20 +211,28 @@ pub fn type_name(joint: &str) -> String {
 }
 
 const WORDS: [&str; 13] = [
-    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
+    "eleven", "twelve",
 ];
 
 fn number_words() -> impl Iterator<Item = String> {
-    let fractions = ["half", "third", "quarter"];
-    WORDS.iter().chain(&fractions).map(|word| (*word).to_owned())
+    WORDS
+        .iter()
+        .chain(&["half", "third", "quarter"])
+        .map(|word| (*word).to_owned())
 }
 
 /// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `ratio_3_7`.
 pub fn number_name(value: &Rational) -> String {
-    let word = |n: &num_bigint::BigInt| n.to_usize().and_then(|n| WORDS.get(n)).map(|word| (*word).to_owned());
+    let word = |n: &num_bigint::BigInt| {
+        n.to_usize()
+            .and_then(|n| WORDS.get(n))
+            .map(|word| (*word).to_owned())
+    };
     let denominator = value.denom();
     if denominator.is_one() {
-        return word(value.numer()).unwrap_or_else(|| short("number", &[value.numer().to_string()]));
+        return word(value.numer())
+            .unwrap_or_else(|| short("number", &[value.numer().to_string()]));
     }
     let part = match denominator.to_u8() {
         Some(2) => Some("half"),
@@ -150,7 +244,10 @@ pub fn number_name(value: &Rational) -> String {
         (Some(part), _, true) => part.to_owned(),
         (Some("half"), Some(count), false) => format!("{count}_halves"),
         (Some(part), Some(count), false) => format!("{count}_{part}s"),
-        _ => short("ratio", &[value.numer().to_string(), denominator.to_string()]),
+        _ => short(
+            "ratio",
+            &[value.numer().to_string(), denominator.to_string()],
+        ),
     }
 }
 
@@ -179,7 +276,10 @@ pub fn describe(node: &Node) -> String {
         Node::Quotient(..) => "quotient",
         _ => "value",
     };
-    format!("{kind}_with_{}", first.unwrap_or_else(|| "constants".into()))
+    format!(
+        "{kind}_with_{}",
+        first.unwrap_or_else(|| "constants".into())
+    )
 }
 
 fn describe_fully(node: &Node) -> String {
@@ -190,14 +290,24 @@ fn describe_fully(node: &Node) -> String {
         Node::Sum(terms) => {
             let mut text = String::new();
             for (i, (minus, term)) in terms.iter().enumerate() {
-                text += if i == 0 { "" } else if *minus { "_minus_" } else { "_plus_" };
+                text += if i == 0 {
+                    ""
+                } else if *minus {
+                    "_minus_"
+                } else {
+                    "_plus_"
+                };
                 text += &describe_fully(term);
             }
             text
         }
         Node::Product(factors) => describe_product(factors),
-        Node::Quotient(above, below) if above.is_one() => format!("inverse_{}", describe_fully(below)),
-        Node::Quotient(above, below) => format!("{}_over_{}", describe_fully(above), describe_fully(below)),
+        Node::Quotient(above, below) if above.is_one() => {
+            format!("inverse_{}", describe_fully(below))
+        }
+        Node::Quotient(above, below) => {
+            format!("{}_over_{}", describe_fully(above), describe_fully(below))
+        }
         Node::Negative(inner) => format!("minus_{}", describe_fully(inner)),
         Node::Call(function, arguments) => {
             let arguments: Vec<String> = arguments.iter().map(describe_fully).collect();

@@ -32,13 +32,19 @@ impl Counts {
                 Binding::Value { value, .. } => Self::of(value),
                 Binding::SinCos { angle, .. } => Self::of(angle).plus_call(),
                 Binding::Call { argument, .. } => {
-                    let mut inner = Self { calls: 1, ..Self::default() };
+                    let mut inner = Self {
+                        calls: 1,
+                        ..Self::default()
+                    };
                     argument.iter().for_each(|entry| inner += Self::of(entry));
                     inner
                 }
             };
         }
-        program.outputs.iter().for_each(|output| counts += Self::of(output));
+        program
+            .outputs
+            .iter()
+            .for_each(|output| counts += Self::of(output));
         counts
     }
 
@@ -82,7 +88,9 @@ impl std::fmt::Display for Counts {
         ];
         let plural = |count: usize| if count == 1 { "" } else { "s" };
         let shown = parts.iter().filter(|(count, _)| *count > 0);
-        let shown: Vec<String> = shown.map(|(count, name)| format!("{count} {name}{}", plural(*count))).collect();
+        let shown: Vec<String> = shown
+            .map(|(count, name)| format!("{count} {name}{}", plural(*count)))
+            .collect();
         match shown.is_empty() {
             true => f.write_str("none"),
             false => f.write_str(&shown.join(", ")),

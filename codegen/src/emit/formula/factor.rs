@@ -31,7 +31,9 @@ enum Factor {
 /// The terms after pulling out factors, each under the smallest monomial that went into it.
 fn terms(expression: &Expr) -> BTreeMap<Monomial, Node> {
     let Some(factor) = most_shared(expression) else {
-        let single = |(monomial, coefficient): (&Monomial, &Rational)| (monomial.clone(), single_term(monomial, coefficient));
+        let single = |(monomial, coefficient): (&Monomial, &Rational)| {
+            (monomial.clone(), single_term(monomial, coefficient))
+        };
         return expression.terms().map(single).collect();
     };
     let (mut inside, mut outside, mut first) = (Expr::zero(), Expr::zero(), None);
@@ -54,11 +56,17 @@ fn most_shared(expression: &Expr) -> Option<Factor> {
     let mut uses: BTreeMap<Factor, usize> = BTreeMap::new();
     for (monomial, coefficient) in expression.terms() {
         for (atom, power) in monomial.factors() {
-            let factor = if power > 0 { Factor::Atom(atom.clone()) } else { Factor::Divisor(atom.clone()) };
+            let factor = if power > 0 {
+                Factor::Atom(atom.clone())
+            } else {
+                Factor::Divisor(atom.clone())
+            };
             *uses.entry(factor).or_default() += 1;
         }
         if !coefficient.abs().is_one() {
-            *uses.entry(Factor::Coefficient(coefficient.abs())).or_default() += 1;
+            *uses
+                .entry(Factor::Coefficient(coefficient.abs()))
+                .or_default() += 1;
         }
     }
     let shared = uses.into_iter().filter(|(_, count)| *count >= 2);
@@ -72,7 +80,9 @@ impl Factor {
         let same = |rest: Monomial| Expr::term(coefficient.clone(), rest);
         match self {
             Self::Atom(atom) if monomial.power(atom) > 0 => without(monomial, atom).map(same),
-            Self::Divisor(atom) if monomial.power(atom) < 0 => Some(same(monomial.times(&Monomial::atom(atom.clone())))),
+            Self::Divisor(atom) if monomial.power(atom) < 0 => {
+                Some(same(monomial.times(&Monomial::atom(atom.clone()))))
+            }
             Self::Coefficient(size) if coefficient.abs() == *size => {
                 Some(Expr::term(coefficient.signum(), monomial.clone()))
             }
@@ -106,7 +116,9 @@ fn times_atom(inside: Node, atom: &Atom) -> Node {
 }
 
 fn reciprocal_of(atom: &Atom) -> Option<Node> {
-    let Atom::Apply(application) = atom else { return None };
+    let Atom::Apply(application) = atom else {
+        return None;
+    };
     match (application.function, application.arguments.as_slice()) {
         (Function::Recip, [divisor]) => Some(factored(divisor)),
         _ => None,
@@ -131,10 +143,14 @@ fn single_term(monomial: &Monomial, coefficient: &Rational) -> Node {
 fn node_of_atom(atom: &Atom) -> Node {
     match atom {
         Atom::Symbol(symbol) => Node::Symbol(symbol.clone()),
-        Atom::Apply(application) => match (application.function, application.arguments.as_slice()) {
-            (Function::Pi, _) => Node::Pi,
-            (Function::Recip, [divisor]) => Node::one().over(factored(divisor)),
-            (function, arguments) => Node::Call(function, arguments.iter().map(factored).collect()),
-        },
+        Atom::Apply(application) => {
+            match (application.function, application.arguments.as_slice()) {
+                (Function::Pi, _) => Node::Pi,
+                (Function::Recip, [divisor]) => Node::one().over(factored(divisor)),
+                (function, arguments) => {
+                    Node::Call(function, arguments.iter().map(factored).collect())
+                }
+            }
+        }
     }
 }

@@ -42,7 +42,11 @@ impl Node {
     /// The number `value`.
     pub fn number(value: &Rational) -> Self {
         let size = Self::Number(value.abs());
-        if value.is_negative() { size.negated() } else { size }
+        if value.is_negative() {
+            size.negated()
+        } else {
+            size
+        }
     }
 
     /// Zero.
@@ -104,7 +108,9 @@ impl Node {
         }
         let value = match (Self::of_factors(parts.above), parts.below.is_empty()) {
             (above, true) => above,
-            (above, false) => Self::Quotient(Box::new(above), Box::new(Self::of_factors(parts.below))),
+            (above, false) => {
+                Self::Quotient(Box::new(above), Box::new(Self::of_factors(parts.below)))
+            }
         };
         match (value.is_zero_quotient(), parts.negative) {
             (true, _) => Self::zero(),
@@ -119,7 +125,11 @@ impl Node {
         let mut parts = Parts::default();
         parts.multiply(denominator);
         let (above, below) = (Self::of_factors(parts.below), Self::of_factors(parts.above));
-        let sign = if parts.negative { Self::one().negated() } else { Self::one() };
+        let sign = if parts.negative {
+            Self::one().negated()
+        } else {
+            Self::one()
+        };
         let quotient = match below.is_one() {
             true => Self::one(),
             false => Self::Quotient(Box::new(Self::one()), Box::new(below)),
@@ -148,11 +158,18 @@ impl Node {
     pub fn map_parts(&self, f: &mut impl FnMut(&Self) -> Self) -> Self {
         match self {
             Self::Number(_) | Self::Symbol(_) | Self::Pi => self.clone(),
-            Self::Sum(terms) => Self::Sum(terms.iter().map(|(minus, term)| (*minus, f(term))).collect()),
+            Self::Sum(terms) => Self::Sum(
+                terms
+                    .iter()
+                    .map(|(minus, term)| (*minus, f(term)))
+                    .collect(),
+            ),
             Self::Product(factors) => Self::Product(factors.iter().map(f).collect()),
             Self::Quotient(above, below) => Self::Quotient(Box::new(f(above)), Box::new(f(below))),
             Self::Negative(inner) => Self::Negative(Box::new(f(inner))),
-            Self::Call(function, arguments) => Self::Call(*function, arguments.iter().map(f).collect()),
+            Self::Call(function, arguments) => {
+                Self::Call(*function, arguments.iter().map(f).collect())
+            }
         }
     }
 
@@ -180,23 +197,35 @@ impl Node {
     #[must_use]
     pub fn polished(&self) -> Self {
         match self {
-            Self::Negative(inner) => match inner.as_ref() {
-                Self::Sum(terms) if terms.iter().any(|(subtracted, _)| *subtracted) => {
-                    let flipped = terms.iter().map(|(minus, term)| (!minus, term.polished()));
-                    Self::Sum(positive_first(flipped.collect()))
-                }
-                other => Self::Negative(Box::new(other.polished())),
-            },
+            Self::Negative(inner) => inner
+                .flipped()
+                .unwrap_or_else(|| Self::Negative(Box::new(inner.polished()))),
             other => other.map_parts(&mut Self::polished),
         }
     }
-}
 
-fn positive_first(mut terms: Vec<(bool, Node)>) -> Vec<(bool, Node)> {
-    if let Some(first) = terms.iter().position(|(subtracted, _)| !subtracted) {
-        terms[..=first].rotate_right(1);
+    /// The opposite without a sign in front, where a sum with both signs can take it up.
+    fn flipped(&self) -> Option<Self> {
+        match self {
+            Self::Sum(terms) => {
+                let flipped = terms.iter().map(|(minus, term)| (!minus, term.polished()));
+                let mut flipped: Vec<_> = flipped.collect();
+                let first = flipped.iter().position(|(subtracted, _)| !subtracted)?;
+                flipped.rotate_left(first);
+                Some(Self::Sum(flipped))
+            }
+            Self::Product(factors) => {
+                let (at, flipped) = factors
+                    .iter()
+                    .enumerate()
+                    .find_map(|(at, factor)| Some((at, factor.flipped()?)))?;
+                let mut factors: Vec<Self> = factors.iter().map(Self::polished).collect();
+                factors[at] = flipped;
+                Some(Self::Product(factors))
+            }
+            _ => None,
+        }
     }
-    terms
 }
 
 fn push_term(signed: &mut Vec<(bool, Node)>, minus: bool, term: Node) {

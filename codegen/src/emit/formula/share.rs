@@ -82,8 +82,16 @@ impl Program {
         for step in &kernel.steps {
             sharing.step(step, &mut remaining);
         }
-        let outputs = formulas[of_steps..].iter().map(|node| sharing.rewrite(node)).collect();
-        Self { bindings: sharing.bindings, outputs }.polished().pruned()
+        let outputs = formulas[of_steps..]
+            .iter()
+            .map(|node| sharing.rewrite(node))
+            .collect();
+        Self {
+            bindings: sharing.bindings,
+            outputs,
+        }
+        .polished()
+        .pruned()
     }
 
     /// Without lines whose results nothing uses.
@@ -91,7 +99,8 @@ impl Program {
         loop {
             let used = self.symbols();
             let before = self.bindings.len();
-            self.bindings.retain(|binding| binding.names().iter().any(|name| used.contains(*name)));
+            self.bindings
+                .retain(|binding| binding.names().iter().any(|name| used.contains(*name)));
             if self.bindings.len() == before {
                 return self;
             }
@@ -141,7 +150,8 @@ fn formulas_of_step(step: &Step) -> Vec<Node> {
 /// Rewrites formulas in order, binding a shared part just before the first line that uses it.
 struct Sharing {
     uses: BTreeMap<Node, usize>,
-    names: BTreeMap<Node, Symbol>,
+    /// What stands for a formula: the name that it is bound to, or what a name merely repeats.
+    names: BTreeMap<Node, Node>,
     taken: NameSet,
     bindings: Vec<Binding>,
     count: usize,
@@ -150,33 +160,67 @@ struct Sharing {
 impl Sharing {
     fn new(formulas: &[Node], taken: NameSet) -> Self {
         let mut uses = BTreeMap::new();
-        formulas.iter().for_each(|formula| count_uses(formula, &mut uses));
-        Self { uses, names: BTreeMap::new(), taken, bindings: vec![], count: 0 }
+        formulas
+            .iter()
+            .for_each(|formula| count_uses(formula, &mut uses));
+        Self {
+            uses,
+            names: BTreeMap::new(),
+            taken,
+            bindings: vec![],
+            count: 0,
+        }
     }
 
     fn step<'a>(&mut self, step: &Step, formulas: &mut impl Iterator<Item = &'a Node>) {
         match step {
             Step::Let(name, _) => {
-                let Some(formula) = formulas.next() else { return };
+                let Some(formula) = formulas.next() else {
+                    return;
+                };
                 let value = self.rewrite_named(formula);
-                self.bindings.push(Binding::Value { name: name.clone(), value });
-                // Later occurrences of the same formula use the name that the derivation gave it.
-                if is_operation(formula) {
-                    self.names.entry(formula.clone()).or_insert_with(|| name.clone());
-                }
+                self.define(name, formula, value);
             }
-            Step::Call { primitive, argument, outputs } => {
+            Step::Call {
+                primitive,
+                argument,
+                outputs,
+            } => {
                 let count = argument.entries().len();
-                let argument = formulas.take(count).map(|formula| self.rewrite(formula)).collect();
-                self.bindings.push(Binding::Call { primitive: *primitive, argument, outputs: outputs.clone() });
+                let argument = formulas
+                    .take(count)
+                    .map(|formula| self.rewrite(formula))
+                    .collect();
+                self.bindings.push(Binding::Call {
+                    primitive: *primitive,
+                    argument,
+                    outputs: outputs.clone(),
+                });
             }
         }
+    }
+
+    /// Binds a name of the derivation: later occurrences of its formula use it; a name for a name is not bound at all.
+    fn define(&mut self, name: &Symbol, formula: &Node, value: Node) {
+        if matches!(value, Node::Symbol(_) | Node::Number(_)) {
+            self.names.insert(Node::Symbol(name.clone()), value);
+            return;
+        }
+        if is_operation(formula) {
+            self.names
+                .entry(formula.clone())
+                .or_insert_with(|| Node::Symbol(name.clone()));
+        }
+        self.bindings.push(Binding::Value {
+            name: name.clone(),
+            value,
+        });
     }
 
     /// The formula with its shared parts replaced by names, but not itself bound: its caller names it.
     fn rewrite_named(&mut self, node: &Node) -> Node {
         match (self.names.get(node), node) {
-            (Some(name), _) => Node::Symbol(name.clone()),
+            (Some(known), _) => known.clone(),
             (None, Node::Call(Function::Sin | Function::Cos, _)) => self.rewrite(node),
             (None, _) => node.map_parts(&mut |part| self.rewrite(part)),
         }
@@ -184,8 +228,8 @@ impl Sharing {
 
     /// The formula with its shared parts replaced by names.
     fn rewrite(&mut self, node: &Node) -> Node {
-        if let Some(name) = self.names.get(node) {
-            return Node::Symbol(name.clone());
+        if let Some(known) = self.names.get(node) {
+            return known.clone();
         }
         if let Node::Call(Function::Sin | Function::Cos, arguments) = node
             && let [angle] = arguments.as_slice()
@@ -200,10 +244,11 @@ impl Sharing {
     }
 
     fn bind(&mut self, node: &Node, value: Node) -> Node {
-        let symbol = self.fresh(&describe(&value));
+        let name = self.fresh(&describe(&value));
+        let symbol = Node::Symbol(name.clone());
         self.names.insert(node.clone(), symbol.clone());
-        self.bindings.push(Binding::Value { name: symbol.clone(), value });
-        Node::Symbol(symbol)
+        self.bindings.push(Binding::Value { name, value });
+        symbol
     }
 
     /// Binds sine and cosine of the angle together, as far as they are used.
@@ -214,17 +259,18 @@ impl Sharing {
             let call = Node::Call(function, vec![angle.clone()]);
             sharing.uses.contains_key(&call).then(|| {
                 let symbol = sharing.fresh(&format!("{prefix}_{text}"));
-                sharing.names.insert(call, symbol.clone());
+                sharing.names.insert(call, Node::Symbol(symbol.clone()));
                 symbol
             })
         };
         let sin = name(self, Function::Sin, "sin");
         let cos = name(self, Function::Cos, "cos");
-        self.bindings.push(Binding::SinCos { sin, cos, angle: value });
-        match self.names.get(node) {
-            Some(symbol) => Node::Symbol(symbol.clone()),
-            None => node.clone(),
-        }
+        self.bindings.push(Binding::SinCos {
+            sin,
+            cos,
+            angle: value,
+        });
+        self.names.get(node).unwrap_or(node).clone()
     }
 
     fn fresh(&mut self, wish: &str) -> Symbol {
@@ -239,10 +285,15 @@ fn count_uses(node: &Node, uses: &mut BTreeMap<Node, usize>) {
     let count = uses.entry(node.clone()).or_default();
     *count += 1;
     if *count == 1 {
-        node.parts().into_iter().for_each(|part| count_uses(part, uses));
+        node.parts()
+            .into_iter()
+            .for_each(|part| count_uses(part, uses));
     }
 }
 
 fn is_operation(node: &Node) -> bool {
-    matches!(node, Node::Sum(_) | Node::Product(_) | Node::Quotient(..) | Node::Call(..))
+    matches!(
+        node,
+        Node::Sum(_) | Node::Product(_) | Node::Quotient(..) | Node::Call(..)
+    )
 }

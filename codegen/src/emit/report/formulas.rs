@@ -23,14 +23,21 @@ pub struct Formula {
 pub fn main_formulas(derived: &Derived) -> Vec<Formula> {
     let notation = Notation::new(derived);
     let kernels = [KernelKind::Pose, KernelKind::TwistMap];
-    let mut shown: Vec<Formula> = kernels.iter().filter_map(|kind| of_kernel(derived, &notation, *kind)).collect();
+    let mut shown: Vec<Formula> = kernels
+        .iter()
+        .filter_map(|kind| of_kernel(derived, &notation, *kind))
+        .collect();
     shown.push(velocity_map(derived, &notation));
     shown
 }
 
 /// All formulas of a page.
 pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
-    let before = [KernelKind::Pose, KernelKind::TwistMap, KernelKind::TwistMapChild];
+    let before = [
+        KernelKind::Pose,
+        KernelKind::TwistMap,
+        KernelKind::TwistMapChild,
+    ];
     let after = [
         KernelKind::VelocityMapInverse,
         KernelKind::VelocityMapGradient,
@@ -46,18 +53,33 @@ pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
     let of = |kind: &KernelKind| of_kernel(derived, notation, *kind);
     let first: Vec<Formula> = before.iter().filter_map(of).collect();
     let series = std::iter::once(velocity_map(derived, notation));
-    first.into_iter().chain(series).chain(after.iter().filter_map(of)).collect()
+    first
+        .into_iter()
+        .chain(series)
+        .chain(after.iter().filter_map(of))
+        .collect()
 }
 
 fn velocity_map(derived: &Derived, notation: &Notation) -> Formula {
     let series = series(derived, notation);
-    let higher = if derived.kernel(KernelKind::VelocityMapGradient).is_some_and(all_zero) { "" } else { " + O(ϕ²)" };
+    let higher = if derived
+        .kernel(KernelKind::VelocityMapGradient)
+        .is_some_and(all_zero)
+    {
+        ""
+    } else {
+        " + O(ϕ²)"
+    };
     let mut text = format!("S(Q, ϕ) = {}{higher}", series.product);
     for (name, matrix) in &series.parts {
         text += "\n\n";
         text += &shown(notation, name, matrix);
     }
-    Formula { title: "ϕ̇ to v, to first order in ϕ, (32)".into(), text, statement: String::new() }
+    Formula {
+        title: "ϕ̇ to v, to first order in ϕ, (32)".into(),
+        text,
+        statement: String::new(),
+    }
 }
 
 /// The formula of a kernel; nothing for parts of nonholonomic joints where there are none.
@@ -65,12 +87,20 @@ fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option
     let kernel = derived.kernel(kind)?;
     let (name, title) = heading(kind)?;
     let holonomic = derived.shape.constraints == 0;
-    let only_nonholonomic = [KernelKind::Constraint, KernelKind::SpeedBasis, KernelKind::SpeedBasisGradient];
+    let only_nonholonomic = [
+        KernelKind::Constraint,
+        KernelKind::SpeedBasis,
+        KernelKind::SpeedBasisGradient,
+    ];
     if holonomic && only_nonholonomic.contains(&kind) {
         return None;
     }
     let statement = statement(&derived.spec, kind).unwrap_or_default();
-    Some(Formula { title: title.into(), text: text(notation, kernel, name), statement })
+    Some(Formula {
+        title: title.into(),
+        text: text(notation, kernel, name),
+        statement,
+    })
 }
 
 fn heading(kind: KernelKind) -> Option<(&'static str, &'static str)> {
@@ -80,29 +110,47 @@ fn heading(kind: KernelKind) -> Option<(&'static str, &'static str)> {
         KernelKind::TwistMapChild => ("Ad_H⁻¹ X", "v to twist, in the child frame"),
         KernelKind::VelocityMapInverse => ("S₀⁻¹", "v to ϕ̇ at ϕ = 0"),
         KernelKind::VelocityMapGradient => ("∂S/∂ϕ", "Derivatives of S at ϕ = 0"),
-        KernelKind::Gamma => ("Σ γₖ vₖ", "Boltzmann–Hamel term of the Lagrangian form, (17)"),
+        KernelKind::Gamma => (
+            "Σ γₖ vₖ",
+            "Boltzmann–Hamel term of the Lagrangian form, (17)",
+        ),
         KernelKind::J22 => ("J22", "Gyroscopic matrix of the Hamiltonian form, (28)"),
         KernelKind::Constraint => ("A", "Constraint: Aᵀ v = 0"),
         KernelKind::SpeedBasis => ("S\u{304}", "Speeds to v"),
-        KernelKind::SpeedBasisGradient => ("∂S\u{304}/∂ϕ", "Derivatives of the basis of speeds at ϕ = 0"),
+        KernelKind::SpeedBasisGradient => (
+            "∂S\u{304}/∂ϕ",
+            "Derivatives of the basis of speeds at ϕ = 0",
+        ),
         KernelKind::ConfigurationRate => ("Q\u{307}", "Rate of the stored scalars, (31)"),
-        KernelKind::BiasAcceleration => ("c", "Velocity product term of the recursive forms, in the child frame"),
-        KernelKind::BiasMomentum => ("X\u{307}\u{304}ᵀ h", "Its dual, for a momentum h in the child frame"),
+        KernelKind::BiasAcceleration => (
+            "c",
+            "Velocity product term of the recursive forms, in the child frame",
+        ),
+        KernelKind::BiasMomentum => (
+            "X\u{307}\u{304}ᵀ h",
+            "Its dual, for a momentum h in the child frame",
+        ),
         _ => return None,
     })
 }
 
 fn text(notation: &Notation, kernel: &Kernel, name: &str) -> String {
     match (kernel.kind, kernel.outputs.as_slice()) {
-        (KernelKind::Pose, [rotation, translation]) => shown(notation, name, &homogeneous(rotation, translation)),
-        (KernelKind::VelocityMapGradient | KernelKind::SpeedBasisGradient, slices) => match all_zero(kernel) {
-            true => format!("{name} = 0"),
-            false => {
-                let each = slices.iter().enumerate();
-                let each = each.map(|(k, slice)| shown(notation, &format!("{name}{}", subscript(k + 1)), slice));
-                each.collect::<Vec<_>>().join("\n\n")
+        (KernelKind::Pose, [rotation, translation]) => {
+            shown(notation, name, &homogeneous(rotation, translation))
+        }
+        (KernelKind::VelocityMapGradient | KernelKind::SpeedBasisGradient, slices) => {
+            match all_zero(kernel) {
+                true => format!("{name} = 0"),
+                false => {
+                    let each = slices.iter().enumerate();
+                    let each = each.map(|(k, slice)| {
+                        shown(notation, &format!("{name}{}", subscript(k + 1)), slice)
+                    });
+                    each.collect::<Vec<_>>().join("\n\n")
+                }
             }
-        },
+        }
         (_, [only]) => shown(notation, name, only),
         _ => String::new(),
     }
@@ -125,7 +173,11 @@ fn shown(notation: &Notation, name: &str, matrix: &Matrix) -> String {
     if matrix.rows() == matrix.columns() && matrix.rows() > 1 && matrix.is_identity() {
         return format!("{name} = I");
     }
-    let entries: Vec<String> = matrix.entries().iter().map(|entry| notation.expression(entry)).collect();
+    let entries: Vec<String> = matrix
+        .entries()
+        .iter()
+        .map(|entry| notation.expression(entry))
+        .collect();
     let lines = match entries.as_slice() {
         [only] => vec![only.clone()],
         _ => layout::matrix(&entries, matrix.columns()),

@@ -2,7 +2,9 @@
 
 /// Number of columns that a text takes: combining marks take none.
 pub fn width(text: &str) -> usize {
-    text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
+    text.chars()
+        .filter(|c| !('\u{300}'..='\u{36f}').contains(c))
+        .count()
 }
 
 /// `text` padded on the left to `size` columns.
@@ -20,10 +22,22 @@ pub fn matrix(entries: &[String], columns: usize) -> Vec<String> {
     let columns = columns.max(1);
     let rows = entries.chunks(columns);
     let count = rows.len();
-    let widest = |j: usize| entries.iter().skip(j).step_by(columns).map(|entry| width(entry)).max().unwrap_or(0);
+    let widest = |j: usize| {
+        entries
+            .iter()
+            .skip(j)
+            .step_by(columns)
+            .map(|entry| width(entry))
+            .max()
+            .unwrap_or(0)
+    };
     let widths: Vec<usize> = (0..columns).map(widest).collect();
     let line = |(i, row): (usize, &[String])| {
-        let cells: Vec<String> = row.iter().zip(&widths).map(|(entry, size)| right_aligned(entry, *size)).collect();
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .map(|(entry, size)| right_aligned(entry, *size))
+            .collect();
         let (open, close) = brackets(i, count);
         format!("{open}{}{close}", cells.join("  "))
     };

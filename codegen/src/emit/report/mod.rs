@@ -63,10 +63,17 @@ impl Report {
             name: spec.name.value.clone(),
             type_name: type_name(&spec.name.value),
             summary: summary(&spec.docs, &spec.name.value),
-            docs: spec.docs.iter().map(|line| line.trim().to_owned()).collect(),
+            docs: spec
+                .docs
+                .iter()
+                .map(|line| line.trim().to_owned())
+                .collect(),
             parameters: tables::parameters(derived),
             manifold: manifold(derived),
-            coordinates: coordinates.iter().map(|symbol| notation.symbol(symbol)).collect(),
+            coordinates: coordinates
+                .iter()
+                .map(|symbol| notation.symbol(symbol))
+                .collect(),
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
             velocity_frame: velocity_frame(spec.velocity.value).to_owned(),
@@ -81,7 +88,11 @@ impl Report {
 
 /// The first sentence of a doc comment.
 pub fn summary(docs: &[String], name: &str) -> String {
-    let text: Vec<&str> = docs.iter().map(|line| line.trim()).take_while(|line| !line.is_empty()).collect();
+    let text: Vec<&str> = docs
+        .iter()
+        .map(|line| line.trim())
+        .take_while(|line| !line.is_empty())
+        .collect();
     let text = text.join(" ");
     let end = text.find(". ").map_or(text.len(), |at| at + 1);
     match text[..end].is_empty() {
@@ -93,7 +104,9 @@ pub fn summary(docs: &[String], name: &str) -> String {
 /// The configuration manifold: `R ∈ SO3, p ∈ R3`.
 pub fn manifold(derived: &Derived) -> String {
     let factors = derived.spec.manifold.value.factors().iter();
-    let named: Vec<String> = factors.map(|factor| format!("{} ∈ {}", factor.name, factor.kind.name())).collect();
+    let named: Vec<String> = factors
+        .map(|factor| format!("{} ∈ {}", factor.name, factor.kind.name()))
+        .collect();
     named.join(", ")
 }
 

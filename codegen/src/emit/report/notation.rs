@@ -35,7 +35,11 @@ impl Notation {
         ];
         for (symbols, letter) in numbered {
             for (i, symbol) in symbols.iter().enumerate() {
-                let name = if symbols.len() == 1 { letter.to_owned() } else { format!("{letter}{}", subscript(i + 1)) };
+                let name = if symbols.len() == 1 {
+                    letter.to_owned()
+                } else {
+                    format!("{letter}{}", subscript(i + 1))
+                };
                 by_symbol.insert(symbol.clone(), name);
             }
         }
@@ -47,7 +51,10 @@ impl Notation {
 
     /// A symbol.
     pub fn symbol(&self, symbol: &Symbol) -> String {
-        self.by_symbol.get(symbol).cloned().unwrap_or_else(|| letter(&symbol.name))
+        self.by_symbol
+            .get(symbol)
+            .cloned()
+            .unwrap_or_else(|| letter(&symbol.name))
     }
 
     /// An expression, with common factors pulled out.
@@ -72,7 +79,13 @@ impl Notation {
     fn sum(&self, terms: &[(bool, Node)]) -> String {
         let mut text = String::new();
         for (i, (minus, term)) in terms.iter().enumerate() {
-            text += if i == 0 { "" } else if *minus { " − " } else { " + " };
+            text += if i == 0 {
+                ""
+            } else if *minus {
+                " − "
+            } else {
+                " + "
+            };
             text += &self.tight(term);
         }
         text
@@ -83,7 +96,11 @@ impl Notation {
         let mut rest = factors;
         while let Some(first) = rest.first() {
             let copies = rest.iter().take_while(|factor| *factor == first).count();
-            let power = if copies > 1 { superscript(copies) } else { String::new() };
+            let power = if copies > 1 {
+                superscript(copies)
+            } else {
+                String::new()
+            };
             words.push(self.atom(first) + &power);
             rest = &rest[copies..];
         }
@@ -91,7 +108,10 @@ impl Notation {
     }
 
     fn call(&self, function: Function, arguments: &[Node]) -> String {
-        let inner: Vec<String> = arguments.iter().map(|argument| self.formula(argument)).collect();
+        let inner: Vec<String> = arguments
+            .iter()
+            .map(|argument| self.formula(argument))
+            .collect();
         let inner = inner.join(", ");
         let spaced = |name: &str| match arguments {
             [Node::Symbol(_)] => format!("{name} {inner}"),
@@ -123,7 +143,9 @@ impl Notation {
     /// In parentheses where it is an operation.
     fn atom(&self, node: &Node) -> String {
         match node {
-            Node::Sum(_) | Node::Product(_) | Node::Quotient(..) | Node::Negative(_) => format!("({})", self.formula(node)),
+            Node::Sum(_) | Node::Product(_) | Node::Quotient(..) | Node::Negative(_) => {
+                format!("({})", self.formula(node))
+            }
             _ => self.formula(node),
         }
     }
@@ -133,13 +155,26 @@ impl Notation {
 fn names_of_factor(factor: &Factor) -> Vec<String> {
     let name = letter(&factor.name);
     let entries = |rows: usize, columns: usize| -> Vec<String> {
-        let entry = |n: usize| format!("{name}{}{}", subscript(n / columns + 1), subscript(n % columns + 1));
+        let entry = |n: usize| {
+            format!(
+                "{name}{}{}",
+                subscript(n / columns + 1),
+                subscript(n % columns + 1)
+            )
+        };
         (0..rows * columns).map(entry).collect()
     };
-    let fields = |letters: &str| letters.chars().map(|field| format!("{name}.{field}")).collect();
+    let fields = |letters: &str| {
+        letters
+            .chars()
+            .map(|field| format!("{name}.{field}"))
+            .collect()
+    };
     match factor.kind {
         Kind::Real(1) => vec![name],
-        Kind::Real(size) => (1..=size).map(|n| format!("{name}{}", subscript(n))).collect(),
+        Kind::Real(size) => (1..=size)
+            .map(|n| format!("{name}{}", subscript(n)))
+            .collect(),
         Kind::S1 => fields("cs"),
         Kind::S3 => fields("wxyz"),
         Kind::S2 => fields("xyz"),
@@ -178,7 +213,10 @@ pub fn subscript(n: usize) -> String {
 
 fn superscript(n: usize) -> String {
     let raised = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    n.to_string().chars().filter_map(|digit| raised.get(digit.to_digit(10)? as usize)).collect()
+    n.to_string()
+        .chars()
+        .filter_map(|digit| raised.get(digit.to_digit(10)? as usize))
+        .collect()
 }
 
 fn digits(n: usize, zero: char) -> String {
@@ -187,7 +225,15 @@ fn digits(n: usize, zero: char) -> String {
 }
 
 fn number(value: &Rational) -> String {
-    let known = [((1, 2), "½"), ((1, 3), "⅓"), ((2, 3), "⅔"), ((1, 4), "¼"), ((3, 4), "¾"), ((1, 6), "⅙"), ((1, 8), "⅛")];
+    let known = [
+        ((1, 2), "½"),
+        ((1, 3), "⅓"),
+        ((2, 3), "⅔"),
+        ((1, 4), "¼"),
+        ((3, 4), "¾"),
+        ((1, 6), "⅙"),
+        ((1, 8), "⅛"),
+    ];
     let is = |(above, below): (i32, i32)| *value == Rational::new(above.into(), below.into());
     match known.iter().find(|(fraction, _)| is(*fraction)) {
         Some((_, text)) => (*text).to_owned(),

@@ -30,8 +30,19 @@ fn lines_around(source: &str, span: Range<usize>) -> Option<String> {
         return None;
     }
     let start = source.get(..span.start)?.rfind('\n').map_or(0, |at| at + 1);
-    let end = source.get(span.end..)?.find('\n').map_or(source.len(), |at| span.end + at);
-    let code = source.get(start..end)?.lines().map(|line| line.split("//").next().unwrap_or_default().trim());
+    let end = source
+        .get(span.end..)?
+        .find('\n')
+        .map_or(source.len(), |at| span.end + at);
+    let code = source
+        .get(start..end)?
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default().trim());
     let words: Vec<&str> = code.filter(|line| !line.is_empty()).collect();
-    (!words.is_empty()).then(|| words.join(" "))
+    let one_line = words
+        .join(" ")
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ");
+    (!one_line.is_empty()).then_some(one_line)
 }

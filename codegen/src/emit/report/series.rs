@@ -20,14 +20,22 @@ pub struct Series {
 pub fn series(derived: &Derived, notation: &Notation) -> Series {
     let (left, right) = &derived.velocity_map_series;
     let mut parts = vec![];
-    let left_name = if left.is_identity() { None } else { Some(known_matrix(derived, left)) };
+    let left_name = if left.is_identity() {
+        None
+    } else {
+        Some(known_matrix(derived, left))
+    };
     let left_text = left_name.map(|name| {
         name.unwrap_or_else(|| {
             parts.push(("S₀".to_owned(), left.clone()));
             "S₀".to_owned()
         })
     });
-    let right_text = if right.is_identity() { None } else { Some(linear_factor(derived, notation, right, &mut parts)) };
+    let right_text = if right.is_identity() {
+        None
+    } else {
+        Some(linear_factor(derived, notation, right, &mut parts))
+    };
     let product = match (left_text, right_text) {
         (None, None) => "I".to_owned(),
         (Some(left), None) => left,
@@ -39,22 +47,36 @@ pub fn series(derived: &Derived, notation: &Notation) -> Series {
 
 /// The name of a matrix of coordinates: a factor itself, or its transpose.
 fn known_matrix(derived: &Derived, matrix: &Matrix) -> Option<String> {
-    derived.spec.manifold.value.factors().iter().find_map(|factor| {
-        let itself = factor.matrix();
-        let name = &factor.name;
-        match (*matrix == itself, *matrix == itself.transpose()) {
-            (true, _) => Some(name.clone()),
-            (_, true) => Some(format!("{name}ᵀ")),
-            _ => None,
-        }
-    })
+    derived
+        .spec
+        .manifold
+        .value
+        .factors()
+        .iter()
+        .find_map(|factor| {
+            let itself = factor.matrix();
+            let name = &factor.name;
+            match (*matrix == itself, *matrix == itself.transpose()) {
+                (true, _) => Some(name.clone()),
+                (_, true) => Some(format!("{name}ᵀ")),
+                _ => None,
+            }
+        })
 }
 
 /// `I + ½ ϕ~`, `I − ½ ad_ϕ`, or `I + L` with L shown.
-fn linear_factor(derived: &Derived, notation: &Notation, right: &Matrix, parts: &mut Vec<(String, Matrix)>) -> String {
+fn linear_factor(
+    derived: &Derived,
+    notation: &Notation,
+    right: &Matrix,
+    parts: &mut Vec<(String, Matrix)>,
+) -> String {
     let linear = right.minus(&Matrix::identity(right.rows()));
     let local: Vec<Expr> = derived.arguments.local.iter().map(Expr::symbol).collect();
-    if let Some(ratio) = (local.len() == 3).then(|| multiple_of(&linear, &Matrix::tilde(&local))).flatten() {
+    if let Some(ratio) = (local.len() == 3)
+        .then(|| multiple_of(&linear, &Matrix::tilde(&local)))
+        .flatten()
+    {
         return format!("I {} ϕ~", signed(&ratio, notation));
     }
     let ad = adjoint(derived, &local);
@@ -68,7 +90,11 @@ fn linear_factor(derived: &Derived, notation: &Notation, right: &Matrix, parts: 
 
 /// The rational r with `a = r b`.
 fn multiple_of(a: &Matrix, b: &Matrix) -> Option<Rational> {
-    let (x, y) = a.entries().iter().zip(b.entries()).find(|(_, y)| !y.is_zero())?;
+    let (x, y) = a
+        .entries()
+        .iter()
+        .zip(b.entries())
+        .find(|(_, y)| !y.is_zero())?;
     let (monomial, divisor) = y.leading()?;
     let (_, dividend) = x.terms().find(|(candidate, _)| *candidate == monomial)?;
     let ratio = dividend / divisor;
@@ -77,8 +103,16 @@ fn multiple_of(a: &Matrix, b: &Matrix) -> Option<Rational> {
 }
 
 fn signed(ratio: &Rational, notation: &Notation) -> String {
-    let size = if ratio < &Rational::zero() { -ratio } else { ratio.clone() };
-    let sign = if ratio < &Rational::zero() { "−" } else { "+" };
+    let size = if ratio < &Rational::zero() {
+        -ratio
+    } else {
+        ratio.clone()
+    };
+    let sign = if ratio < &Rational::zero() {
+        "−"
+    } else {
+        "+"
+    };
     match size.is_one() {
         true => sign.to_owned(),
         false => format!("{sign} {}", notation.expression(&Expr::rational(size))),
@@ -93,7 +127,10 @@ fn adjoint(derived: &Derived, local: &[Expr]) -> Option<Matrix> {
         return None;
     }
     let kind = derived.spec.manifold.value.factors().get(factor)?.kind;
-    let generators: Vec<Vec<Expr>> = freedoms.iter().map(|freedom| freedom.generator.clone()).collect();
+    let generators: Vec<Vec<Expr>> = freedoms
+        .iter()
+        .map(|freedom| freedom.generator.clone())
+        .collect();
     let basis = Matrix::from_columns(generators.first()?.len(), &generators);
     let element = basis.times(&Matrix::column_vector(local.to_vec()));
     let element = algebra::hat(kind, element.entries());

@@ -71,7 +71,11 @@ pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
 
 pub(super) fn freedoms(derived: &Derived, notation: &Notation) -> Vec<FreedomRow> {
     let units = units::of_freedoms(derived);
-    let symbols = derived.arguments.local.iter().zip(&derived.arguments.velocity);
+    let symbols = derived
+        .arguments
+        .local
+        .iter()
+        .zip(&derived.arguments.velocity);
     let freedoms = derived.spec.freedoms.value.iter().zip(symbols).zip(units);
     freedoms
         .map(|((freedom, (local, velocity)), unit)| FreedomRow {
@@ -99,7 +103,10 @@ pub fn proof_in_words(claim: &Claim) -> String {
     let kind = claim.proof.name().replace('_', " ");
     match claim.points {
         0 => kind,
-        points => format!("{kind}: residual {:.1e} at {points} points, {} bits", claim.residual, claim.bits),
+        points => format!(
+            "{kind}: residual {:.1e} at {points} points, {} bits",
+            claim.residual, claim.bits
+        ),
     }
 }
 
@@ -125,7 +132,9 @@ fn structure_in_words(structure: Structure) -> &'static str {
     }
 }
 
-const INERTIA: [&str; 10] = ["m", "mc_x", "mc_y", "mc_z", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"];
+const INERTIA: [&str; 10] = [
+    "m", "mc_x", "mc_y", "mc_z", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz",
+];
 
 /// Each element of the basis of N_X as a sum of parameters of an inertia.
 pub(super) fn imperceptible(derived: &Derived) -> Vec<String> {
@@ -134,7 +143,11 @@ pub(super) fn imperceptible(derived: &Derived) -> Vec<String> {
 
 fn combination(weights: &[Rational; 10]) -> String {
     let mut text = String::new();
-    for (weight, name) in weights.iter().zip(INERTIA).filter(|(weight, _)| !weight.is_zero()) {
+    for (weight, name) in weights
+        .iter()
+        .zip(INERTIA)
+        .filter(|(weight, _)| !weight.is_zero())
+    {
         text += match (text.is_empty(), weight.is_negative()) {
             (true, false) => "",
             (true, true) => "−",
@@ -142,7 +155,11 @@ fn combination(weights: &[Rational; 10]) -> String {
             (false, true) => " − ",
         };
         let size = weight.abs();
-        text += &if size.is_one() { name.to_owned() } else { format!("{size} {name}") };
+        text += &if size.is_one() {
+            name.to_owned()
+        } else {
+            format!("{size} {name}")
+        };
     }
     text
 }

@@ -11,6 +11,9 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
 
+/// Up to this many scalars are read one by one where an argument has more.
+const FEW: usize = 3;
+
 /// A kernel, ready to be written.
 pub struct Method<'a> {
     derived: &'a Derived,
@@ -27,10 +30,21 @@ impl<'a> Method<'a> {
         let mut names = names.clone();
         bound_symbols(&kernel.steps).for_each(|symbol| names.claim(symbol));
         let program = Program::new(kernel, names.taken());
-        program.bindings.iter().flat_map(Binding::names).for_each(|symbol| names.adopt(symbol));
+        program
+            .bindings
+            .iter()
+            .flat_map(Binding::names)
+            .for_each(|symbol| names.adopt(symbol));
         let signature = Signature::new(kernel.kind, derived.shape);
         let used = program.symbols();
-        Self { derived, kernel, signature, names, program, used }
+        Self {
+            derived,
+            kernel,
+            signature,
+            names,
+            program,
+            used,
+        }
     }
 
     /// Name of the method.
@@ -43,7 +57,12 @@ impl<'a> Method<'a> {
         let mut counts = Counts::of_program(&self.program);
         let relations = self.program.outputs.len();
         if self.kernel.kind == KernelKind::Residual && relations > 0 {
-            counts += Counts { additions: relations - 1, multiplications: relations, divisions: 0, calls: 1 };
+            counts += Counts {
+                additions: relations,
+                multiplications: relations,
+                divisions: 0,
+                calls: 1,
+            };
         }
         counts
     }
@@ -60,7 +79,11 @@ impl<'a> Method<'a> {
         };
         let arguments = self.signature.arguments.iter().map(|&argument| {
             let is_read = whole.map_or_else(|| self.reads(argument), |whole| whole == argument);
-            let name = ident(&format!("{}{}", if is_read { "" } else { "_" }, argument.name()));
+            let name = ident(&format!(
+                "{}{}",
+                if is_read { "" } else { "_" },
+                argument.name()
+            ));
             let size = Literal::usize_unsuffixed(argument.size(self.derived.shape));
             quote! { #name: &SVector<T, #size> }
         });
@@ -71,28 +94,54 @@ impl<'a> Method<'a> {
 
     /// The argument that is returned as it stands, if the kernel does just that.
     fn whole_argument(&self) -> Option<Argument> {
-        let [output] = self.kernel.outputs.as_slice() else { return None };
+        let [output] = self.kernel.outputs.as_slice() else {
+            return None;
+        };
         let is_it = |argument: &&Argument| {
             let symbols = argument.symbols(&self.derived.arguments);
-            let same = |(entry, symbol): (&crate::expr::Expr, &Symbol)| entry.as_symbol() == Some(symbol);
-            output.columns() == 1 && output.rows() == symbols.len() && output.entries().iter().zip(symbols).all(same)
+            let same =
+                |(entry, symbol): (&crate::expr::Expr, &Symbol)| entry.as_symbol() == Some(symbol);
+            output.columns() == 1
+                && output.rows() == symbols.len()
+                && output.entries().iter().zip(symbols).all(same)
         };
         let returns_vector = matches!(self.signature.output, super::signature::Output::Vector(_));
-        self.signature.arguments.iter().find(is_it).copied().filter(|_| returns_vector)
+        self.signature
+            .arguments
+            .iter()
+            .find(is_it)
+            .copied()
+            .filter(|_| returns_vector)
     }
 
     fn reads(&self, argument: Argument) -> bool {
-        argument.symbols(&self.derived.arguments).iter().any(|symbol| self.used.contains(symbol))
+        argument
+            .symbols(&self.derived.arguments)
+            .iter()
+            .any(|symbol| self.used.contains(symbol))
     }
 
     fn body(&self) -> TokenStream {
         let writer = Writer::new(&self.names, &self.program);
-        let parameters = self.used.iter().filter(|symbol| symbol.role == Role::Parameter).map(|symbol| {
-            let (local, field) = (writer.symbol(symbol), ident(&symbol.name));
-            quote! { let #local = T::from_f64(self.#field); }
-        });
-        let arguments = self.signature.arguments.iter().map(|argument| self.read(*argument));
-        let bindings: Vec<_> = self.program.bindings.iter().map(|binding| self.binding(&writer, binding)).collect();
+        let parameters = self
+            .used
+            .iter()
+            .filter(|symbol| symbol.role == Role::Parameter)
+            .map(|symbol| {
+                let (local, field) = (writer.symbol(symbol), ident(&symbol.name));
+                quote! { let #local = T::from_f64(self.#field); }
+            });
+        let arguments = self
+            .signature
+            .arguments
+            .iter()
+            .map(|argument| self.read(*argument));
+        let bindings: Vec<_> = self
+            .program
+            .bindings
+            .iter()
+            .map(|binding| self.binding(&writer, binding))
+            .collect();
         let result = result::tokens(&writer, self.kernel, &self.signature, &self.program.outputs);
         let constants = writer.constants();
         quote! { #(#parameters)* #(#arguments)* #constants #(#bindings)* #result }
@@ -102,17 +151,23 @@ impl<'a> Method<'a> {
     fn read(&self, argument: Argument) -> TokenStream {
         let symbols = argument.symbols(&self.derived.arguments);
         let source = ident(argument.name());
-        let read: Vec<usize> = (0..symbols.len()).filter(|&i| self.used.contains(&symbols[i])).collect();
-        let locals: Vec<Ident> = read.iter().map(|&i| ident(self.names.get(&symbols[i]))).collect();
+        let read: Vec<usize> = (0..symbols.len())
+            .filter(|&i| self.used.contains(&symbols[i]))
+            .collect();
+        let local = |i: &usize| ident(self.names.get(&symbols[*i]));
+        let locals: Vec<Ident> = read.iter().map(local).collect();
         let indices: Vec<Literal> = read.iter().map(|&i| Literal::usize_unsuffixed(i)).collect();
         match read.len() {
             0 => TokenStream::new(),
             1 => quote! { #(let #locals = #source[#indices];)* },
-            count if count == symbols.len() => {
-                let size = Literal::usize_unsuffixed(count);
-                quote! { let [#(#locals),*]: [T; #size] = (*#source).into(); }
+            count if count <= FEW && count < symbols.len() => {
+                quote! { let (#(#locals),*) = (#(#source[#indices]),*); }
             }
-            _ => quote! { let (#(#locals),*) = (#(#source[#indices]),*); },
+            _ => {
+                let size = Literal::usize_unsuffixed(symbols.len());
+                let all = symbols.iter().map(|symbol| self.pattern_of(symbol));
+                quote! { let [#(#all),*]: [T; #size] = (*#source).into(); }
+            }
         }
     }
 
@@ -123,26 +178,38 @@ impl<'a> Method<'a> {
                 quote! { let #name = #value; }
             }
             Binding::SinCos { sin, cos, angle } => {
-                let (sin, cos) = (self.pattern(writer, sin.as_ref()), self.pattern(writer, cos.as_ref()));
+                let pattern = |symbol: &Option<Symbol>| {
+                    symbol
+                        .as_ref()
+                        .map_or_else(|| quote! { _ }, |symbol| self.pattern_of(symbol))
+                };
+                let (sin, cos) = (pattern(sin), pattern(cos));
                 let call = writer.method(angle, "sin_cos");
                 quote! { let (#sin, #cos) = #call; }
             }
-            Binding::Call { primitive, argument, outputs } => {
+            Binding::Call {
+                primitive,
+                argument,
+                outputs,
+            } => {
                 let argument = writer.rows(argument, 3);
-                let names: Vec<TokenStream> = outputs.iter().map(|symbol| self.pattern(writer, Some(symbol))).collect();
+                let names: Vec<TokenStream> = outputs
+                    .iter()
+                    .map(|symbol| self.pattern_of(symbol))
+                    .collect();
                 call(*primitive, &argument, &names)
             }
         }
     }
 
-    /// The name of a result, or `_` where it is not used.
-    fn pattern(&self, writer: &Writer<'_>, symbol: Option<&Symbol>) -> TokenStream {
-        match symbol.filter(|symbol| self.used.contains(*symbol)) {
-            Some(symbol) => {
-                let name = writer.symbol(symbol);
+    /// The name of a value, or `_` where it is not used.
+    fn pattern_of(&self, symbol: &Symbol) -> TokenStream {
+        match self.used.contains(symbol) {
+            true => {
+                let name = ident(self.names.get(symbol));
                 quote! { #name }
             }
-            None => quote! { _ },
+            false => quote! { _ },
         }
     }
 }
@@ -160,7 +227,10 @@ fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> 
     match primitive {
         Primitive::RotationVector => {
             let size = Literal::usize_unsuffixed(names.len());
-            quote! { let [#(#names),*]: [T; #size] = T::rotation_vector(&#argument).into(); }
+            quote! {
+                let rotation = #argument;
+                let [#(#names),*]: [T; #size] = T::rotation_vector(&rotation).into();
+            }
         }
         Primitive::NearestRotation => {
             // Nested arrays of a matrix are its columns.
@@ -168,7 +238,10 @@ fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> 
                 let column = names.iter().skip(j).step_by(3);
                 quote! { [#(#column),*] }
             });
-            quote! { let [#(#columns),*]: [[T; 3]; 3] = nearest_rotation(&#argument).into(); }
+            quote! {
+                let rotation = nearest_rotation(&#argument);
+                let [#(#columns),*]: [[T; 3]; 3] = rotation.into();
+            }
         }
     }
 }

@@ -9,7 +9,12 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// The result of a kernel; `entries` are those of its outputs, one matrix after the other.
-pub fn tokens(writer: &Writer<'_>, kernel: &Kernel, signature: &Signature, entries: &[Node]) -> TokenStream {
+pub fn tokens(
+    writer: &Writer<'_>,
+    kernel: &Kernel,
+    signature: &Signature,
+    entries: &[Node],
+) -> TokenStream {
     let mut rest = entries;
     let parts = kernel.outputs.iter().map(|matrix| {
         let (own, others) = rest.split_at(matrix.entries().len().min(rest.len()));
@@ -19,7 +24,8 @@ pub fn tokens(writer: &Writer<'_>, kernel: &Kernel, signature: &Signature, entri
     let parts: Vec<(&Matrix, &[Node])> = parts.collect();
     match (signature.output, parts.as_slice()) {
         (Output::Pose, [(rotation, r), (translation, p)]) => {
-            let (rotation, translation) = (matrix(writer, rotation, r), vector(writer, translation, p));
+            let (rotation, translation) =
+                (matrix(writer, rotation, r), vector(writer, translation, p));
             quote! { Pose { rotation: #rotation, translation: #translation } }
         }
         (Output::Scalar, _) => norm(writer, entries),

@@ -96,7 +96,12 @@ impl Signature {
     pub fn new(kind: KernelKind, shape: Shape) -> Self {
         use Argument::{Configuration, Local, Momentum, Rate, Speeds, Target, Velocity, Wrench};
         use Output::{Matrix, Pose, Scalar, Slices, Vector};
-        let (n, k, s, c) = (shape.configuration, shape.freedoms, shape.speeds, shape.constraints);
+        let (n, k, s, c) = (
+            shape.configuration,
+            shape.freedoms,
+            shape.speeds,
+            shape.constraints,
+        );
         let q = || vec![Configuration];
         let (name, arguments, output) = match kind {
             KernelKind::Home => ("home", vec![], Vector(n)),
@@ -112,18 +117,34 @@ impl Signature {
             KernelKind::Constraint => ("constraint", q(), Matrix(k, c)),
             KernelKind::SpeedBasis => ("speed_basis", q(), Matrix(k, s)),
             KernelKind::SpeedBasisGradient => ("speed_basis_gradient", q(), Slices(k, s)),
-            KernelKind::ConfigurationRate => ("configuration_rate", vec![Configuration, Velocity], Vector(n)),
+            KernelKind::ConfigurationRate => (
+                "configuration_rate",
+                vec![Configuration, Velocity],
+                Vector(n),
+            ),
             KernelKind::Retract => ("retract", vec![Configuration, Local], Vector(n)),
             KernelKind::Local => ("local", vec![Configuration, Target], Vector(k)),
-            KernelKind::RetractDifferentialInverse => {
-                ("retract_differential_inverse", vec![Configuration, Local, Rate], Vector(k))
-            }
+            KernelKind::RetractDifferentialInverse => (
+                "retract_differential_inverse",
+                vec![Configuration, Local, Rate],
+                Vector(k),
+            ),
             KernelKind::Project => ("project", q(), Vector(n)),
             KernelKind::Residual => ("residual", q(), Scalar),
-            KernelKind::BiasAcceleration => ("bias_acceleration", vec![Configuration, Speeds], Vector(6)),
-            KernelKind::BiasMomentum => ("bias_momentum", vec![Configuration, Speeds, Wrench], Vector(s)),
+            KernelKind::BiasAcceleration => {
+                ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
+            }
+            KernelKind::BiasMomentum => (
+                "bias_momentum",
+                vec![Configuration, Speeds, Wrench],
+                Vector(s),
+            ),
         };
-        Self { name, arguments, output }
+        Self {
+            name,
+            arguments,
+            output,
+        }
     }
 
     /// The type that the method returns.

@@ -39,7 +39,12 @@ impl<'a> Writer<'a> {
         for name in program.bindings.iter().flat_map(Binding::names) {
             taken.claim(names.get(name));
         }
-        Self { names, numbers: RefCell::default(), taken: RefCell::new(taken), pi: Cell::new(false) }
+        Self {
+            names,
+            numbers: RefCell::default(),
+            taken: RefCell::new(taken),
+            pi: Cell::new(false),
+        }
     }
 
     /// The identifier of a constant.
@@ -48,9 +53,17 @@ impl<'a> Writer<'a> {
             let name = number_name(value);
             // Words are reserved for numbers; composed names may meet a name of the joint.
             let composed = name.contains(|c: char| c.is_ascii_digit());
-            ident(&if composed { self.taken.borrow_mut().claim(&name) } else { name })
+            ident(&if composed {
+                self.taken.borrow_mut().claim(&name)
+            } else {
+                name
+            })
         };
-        self.numbers.borrow_mut().entry(value.clone()).or_insert_with(make).clone()
+        self.numbers
+            .borrow_mut()
+            .entry(value.clone())
+            .or_insert_with(make)
+            .clone()
     }
 
     /// `let half = T::from_f64(0.5);` for each constant written so far.
@@ -64,7 +77,10 @@ impl<'a> Writer<'a> {
                 quote! { let #name = T::from_f64(#literal); }
             }
         });
-        let pi = self.pi.get().then(|| quote! { let pi = T::from_f64(::core::f64::consts::PI); });
+        let pi = self
+            .pi
+            .get()
+            .then(|| quote! { let pi = T::from_f64(::core::f64::consts::PI); });
         quote! { #(#lines)* #pi }
     }
 
@@ -91,7 +107,10 @@ impl<'a> Writer<'a> {
             Node::Sum(terms) => self.sum(terms),
             Node::Product(factors) => self.product(factors),
             Node::Quotient(above, below) => {
-                let (above, below) = (self.at_least(above, Level::Product), self.at_least(below, Level::Atom));
+                let (above, below) = (
+                    self.at_least(above, Level::Product),
+                    self.at_least(below, Level::Atom),
+                );
                 quote! { #above / #below }
             }
             Node::Negative(inner) => {
@@ -116,16 +135,24 @@ impl<'a> Writer<'a> {
     }
 
     fn product(&self, factors: &[Node]) -> TokenStream {
-        let factors = factors.iter().map(|factor| self.at_least(factor, Level::Atom));
+        let factors = factors
+            .iter()
+            .map(|factor| self.at_least(factor, Level::Atom));
         let mut tokens = TokenStream::new();
         for (i, factor) in factors.enumerate() {
-            tokens.extend(if i == 0 { factor } else { quote! { * #factor } });
+            tokens.extend(if i == 0 {
+                factor
+            } else {
+                quote! { * #factor }
+            });
         }
         tokens
     }
 
     fn call(&self, function: Function, arguments: &[Node]) -> TokenStream {
-        let mut written = arguments.iter().map(|argument| self.at_least(argument, Level::Atom));
+        let mut written = arguments
+            .iter()
+            .map(|argument| self.at_least(argument, Level::Atom));
         let first = written.next().unwrap_or_default();
         match function {
             Function::Sin => quote! { #first.sin_cos().0 },
@@ -175,7 +202,11 @@ impl<'a> Writer<'a> {
         };
         let tokens = self.formula(node);
         // A sign inside another operation is put in parentheses: `a * (-b)`.
-        if own < level || own == Level::Sign { quote! { (#tokens) } } else { tokens }
+        if own < level || own == Level::Sign {
+            quote! { (#tokens) }
+        } else {
+            tokens
+        }
     }
 }
 
@@ -183,7 +214,9 @@ impl<'a> Writer<'a> {
 fn number_literal(value: &Rational) -> TokenStream {
     let exact = |n: &BigInt| n.bits() <= 53;
     let (above, below) = (value.numer(), value.denom());
-    let is_dyadic = below.trailing_zeros().is_some_and(|zeros| *below == BigInt::one() << zeros);
+    let is_dyadic = below
+        .trailing_zeros()
+        .is_some_and(|zeros| *below == BigInt::one() << zeros);
     if exact(above) && exact(below) && !is_dyadic {
         let (above, below) = (float(above.to_f64()), float(below.to_f64()));
         return quote! { #above / #below };

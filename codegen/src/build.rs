@@ -1,0 +1,198 @@
+//! For build scripts: from a folder of specs to Rust, into `OUT_DIR` or into a crate's own sources.
+//!
+//! A downstream crate has a folder `joints` of `.joint` files and this build script:
+//!
+//! ```no_run
+//! fn main() -> Result<(), hamel_codegen::BuildError> {
+//!     hamel_codegen::Build::new().specs("joints").compile()
+//! }
+//! ```
+//!
+//! and includes the result: `mod joints { include!(concat!(env!("OUT_DIR"), "/joints.rs")); }`.
+
+mod error;
+mod library;
+#[cfg(test)]
+mod tests;
+
+pub use error::BuildError;
+
+use crate::derive;
+use crate::derived::Derived;
+use crate::emit::files::Files;
+use crate::emit::rust::{Index, index};
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// The variable that makes a build check the committed files instead of writing them: `HAMEL_GENERATE=check`.
+pub const GENERATE_VARIABLE: &str = "HAMEL_GENERATE";
+
+/// Generates joints from a folder of specs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Build {
+    specs: PathBuf,
+    target: Target,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Target {
+    /// One file `joints.rs` in this folder, or in `OUT_DIR`.
+    Single(Option<PathBuf>),
+    /// One file a joint with an index `mod.rs`, and a page a joint.
+    Library { modules: PathBuf, pages: PathBuf },
+}
+
+impl Default for Build {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Build {
+    /// Reads specs from `joints` and writes `joints.rs` into `OUT_DIR`.
+    pub fn new() -> Self {
+        Self {
+            specs: "joints".into(),
+            target: Target::Single(None),
+        }
+    }
+
+    /// The folder of specs, relative to the crate's manifest.
+    #[must_use]
+    pub fn specs(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.specs = folder.into();
+        self
+    }
+
+    /// The folder for `joints.rs`, instead of `OUT_DIR`.
+    #[must_use]
+    pub fn out_dir(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.target = Target::Single(Some(folder.into()));
+        self
+    }
+
+    /// Writes one file a joint and an index into `modules`, and one page a joint into `pages`: for sources that are
+    /// committed. With `HAMEL_GENERATE=check` it writes nothing, and stale, missing and surplus files are an error.
+    #[must_use]
+    pub fn library(mut self, modules: impl Into<PathBuf>, pages: impl Into<PathBuf>) -> Self {
+        self.target = Target::Library {
+            modules: modules.into(),
+            pages: pages.into(),
+        };
+        self
+    }
+
+    /// Generates. Prints the instructions to cargo that make it run again when a spec changes, appears or goes.
+    ///
+    /// # Errors
+    /// When a spec is wrong (all errors of all specs at once), a file cannot be read or written, or, while checking, when the
+    /// committed files are not what the specs say. The errors have then been reported to cargo too.
+    pub fn compile(&self) -> Result<(), BuildError> {
+        let result = self.generate();
+        if let Err(error) = &result {
+            error
+                .lines()
+                .iter()
+                .for_each(|line| println!("cargo::error={line}"));
+        }
+        result
+    }
+
+    fn generate(&self) -> Result<(), BuildError> {
+        watch(&self.specs);
+        let joints = self.derive_all()?;
+        match &self.target {
+            Target::Single(folder) => self.write_single(&joints, folder.as_deref()),
+            Target::Library { modules, pages } => {
+                println!("cargo::rerun-if-env-changed={GENERATE_VARIABLE}");
+                let check =
+                    std::env::var_os(GENERATE_VARIABLE).is_some_and(|value| value == "check");
+                library::generate(&joints, &self.label(), modules, pages, check)
+            }
+        }
+    }
+
+    /// The folder of specs as files name it: its last component, without the path to it.
+    fn label(&self) -> String {
+        self.specs
+            .file_name()
+            .unwrap_or_else(|| OsStr::new("joints"))
+            .to_string_lossy()
+            .into_owned()
+    }
+
+    /// Every spec of the folder, in the order of file names, derived; all errors at once.
+    fn derive_all(&self) -> Result<Vec<(String, Derived)>, BuildError> {
+        let (mut joints, mut errors) = (vec![], vec![]);
+        for path in spec_files(&self.specs)? {
+            watch(&path);
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let label = format!("{}/{name}", self.label());
+            let source =
+                std::fs::read_to_string(&path).map_err(|source| BuildError::read(&path, source))?;
+            match derive(&source, &label) {
+                Ok(derived) => joints.push((label, derived)),
+                Err(diagnostics) => errors.push(diagnostics),
+            }
+        }
+        match errors.is_empty() {
+            true => reject_duplicates(joints),
+            false => Err(BuildError::Specs(errors)),
+        }
+    }
+
+    fn write_single(
+        &self,
+        joints: &[(String, Derived)],
+        folder: Option<&Path>,
+    ) -> Result<(), BuildError> {
+        let out_dir = || {
+            std::env::var_os("OUT_DIR")
+                .map(PathBuf::from)
+                .ok_or(BuildError::NoOutDir)
+        };
+        let folder = folder.map_or_else(out_dir, |folder| Ok(folder.to_owned()))?;
+        let joints: Vec<Derived> = joints.iter().map(|(_, joint)| joint.clone()).collect();
+        let mut files = Files::default();
+        files.insert("joints.rs", index(&joints, &self.label(), Index::Nested)?);
+        files.write(&folder)?;
+        Ok(())
+    }
+}
+
+/// Asks cargo to run the build script again when the file or folder changes.
+fn watch(path: &Path) {
+    println!("cargo::rerun-if-changed={}", path.display());
+}
+
+/// The `.joint` files of a folder, sorted by name.
+fn spec_files(folder: &Path) -> Result<Vec<PathBuf>, BuildError> {
+    let failed = |source| BuildError::read(folder, source);
+    let mut paths = vec![];
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension() == Some(OsStr::new("joint")) && path.is_file() {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+/// Two specs must not become one module or one type.
+fn reject_duplicates(joints: Vec<(String, Derived)>) -> Result<Vec<(String, Derived)>, BuildError> {
+    let mut seen: BTreeMap<String, &str> = BTreeMap::new();
+    for (label, joint) in &joints {
+        let type_name = crate::emit::names::type_name(&joint.spec.name.value);
+        if let Some(first) = seen.insert(type_name.clone(), label) {
+            let (first, second) = (first.to_owned(), label.clone());
+            return Err(BuildError::Duplicate {
+                type_name,
+                first,
+                second,
+            });
+        }
+    }
+    Ok(joints)
+}

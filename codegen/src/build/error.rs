@@ -1,0 +1,126 @@
+//! Why generation failed, as a build script reports it.
+
+use crate::diagnostic::Diagnostics;
+use crate::emit::files::FileError;
+use crate::emit::rust::Malformed;
+use std::fmt::{Debug, Display, Formatter};
+use std::path::Path;
+
+/// Why generation failed. `Debug` prints the same text as `Display`, because that is what a failing `main` shows.
+pub enum BuildError {
+    /// Specs with errors, all of them.
+    Specs(Vec<Diagnostics>),
+    /// Two specs whose joints have one name in Rust.
+    Duplicate {
+        /// The name of the type.
+        type_name: String,
+        /// The spec that has it first.
+        first: String,
+        /// The spec that has it again.
+        second: String,
+    },
+    /// A file could not be read or written.
+    File(FileError),
+    /// Committed files are not what the specs say: a line for each, `stale: joints/ball.rs`.
+    NotFresh(Vec<String>),
+    /// Emitted code that is no Rust.
+    Malformed(Malformed),
+    /// A page could not be made.
+    Page(tera::Error),
+    /// There is no `OUT_DIR`: not called from a build script, and no folder was given.
+    NoOutDir,
+}
+
+impl BuildError {
+    pub(super) fn read(path: &Path, source: std::io::Error) -> Self {
+        Self::File(FileError {
+            action: "read",
+            path: path.to_owned(),
+            source,
+        })
+    }
+
+    /// One line for each error, for cargo's own list.
+    pub fn lines(&self) -> Vec<String> {
+        match self {
+            Self::Specs(files) => {
+                let of_file = |file: &Diagnostics| {
+                    let name = file.file.clone();
+                    file.errors
+                        .iter()
+                        .map(move |error| {
+                            format!("{name}: {}: {}", error.code, one_line(&error.message))
+                        })
+                        .collect::<Vec<_>>()
+                };
+                files.iter().flat_map(of_file).collect()
+            }
+            Self::NotFresh(lines) => lines.clone(),
+            other => vec![one_line(&other.to_string())],
+        }
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+impl Display for BuildError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Specs(files) => {
+                let shown: Vec<String> = files.iter().map(Diagnostics::render).collect();
+                write!(f, "{}", shown.join("\n\n"))
+            }
+            Self::Duplicate {
+                type_name,
+                first,
+                second,
+            } => {
+                write!(
+                    f,
+                    "{first} and {second} both make the type `{type_name}`: rename one of the joints"
+                )
+            }
+            Self::File(error) => write!(f, "{error}"),
+            Self::NotFresh(lines) => {
+                write!(
+                    f,
+                    "generated files differ from the specs; run `cargo build` and commit them:\n{}",
+                    lines.join("\n")
+                )
+            }
+            Self::Malformed(error) => write!(f, "{error}"),
+            Self::Page(error) => write!(f, "cannot make a page: {error}"),
+            Self::NoOutDir => f.write_str(
+                "OUT_DIR is not set: call this from a build script, or give a folder with out_dir",
+            ),
+        }
+    }
+}
+
+impl Debug for BuildError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+impl std::error::Error for BuildError {}
+
+impl From<FileError> for BuildError {
+    fn from(error: FileError) -> Self {
+        Self::File(error)
+    }
+}
+
+impl From<Malformed> for BuildError {
+    fn from(error: Malformed) -> Self {
+        Self::Malformed(error)
+    }
+}
+
+impl From<tera::Error> for BuildError {
+    fn from(error: tera::Error) -> Self {
+        Self::Page(error)
+    }
+}

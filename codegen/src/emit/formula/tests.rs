@@ -1,0 +1,251 @@
+//! Formulas keep the value of their expression, are counted as they are written, and have names of their own.
+
+use super::{Binding, Counts, Node, Program, factored};
+use crate::derived::{Kernel, KernelKind, Step, Structure};
+use crate::emit::names::NameSet;
+use crate::expr::{Expr, Number, Role, Symbol, evaluate_f64};
+use crate::matrix::Matrix;
+use std::collections::BTreeMap;
+
+fn symbol(name: &str, index: usize) -> Symbol {
+    Symbol::new(Role::Coordinate, index, name)
+}
+
+fn x() -> [Expr; 4] {
+    [0, 1, 2, 3].map(|i| Expr::symbol(&symbol(["a", "b", "c", "d"][i], i)))
+}
+
+fn value_of_symbol(symbol: &Symbol) -> f64 {
+    0.3 + 0.7 * f64::from(symbol.index)
+}
+
+/// The value of a formula, independently of the expression that it came from.
+fn value(node: &Node, symbols: &impl Fn(&Symbol) -> f64) -> f64 {
+    let of = |node: &Node| value(node, symbols);
+    match node {
+        Node::Number(number) => 0.0.rational(number),
+        Node::Symbol(symbol) => symbols(symbol),
+        Node::Pi => std::f64::consts::PI,
+        Node::Sum(terms) => terms
+            .iter()
+            .map(|(minus, term)| if *minus { -of(term) } else { of(term) })
+            .sum(),
+        Node::Product(factors) => factors.iter().map(of).product(),
+        Node::Quotient(above, below) => of(above) / of(below),
+        Node::Negative(inner) => -of(inner),
+        Node::Call(function, arguments) => {
+            let arguments: Vec<f64> = arguments.iter().map(of).collect();
+            0.0.function(*function, &arguments)
+        }
+    }
+}
+
+fn run(program: &Program) -> Vec<f64> {
+    let mut bound: BTreeMap<Symbol, f64> = BTreeMap::new();
+    for binding in &program.bindings {
+        let known = bound.clone();
+        let lookup = |symbol: &Symbol| {
+            known
+                .get(symbol)
+                .copied()
+                .unwrap_or_else(|| value_of_symbol(symbol))
+        };
+        match binding {
+            Binding::Value { name, value: node } => {
+                _ = bound.insert(name.clone(), value(node, &lookup))
+            }
+            Binding::SinCos { sin, cos, angle } => {
+                let angle = value(angle, &lookup);
+                bound.extend(sin.clone().map(|name| (name, angle.sin())));
+                bound.extend(cos.clone().map(|name| (name, angle.cos())));
+            }
+            Binding::Call { .. } => panic!("these programs call nothing"),
+        }
+    }
+    let lookup = |symbol: &Symbol| {
+        bound
+            .get(symbol)
+            .copied()
+            .unwrap_or_else(|| value_of_symbol(symbol))
+    };
+    program
+        .outputs
+        .iter()
+        .map(|output| value(output, &lookup))
+        .collect()
+}
+
+fn expressions() -> Vec<Expr> {
+    let [a, b, c, d] = x();
+    let half = Expr::fraction(1, 2);
+    let lead = Expr::symbol(&Symbol::new(Role::Parameter, 1, "lead"));
+    let norm = (&a.square() + &b.square()).sqrt();
+    vec![
+        Expr::zero(),
+        Expr::integer(-3),
+        &a - &b,
+        &b - &a,
+        -(&a + &b),
+        &(&(&a * &b) + &(&a * &c)) - &(&a * &d),
+        &Expr::one() - &(&Expr::integer(2) * &(&b.square() + &c.square())),
+        &half * &(&(&a * &d) - &(&b * &c)),
+        &(&lead * &a) * &(&Expr::integer(2) * &Expr::pi()).recip().expect("not zero"),
+        &(&a * &c) * &norm.recip().expect("not zero"),
+        &(&a + &b).recip().expect("not zero") - &c,
+        &(&a.sin() * &b.cos()) + &(&a.cos() * &(&b * &c).sin()),
+        &(&a.square() + &b).stumpff(2) * &(&c - &(&a.square() + &b).stumpff(1)),
+        (&a + &b).pow(4),
+        &a.pow(5) - &b.atan2(&a).exp(),
+    ]
+}
+
+/// Formulas reorder at most a dozen operations on numbers of order one: 1e-12 is thousands of roundings.
+const ROUNDING: f64 = 1e-12;
+
+#[test]
+fn factoring_and_polishing_keep_the_value() {
+    for expression in expressions() {
+        let exact = evaluate_f64(&expression, &value_of_symbol);
+        let node = factored(&expression);
+        for (written, step) in [(&node, "factored"), (&node.polished(), "polished")] {
+            let found = value(written, &value_of_symbol);
+            assert!(
+                (found - exact).abs() <= ROUNDING * exact.abs().max(1.0),
+                "{step} {expression}: {found} for {exact}"
+            );
+        }
+    }
+}
+
+fn program(steps: Vec<Step>, entries: Vec<Expr>) -> Program {
+    let outputs = vec![Matrix::column_vector(entries)];
+    let kernel = Kernel {
+        kind: KernelKind::Retract,
+        steps,
+        outputs,
+        structure: Structure::General,
+    };
+    let mut taken = NameSet::default();
+    ["a", "b", "c", "d"]
+        .iter()
+        .for_each(|name| _ = taken.claim(name));
+    Program::new(&kernel, &taken)
+}
+
+#[test]
+fn sharing_keeps_the_values() {
+    let found = run(&program(vec![], expressions()));
+    for (expression, found) in expressions().iter().zip(found) {
+        let exact = evaluate_f64(expression, &value_of_symbol);
+        assert!(
+            (found - exact).abs() <= ROUNDING * exact.abs().max(1.0),
+            "{expression}: {found} for {exact}"
+        );
+    }
+}
+
+#[test]
+fn intermediate_values_are_bound_before_they_are_used() {
+    let [a, b, ..] = x();
+    let root = Symbol::new(Role::Intermediate, 0, "root");
+    let r = Expr::symbol(&root);
+    let steps = vec![Step::Let(root, (&a + &b).sqrt())];
+    let written = program(
+        steps,
+        vec![(&r * &a).sin(), (&r * &a).cos(), &(&r * &a) + &b],
+    );
+    let r = (value_of_symbol(&symbol("a", 0)) + value_of_symbol(&symbol("b", 1))).sqrt();
+    let angle = r * 0.3;
+    let exact = [angle.sin(), angle.cos(), angle + 1.0];
+    for (found, exact) in run(&written).iter().zip(exact) {
+        assert!((found - exact).abs() < ROUNDING, "{found} for {exact}");
+    }
+}
+
+#[test]
+fn names_for_names_vanish() {
+    let [a, b, ..] = x();
+    let (first, second) = (
+        Symbol::new(Role::Intermediate, 0, "first"),
+        Symbol::new(Role::Intermediate, 1, "second"),
+    );
+    let steps = vec![
+        Step::Let(first.clone(), &a + &b),
+        Step::Let(second.clone(), Expr::symbol(&first)),
+    ];
+    let written = program(
+        steps,
+        vec![Expr::symbol(&second), &Expr::symbol(&first) * &a],
+    );
+    assert_eq!(written.bindings.len(), 1);
+    assert_eq!(written.outputs[0], Node::Symbol(first));
+}
+
+#[test]
+fn operations_are_counted_as_written() {
+    let [a, b, c, d] = x();
+    let counts = |expression: &Expr| {
+        let count = Counts::of(&factored(expression));
+        [
+            count.additions,
+            count.multiplications,
+            count.divisions,
+            count.calls,
+        ]
+    };
+    assert_eq!(counts(&a), [0, 0, 0, 0]);
+    assert_eq!(counts(&(&(&a * &b) - &(&c * &d))), [1, 2, 0, 0]);
+    assert_eq!(counts(&(&(&a * &b) + &(&a * &c))), [1, 1, 0, 0]);
+    assert_eq!(counts(&(&Expr::fraction(1, 2) * &(&a - &b))), [1, 1, 0, 0]);
+    assert_eq!(counts(&(&a + &b).recip().expect("not zero")), [1, 0, 1, 0]);
+    assert_eq!(counts(&(&a * &b).exp()), [0, 1, 0, 1]);
+    assert_eq!(counts(&a.pow(3)), [0, 2, 0, 0]);
+}
+
+#[test]
+fn sine_and_cosine_of_one_angle_are_one_call() {
+    let [a, b, ..] = x();
+    let written = program(vec![], vec![a.sin(), a.cos(), &a.sin() * &b]);
+    assert_eq!(Counts::of_program(&written).calls, 1);
+    assert_eq!(written.bindings.len(), 1);
+}
+
+#[test]
+fn a_difference_and_its_opposite_are_one_value() {
+    let [a, b, c, d] = x();
+    let written = program(vec![], vec![&(&a - &b) * &c, &(&b - &a) * &d]);
+    assert_eq!(Counts::of_program(&written).additions, 1);
+}
+
+#[test]
+fn a_shared_name_gives_way_to_a_name_that_is_taken() {
+    let [a, b, c, _] = x();
+    let kernel = Kernel {
+        kind: KernelKind::Retract,
+        steps: vec![],
+        outputs: vec![Matrix::column_vector(vec![
+            &(&a + &b) * &c,
+            &(&a + &b) * &a,
+        ])],
+        structure: Structure::General,
+    };
+    let mut taken = NameSet::default();
+    taken.claim("a_plus_b");
+    let written = Program::new(&kernel, &taken);
+    let names: Vec<&str> = written
+        .bindings
+        .iter()
+        .flat_map(Binding::names)
+        .map(|name| name.name.as_ref())
+        .collect();
+    assert_eq!(names, ["a_plus_b_2"]);
+}
+
+#[test]
+fn the_opposite_of_a_difference_is_written_as_a_difference() {
+    let [a, b, ..] = x();
+    let node = factored(&(&b - &a)).polished();
+    assert!(matches!(node, Node::Sum(_)), "{node:?}");
+    let scaled = factored(&(&Expr::fraction(1, 2) * &(&b - &a))).polished();
+    assert!(matches!(scaled, Node::Product(_)), "{scaled:?}");
+}

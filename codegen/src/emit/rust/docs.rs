@@ -1,0 +1,213 @@
+//! Documentation of emitted code: what a kernel maps, its shape, frame and units, its equation, its cost.
+
+use super::kernel::Method;
+use super::signature::{Output, Signature};
+use crate::derived::{Derived, Kernel, KernelKind, Structure};
+use crate::emit::report::{
+    ClaimRow, FreedomRow, Report, main_formulas, manifold, statement, units, velocity_frame,
+};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// Lines of outer documentation.
+pub fn outer<S: AsRef<str>>(lines: &[S]) -> TokenStream {
+    let lines = lines.iter().map(|line| spaced(line.as_ref()));
+    quote! { #(#[doc = #lines])* }
+}
+
+fn inner(lines: &[String]) -> TokenStream {
+    let lines = lines.iter().map(|line| spaced(line));
+    quote! { #(#![doc = #lines])* }
+}
+
+fn spaced(line: &str) -> String {
+    if line.is_empty() {
+        String::new()
+    } else {
+        format!(" {line}")
+    }
+}
+
+/// The documentation of a joint's module.
+pub fn module(derived: &Derived) -> TokenStream {
+    let report = Report::new(derived);
+    let mut lines: Vec<String> = match report.docs.is_empty() {
+        true => vec![report.summary.clone()],
+        false => report.docs.clone(),
+    };
+    lines.push(String::new());
+    lines.extend(storage(derived, &report));
+    lines.extend([String::new(), "```text".into()]);
+    for (i, formula) in main_formulas(derived).into_iter().enumerate() {
+        lines.extend((i > 0).then(String::new));
+        lines.extend(formula.text.lines().map(str::to_owned));
+    }
+    lines.push("```".into());
+    lines.extend(claims(&report));
+    inner(&lines)
+}
+
+fn storage(derived: &Derived, report: &Report) -> Vec<String> {
+    let freedom = |row: &FreedomRow| match row.unit.is_empty() {
+        true => format!("`{}` ({})", row.name, row.local),
+        false => format!("`{}` ({}, {})", row.name, row.local, row.unit),
+    };
+    let freedoms: Vec<String> = report.freedoms.iter().map(freedom).collect();
+    let mut lines = vec![
+        format!(
+            "- Configuration: {}, stored as {}.",
+            manifold(derived),
+            report.coordinates.join(", ")
+        ),
+        format!("- Freedoms: {}.", freedoms.join(", ")),
+        format!(
+            "- Velocity v: read {}.",
+            velocity_frame(derived.spec.velocity.value)
+        ),
+    ];
+    if derived.shape.constraints > 0 {
+        let speeds: Vec<String> = report
+            .speeds
+            .iter()
+            .map(|name| format!("`{name}`"))
+            .collect();
+        lines.push(format!(
+            "- Speeds v\u{304}: {}; constraints: {}.",
+            speeds.join(", "),
+            derived.shape.constraints
+        ));
+    }
+    lines
+}
+
+fn claims(report: &Report) -> Vec<String> {
+    if report.claims.is_empty() {
+        return vec![];
+    }
+    let claim = |row: &ClaimRow| format!("- `{}`: {} ({})", row.name, row.statement, row.proof);
+    let head = [String::new(), "Proved when this file was generated:".into()];
+    head.into_iter()
+        .chain(report.claims.iter().map(claim))
+        .collect()
+}
+
+/// The documentation of a kernel.
+pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenStream {
+    let mut lines = vec![meaning(kernel.kind).to_owned(), String::new()];
+    let operations = method.counts();
+    let shape = shape_of(derived, kernel.kind);
+    lines.push(format!(
+        "{shape}{} Operations: {operations}.",
+        constancy(kernel.structure)
+    ));
+    if let Some(statement) = statement(&derived.spec, kernel.kind) {
+        lines.extend([String::new(), format!("From `{statement}`")]);
+    }
+    outer(&lines)
+}
+
+fn constancy(structure: Structure) -> &'static str {
+    match structure {
+        Structure::Zero => " Zero.",
+        Structure::Identity => " The identity.",
+        Structure::Constant => " Independent of Q.",
+        Structure::General => "",
+    }
+}
+
+/// Shape, frame and units.
+fn shape_of(derived: &Derived, kind: KernelKind) -> String {
+    let size = match Signature::new(kind, derived.shape).output {
+        Output::Pose => "Rotation matrix and translation in m.".to_owned(),
+        Output::Scalar => "A scalar.".to_owned(),
+        Output::Vector(rows) => format!("{rows}-vector"),
+        Output::Matrix(rows, columns) => format!("{rows}×{columns}"),
+        Output::Slices(rows, columns) => {
+            format!("{} slices of {rows}×{columns}", derived.shape.freedoms)
+        }
+    };
+    let units = units_of(derived, kind);
+    match (size.ends_with('.'), units.is_empty()) {
+        (true, _) => size,
+        (false, true) => format!("{size}."),
+        (false, false) => format!("{size}, {units}."),
+    }
+}
+
+fn units_of(derived: &Derived, kind: KernelKind) -> String {
+    let of_freedoms: Vec<String> = units::of_freedoms(derived)
+        .into_iter()
+        .map(|unit| {
+            if unit.is_empty() {
+                "1".into()
+            } else {
+                unit.into()
+            }
+        })
+        .collect();
+    let rates: Vec<String> = of_freedoms
+        .iter()
+        .map(|unit| units::per_second(unit))
+        .collect();
+    let (angles, rates) = (listed(&of_freedoms), listed(&rates));
+    match kind {
+        KernelKind::TwistMap | KernelKind::TwistMapChild => {
+            format!(
+                "rows rad/s (angular) and m/s (linear), columns by v in {}",
+                rates
+            )
+        }
+        KernelKind::Local => angles,
+        KernelKind::RetractDifferentialInverse => rates,
+        KernelKind::BiasAcceleration => "rad/s² (angular) and m/s² (linear)".into(),
+        _ => String::new(),
+    }
+}
+
+/// Units in order, or one of them where all are alike.
+fn listed(units: &[String]) -> String {
+    match units {
+        [first, rest @ ..] if rest.iter().all(|unit| unit == first) => first.clone(),
+        units => units.join(", "),
+    }
+}
+
+fn meaning(kind: KernelKind) -> &'static str {
+    match kind {
+        KernelKind::Home => "The home configuration.",
+        KernelKind::Pose => "H(Q): child coordinates to parent coordinates.",
+        KernelKind::TwistMap => {
+            "X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1)."
+        }
+        KernelKind::TwistMapChild => "X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.",
+        KernelKind::TwistMapChildGradient => {
+            "∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k."
+        }
+        KernelKind::VelocityMap => "S₀(Q): ϕ̇ to v at ϕ = 0 (23).",
+        KernelKind::VelocityMapInverse => "S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.",
+        KernelKind::VelocityMapGradient => "∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.",
+        KernelKind::Gamma => "Σ_k γ_k v_k (17): stands on the left of (24).",
+        KernelKind::J22 => "J22(Q, p) (28): stands on the right of (27).",
+        KernelKind::Constraint => "A(Q) with Aᵀ v = 0 (Definition 2).",
+        KernelKind::SpeedBasis => "S̄(Q): speeds v̄ to v (Definition 2, (15)).",
+        KernelKind::SpeedBasisGradient => "∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.",
+        KernelKind::ConfigurationRate => "Q̇(Q, v) (31): the rates of the stored scalars.",
+        KernelKind::Retract => {
+            "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
+        }
+        KernelKind::Local => "The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.",
+        KernelKind::RetractDifferentialInverse => {
+            "ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π."
+        }
+        KernelKind::Project => "The configuration on the manifold that is nearest to `q`.",
+        KernelKind::Residual => {
+            "Root of the sum of squares of the manifold's relations: 0 on the manifold."
+        }
+        KernelKind::BiasAcceleration => {
+            "c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame."
+        }
+        KernelKind::BiasMomentum => {
+            "(d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame."
+        }
+    }
+}

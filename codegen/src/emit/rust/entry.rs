@@ -1,0 +1,132 @@
+//! The registry entry of a joint, and the text of its spec.
+
+use super::docs;
+use super::tokens::ident;
+use super::type_ident;
+use crate::derived::{Derived, Step};
+use crate::emit::report::summary;
+use crate::expr::{Atom, Expr, Symbol};
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// `ENTRY`, `SPEC` and the table of parameters.
+pub fn tokens(derived: &Derived) -> TokenStream {
+    let spec = &derived.spec;
+    let name = &spec.name.value;
+    let summary = summary(&spec.docs, name);
+    let build = build(derived);
+    let infos = spec.parameters.iter().map(|parameter| {
+        let (name, unit, description) = (
+            parameter.symbol.name.as_ref(),
+            &parameter.unit,
+            parameter.docs.trim(),
+        );
+        quote! { ParameterInfo { name: #name, unit: #unit, description: #description } }
+    });
+    let count = Literal::usize_unsuffixed(spec.parameters.len());
+    let source = raw_string(&spec.source);
+    let entry_docs = docs::outer(&["How a scene finds this joint by name."]);
+    let spec_docs = docs::outer(&["The spec that this joint was generated from."]);
+    quote! {
+        const PARAMETERS: [ParameterInfo; #count] = [#(#infos),*];
+        #entry_docs
+        pub const ENTRY: JointEntry = JointEntry {
+            name: #name,
+            summary: #summary,
+            parameters: &PARAMETERS,
+            build: #build,
+        };
+        #spec_docs
+        pub const SPEC: &str = #source;
+    }
+}
+
+fn build(derived: &Derived) -> TokenStream {
+    let name = &derived.spec.name.value;
+    let type_name = type_ident(derived);
+    let parameters = &derived.spec.parameters;
+    if parameters.is_empty() {
+        return quote! {
+            |values| {
+                check_parameters(#name, &PARAMETERS, values)?;
+                Ok(erase(#type_name))
+            }
+        };
+    }
+    let fields: Vec<_> = parameters
+        .iter()
+        .map(|parameter| ident(&parameter.symbol.name))
+        .collect();
+    let checks = parameters
+        .iter()
+        .filter(|parameter| divides(derived, &parameter.symbol))
+        .map(|parameter| {
+            let (text, field) = (
+                parameter.symbol.name.as_ref(),
+                ident(&parameter.symbol.name),
+            );
+            quote! {
+                if #field == 0.0 {
+                    return Err(ParameterError::OutOfRange {
+                        joint: #name,
+                        parameter: #text,
+                        value: #field,
+                        requirement: "other than zero",
+                    });
+                }
+            }
+        });
+    quote! {
+        |values| {
+            let [#(#fields),*] = check_parameters(#name, &PARAMETERS, values)?;
+            #(#checks)*
+            Ok(erase(#type_name::new(#(#fields),*)))
+        }
+    }
+}
+
+/// Whether some kernel divides by the parameter.
+fn divides(derived: &Derived, parameter: &Symbol) -> bool {
+    let atom = Atom::Symbol(parameter.clone());
+    let entries = derived
+        .kernels
+        .iter()
+        .flat_map(|kernel| &kernel.outputs)
+        .flat_map(|output| output.entries());
+    let steps = derived
+        .kernels
+        .iter()
+        .flat_map(|kernel| &kernel.steps)
+        .filter_map(|step| match step {
+            Step::Let(_, value) => Some(value),
+            Step::Call { .. } => None,
+        });
+    entries.chain(steps).any(|entry| divides_in(entry, &atom))
+}
+
+fn divides_in(expression: &Expr, atom: &Atom) -> bool {
+    expression
+        .terms()
+        .any(|(monomial, _)| monomial.power(atom) < 0)
+        || expression.atoms().iter().any(|inner| match inner {
+            Atom::Apply(application) => application
+                .arguments
+                .iter()
+                .any(|argument| divides_in(argument, atom)),
+            Atom::Symbol(_) => false,
+        })
+}
+
+/// The text as a raw string literal, so that a reader sees the spec as it was written.
+fn raw_string(text: &str) -> Literal {
+    let longest = text
+        .split('"')
+        .skip(1)
+        .map(|rest| rest.chars().take_while(|c| *c == '#').count() + 1)
+        .max();
+    let signs = "#".repeat(longest.unwrap_or(0).max(1));
+    // Raw literals cannot hold a carriage return: such a text is escaped instead.
+    format!("r{signs}\"{text}\"{signs}")
+        .parse()
+        .unwrap_or_else(|_| Literal::string(text))
+}

@@ -1,0 +1,77 @@
+//! The module that lists all joints: re-exports, registry entries, specs, and a macro for tests.
+
+use super::joint::sizes;
+use super::tokens::ident;
+use super::{Malformed, docs, header, nested, text, type_ident};
+use crate::derived::Derived;
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+/// How the joints are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Index {
+    /// `mod.rs` beside one file a joint, in the crate's module `joints`; exports `for_each_joint!`.
+    Files,
+    /// One file with a module for each joint, for `include!`.
+    Nested,
+}
+
+/// The index of the joints, in alphabetic order; `label` names the folder of specs.
+///
+/// # Errors
+/// As [`super::file`].
+pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, Malformed> {
+    let mut joints: Vec<&Derived> = joints.iter().collect();
+    joints.sort_by(|a, b| a.spec.name.value.cmp(&b.spec.name.value));
+    let modules: Vec<Ident> = joints
+        .iter()
+        .map(|joint| ident(&joint.spec.name.value))
+        .collect();
+    let types: Vec<Ident> = joints.iter().map(|joint| type_ident(joint)).collect();
+    let head = match layout {
+        Index::Files => {
+            let docs = " The joint library: one module a joint, generated from its spec.";
+            quote! { #![doc = #docs] #(pub mod #modules;)* }
+        }
+        Index::Nested => joints.iter().map(|joint| nested(joint)).collect(),
+    };
+    let macros = (layout == Index::Files).then(|| for_each_joint(&joints));
+    let entries = docs::outer(&["Registry entries of all joints, in alphabetic order."]);
+    let specs = docs::outer(&["Name and text of every spec, in alphabetic order."]);
+    let names = joints.iter().map(|joint| &joint.spec.name.value);
+    let tokens = quote! {
+        #head
+        #(pub use #modules::#types;)*
+        #entries
+        pub const ENTRIES: &[::hamel::registry::JointEntry] = &[#(#modules::ENTRY),*];
+        #specs
+        pub const SPECS: &[(&str, &str)] = &[#((#names, #modules::SPEC)),*];
+        #macros
+    };
+    text("the index of all joints", &header(label), tokens)
+}
+
+/// The macro that hands every joint to another macro.
+fn for_each_joint(joints: &[&Derived]) -> TokenStream {
+    let docs = docs::outer(&[
+        "Calls the macro `$callback` once for each joint with",
+        "`(module, Type, expression, N, K, S, C)`: the expression builds the joint with every parameter 0.7.",
+    ]);
+    let calls = joints.iter().map(|joint| {
+        let (module, name) = (ident(&joint.spec.name.value), type_ident(joint));
+        let [n, k, s, c] = sizes(joint);
+        let values = joint.spec.parameters.iter().map(|_| quote! { 0.7 });
+        let value = match joint.spec.parameters.is_empty() {
+            true => quote! { $crate::joints::#name },
+            false => quote! { $crate::joints::#name::new(#(#values),*) },
+        };
+        quote! { $callback!(#module, $crate::joints::#name, #value, #n, #k, #s, #c); }
+    });
+    quote! {
+        #docs
+        #[macro_export]
+        macro_rules! for_each_joint {
+            ($callback:path) => { #(#calls)* };
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! The type of a joint and its implementation of the trait.
+
+use super::docs;
+use super::kernel::Method;
+use super::tokens::{ident, signed_literal};
+use super::type_ident;
+use crate::derived::{Derived, KernelKind, Structure};
+use crate::emit::names::Names;
+use crate::emit::report::summary;
+use crate::expr::Rational;
+use crate::model::VelocityFrame;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The type, its constructor and its `impl Joint`.
+pub fn tokens(derived: &Derived) -> TokenStream {
+    let definition = definition(derived);
+    let name = type_ident(derived);
+    let [n, k, s, c] = sizes(derived);
+    let constants = constants(derived);
+    let parameters = parameters(derived);
+    let names = Names::new(derived);
+    let methods = derived.kernels.iter().map(|kernel| {
+        let method = Method::new(derived, kernel, &names);
+        method.tokens(&docs::kernel(derived, kernel, &method))
+    });
+    quote! {
+        #definition
+        impl Joint<#n, #k, #s, #c> for #name {
+            #constants
+            #parameters
+            #(#methods)*
+        }
+    }
+}
+
+/// N, K, S and C as literals.
+pub fn sizes(derived: &Derived) -> [Literal; 4] {
+    let shape = derived.shape;
+    [
+        shape.configuration,
+        shape.freedoms,
+        shape.speeds,
+        shape.constraints,
+    ]
+    .map(Literal::usize_unsuffixed)
+}
+
+fn definition(derived: &Derived) -> TokenStream {
+    let name = type_ident(derived);
+    let spec = &derived.spec;
+    let docs = docs::outer(&[summary(&spec.docs, &spec.name.value)]);
+    let derives = quote! { #[derive(Clone, Copy, Debug, PartialEq)] };
+    if spec.parameters.is_empty() {
+        return quote! { #docs #derives pub struct #name; };
+    }
+    let fields: Vec<_> = spec
+        .parameters
+        .iter()
+        .map(|parameter| ident(&parameter.symbol.name))
+        .collect();
+    let field_docs = spec.parameters.iter().map(|parameter| {
+        let text = match parameter.docs.trim() {
+            "" => format!(
+                "Parameter `{}`, in {}.",
+                parameter.symbol.name, parameter.unit
+            ),
+            text => format!("{text} In {}.", parameter.unit),
+        };
+        docs::outer(&text.lines().map(str::trim).collect::<Vec<_>>())
+    });
+    let constructor = docs::outer(&["The joint with the given parameters, in SI units."]);
+    quote! {
+        #docs #derives
+        pub struct #name { #(#field_docs pub #fields: f64),* }
+        impl #name {
+            #constructor
+            pub const fn new(#(#fields: f64),*) -> Self {
+                Self { #(#fields),* }
+            }
+        }
+    }
+}
+
+fn parameters(derived: &Derived) -> TokenStream {
+    let names = derived
+        .spec
+        .parameters
+        .iter()
+        .map(|parameter| parameter.symbol.name.to_string());
+    let fields = derived
+        .spec
+        .parameters
+        .iter()
+        .map(|parameter| ident(&parameter.symbol.name));
+    quote! {
+        fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
+            [#((#names, self.#fields)),*].into_iter()
+        }
+    }
+}
+
+fn constants(derived: &Derived) -> TokenStream {
+    let shape = derived.shape;
+    let names = |names: Vec<String>| quote! { [#(#names),*] };
+    let array = |constant: &str, size: usize, values: Vec<String>| {
+        let (constant, size, values) = (
+            ident(constant),
+            Literal::usize_unsuffixed(size),
+            names(values),
+        );
+        quote! { const #constant: [&'static str; #size] = #values; }
+    };
+    let spec = &derived.spec;
+    let name = &spec.name.value;
+    let coordinates = derived
+        .arguments
+        .configuration
+        .iter()
+        .map(|symbol| symbol.name.to_string())
+        .collect();
+    let freedoms = spec
+        .freedoms
+        .value
+        .iter()
+        .map(|freedom| freedom.name.clone())
+        .collect();
+    let coordinates = array("COORDINATES", shape.configuration, coordinates);
+    let freedoms = array("FREEDOMS", shape.freedoms, freedoms);
+    let speeds = array("SPEEDS", shape.speeds, derived.speed_names.clone());
+    let frame = ident(match spec.velocity.value {
+        VelocityFrame::Child => "Child",
+        VelocityFrame::Parent => "Parent",
+        VelocityFrame::Rates => "Declared",
+    });
+    let structures = structures(derived);
+    let inertias = derived.imperceptible.iter().map(inertia);
+    quote! {
+        const NAME: &'static str = #name;
+        #coordinates
+        #freedoms
+        #speeds
+        const VELOCITY_FRAME: VelocityFrame = VelocityFrame::#frame;
+        const STRUCTURES: Structures = #structures;
+        const IMPERCEPTIBLE: &'static [[f64; 10]] = &[#(#inertias),*];
+    }
+}
+
+fn inertia(weights: &[Rational; 10]) -> TokenStream {
+    let weights = weights.iter().map(signed_literal);
+    quote! { [#(#weights),*] }
+}
+
+fn structures(derived: &Derived) -> TokenStream {
+    let fields = [
+        ("twist_map", KernelKind::TwistMap),
+        ("twist_map_child", KernelKind::TwistMapChild),
+        (
+            "twist_map_child_gradient",
+            KernelKind::TwistMapChildGradient,
+        ),
+        ("velocity_map", KernelKind::VelocityMap),
+        ("velocity_map_gradient", KernelKind::VelocityMapGradient),
+        ("gamma", KernelKind::Gamma),
+        ("speed_basis", KernelKind::SpeedBasis),
+        ("speed_basis_gradient", KernelKind::SpeedBasisGradient),
+        (
+            "retract_differential",
+            KernelKind::RetractDifferentialInverse,
+        ),
+        ("bias_acceleration", KernelKind::BiasAcceleration),
+        ("bias_momentum", KernelKind::BiasMomentum),
+    ];
+    let fields = fields.iter().map(|(field, kind)| {
+        let field = ident(field);
+        let structure = derived
+            .kernel(*kind)
+            .map_or(Structure::General, |kernel| kernel.structure);
+        let structure = ident(match structure {
+            Structure::Zero => "Zero",
+            Structure::Identity => "Identity",
+            Structure::Constant => "Constant",
+            Structure::General => "General",
+        });
+        quote! { #field: Structure::#structure }
+    });
+    quote! { Structures { #(#fields),* } }
+}

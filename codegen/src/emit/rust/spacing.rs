@@ -1,0 +1,54 @@
+//! Blank lines between items and methods: what the printer of tokens leaves out.
+
+use syn::{Attribute, File, Item};
+
+/// The file as text, items and methods apart from each other.
+pub fn spaced(file: &File) -> String {
+    let mut text = prettyplease::unparse(&file_of(file.attrs.clone(), vec![]));
+    let mut before: Option<&Item> = None;
+    for item in &file.items {
+        if before.is_none_or(|before| !belong_together(before, item)) {
+            text += "\n";
+        }
+        let alone = prettyplease::unparse(&file_of(vec![], vec![item.clone()]));
+        text += &if matches!(item, Item::Impl(_)) {
+            apart(&alone)
+        } else {
+            alone
+        };
+        before = Some(item);
+    }
+    text
+}
+
+fn file_of(attrs: Vec<Attribute>, items: Vec<Item>) -> File {
+    File {
+        shebang: None,
+        frontmatter: None,
+        attrs,
+        items,
+    }
+}
+
+/// Imports stand together, and so do declarations of modules.
+fn belong_together(a: &Item, b: &Item) -> bool {
+    let declares = |item: &Item| matches!(item, Item::Mod(module) if module.content.is_none());
+    matches!((a, b), (Item::Use(_), Item::Use(_))) || (declares(a) && declares(b))
+}
+
+/// Puts a blank line before each method of an `impl`, its documentation included.
+fn apart(text: &str) -> String {
+    let is_doc = |line: &str| line.starts_with("    ///");
+    let mut spaced = String::with_capacity(text.len());
+    let mut before = "";
+    for (i, line) in text.lines().enumerate() {
+        let starts = is_doc(line) || line.starts_with("    fn ");
+        if starts && i > 1 && !is_doc(before) {
+            spaced += "\n";
+        }
+        spaced += line;
+        spaced += "\n";
+        before = line;
+    }
+    spaced
+}
