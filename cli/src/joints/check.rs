@@ -1,0 +1,93 @@
+//! `hamel joints check`.
+
+use super::{Library, source};
+use crate::output::{self, Failure};
+use hamel_codegen::derived::{Claim, Derived};
+use serde::Serialize;
+
+/// Derive joints anew and prove every claim.
+///
+/// Without names, all joints of the library. Exit code 1 if any spec is refused; its errors are on stderr.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Library joints or .joint files
+    #[arg(value_name = "JOINT")]
+    joints: Vec<String>,
+
+    /// Print `{joints: [{name, claims: [{claim, proof, residual, points, bits}]}]}` on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Checked {
+    name: String,
+    claims: Vec<Proved>,
+}
+
+#[derive(Serialize)]
+struct Proved {
+    claim: &'static str,
+    proof: &'static str,
+    residual: f64,
+    points: usize,
+    bits: usize,
+}
+
+/// Checks the joints and prints what was proved.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let names = match args.joints.is_empty() {
+        true => source::library(),
+        false => args.joints.clone(),
+    };
+    let (mut joints, mut failures) = (vec![], vec![]);
+    for name in &names {
+        match source::derive(name) {
+            Ok(joint) => joints.push(joint),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    match args.json {
+        true => output::print_json(&Library {
+            joints: joints.iter().map(checked).collect(),
+        })?,
+        false => output::print(&joints.iter().map(text).collect::<String>())?,
+    }
+    match failures.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::Several(failures)),
+    }
+}
+
+fn checked(joint: &Derived) -> Checked {
+    let proved = |claim: &Claim| Proved {
+        claim: claim.name,
+        proof: claim.proof.name(),
+        residual: claim.residual,
+        points: claim.points,
+        bits: claim.bits,
+    };
+    Checked {
+        name: joint.spec.name.value.clone(),
+        claims: joint.claims.iter().map(proved).collect(),
+    }
+}
+
+fn text(joint: &Derived) -> String {
+    let width = joint
+        .claims
+        .iter()
+        .map(|claim| claim.statement.chars().count())
+        .max()
+        .unwrap_or(0);
+    let line = |claim: &Claim| {
+        format!(
+            "  {:width$}  {}: {}\n",
+            claim.statement,
+            claim.proof.name().replace('_', " "),
+            claim.detail
+        )
+    };
+    let lines: String = joint.claims.iter().map(line).collect();
+    format!("{}\n{lines}\n", joint.spec.name.value)
+}

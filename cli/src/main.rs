@@ -1,0 +1,41 @@
+//! `hamel`: simulates scenes and explains joints from the command line.
+//!
+//! Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood.
+
+mod joints;
+mod output;
+mod simulate;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Multibody mechanisms with holonomic and nonholonomic joints, without singularities.
+#[derive(Debug, Parser)]
+#[command(name = "hamel", version, arg_required_else_help = true)]
+#[command(after_help = "`hamel help COMMAND` explains a command with examples.")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Simulate(simulate::Args),
+    Joints(joints::Args),
+}
+
+fn main() -> ExitCode {
+    let registry = hamel_joints::registry();
+    let result = match Cli::parse().command {
+        Command::Simulate(args) => simulate::run(&args, &registry),
+        Command::Joints(args) => joints::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) if failure.is_broken_pipe() => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::report(&failure);
+            failure.exit_code()
+        }
+    }
+}

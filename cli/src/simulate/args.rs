@@ -1,0 +1,108 @@
+//! The options of `hamel simulate`.
+
+use clap::{ArgGroup, ValueEnum};
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  hamel simulate scenes/plate_cart_arm.toml
+      simulates as the scene says and writes plate_cart_arm.csv
+  hamel simulate scenes/plate_cart_arm.toml --form hamiltonian --tol 1e-9 --t-end 10
+      the same motion from the port-Hamiltonian form, up to 10 s
+  hamel simulate scenes/ball_pendulum.toml --method rk4 --dt 1e-3 --csv swing.csv
+      with fixed steps, trajectory to swing.csv
+  hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
+      the state at three times, as JSON on stdout
+
+The CSV file has one row a sample: `t_s`, `energy_J`, and for each body NAME
+  NAME.x_m, .y_m, .z_m                       position of the centre of mass, world axes
+  NAME.rx_rad, .ry_rad, .rz_rad              attitude as rotation vector, body to world
+  NAME.vx_m_per_s, …                         velocity of the centre of mass, world axes
+  NAME.wx_rad_per_s, …                       angular velocity, body axes
+
+Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a file that cannot be written; 2 wrong options.";
+
+/// Simulate a scene: trajectory as CSV, final state as a table, energy and drift.
+///
+/// Options override the `[simulation]` table of the scene.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES, group = ArgGroup::new("accuracy"))]
+pub struct Args {
+    /// Scene file (TOML; the format is described in scenes/README.md)
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// Form of the equations of motion
+    #[arg(long, value_enum)]
+    pub form: Option<FormName>,
+
+    /// Integration method: rk4 has fixed steps, dopri5 controls its step
+    #[arg(long, value_enum)]
+    pub method: Option<MethodName>,
+
+    /// Tolerance of one step of dopri5: absolute in angle, relative in rates; implies dopri5
+    #[arg(
+        long,
+        value_name = "TOLERANCE",
+        group = "accuracy",
+        allow_negative_numbers = true
+    )]
+    pub tol: Option<f64>,
+
+    /// Step of rk4, s; implies rk4
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        group = "accuracy",
+        allow_negative_numbers = true
+    )]
+    pub dt: Option<f64>,
+
+    /// End of the simulated time, s
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub t_end: Option<f64>,
+
+    /// Time between two samples of the trajectory, s
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub sample_step: Option<f64>,
+
+    /// Sample at these times only, s, ascending; without --t-end the simulation ends at the last
+    #[arg(
+        long,
+        value_name = "T1,T2,…",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        conflicts_with = "sample_step"
+    )]
+    pub at: Vec<f64>,
+
+    /// Write the trajectory to FILE [default: the scene's file name with .csv, in the current folder]
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+
+    /// Print the samples as JSON on stdout, and nothing else; no CSV unless asked for
+    #[arg(long)]
+    pub json: bool,
+
+    /// Print nothing but errors
+    #[arg(long, conflicts_with = "json")]
+    pub quiet: bool,
+}
+
+/// Names of the two forms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormName {
+    /// State (Q, v), Theorem 2
+    Lagrangian,
+    /// State (Q, p), port-Hamiltonian, Theorem 3
+    Hamiltonian,
+}
+
+/// Names of the methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Classical Runge–Kutta of order 4 on the joints' manifolds, fixed step
+    Rk4,
+    /// Dormand–Prince 5(4) on the joints' manifolds, step control
+    Dopri5,
+}

@@ -1,0 +1,95 @@
+//! The samples as JSON. Names and meaning of all keys are stable.
+
+use super::sample::Sample;
+use crate::output::Failure;
+use serde::Serialize;
+use serde_json::Serializer;
+use serde_json::ser::Formatter;
+use std::io::{self, Write};
+
+/// What `--json` prints.
+#[derive(Debug, Serialize)]
+pub struct Report<'a> {
+    /// Name of the scene.
+    pub scene: &'a str,
+    /// Form of the equations of motion.
+    pub form: &'a str,
+    /// Name of the integration method.
+    pub method: &'a str,
+    /// The states asked for.
+    pub samples: &'a [Sample<'a>],
+    /// What the simulation took.
+    pub statistics: Statistics,
+}
+
+/// What the simulation took.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Statistics {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Rejected steps.
+    pub rejected: usize,
+    /// Evaluations of the equations of motion.
+    pub evaluations: usize,
+    /// Wall-clock time of the integration, s; writing the trajectory on the way is part of it.
+    pub run_time_s: f64,
+}
+
+/// Prints the report on stdout, one line.
+///
+/// # Errors
+/// A stdout that cannot be written.
+pub fn print(report: &Report<'_>) -> Result<(), Failure> {
+    let mut stdout = io::BufWriter::new(io::stdout().lock());
+    write(report, &mut stdout).map_err(Failure::stdout)
+}
+
+fn write(report: &Report<'_>, out: &mut impl Write) -> io::Result<()> {
+    report.serialize(&mut Serializer::with_formatter(&mut *out, Digits17))?;
+    out.write_all(b"\n")?;
+    out.flush()
+}
+
+/// Writes every float with 17 significant digits, which decide an f64.
+struct Digits17;
+
+impl Formatter for Digits17 {
+    fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
+        write!(writer, "{value:.16e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Report, Sample, Statistics, write};
+
+    #[test]
+    fn numbers_have_17_digits_and_read_back() {
+        let samples = [Sample {
+            t: 0.1,
+            energy: -1.0 / 3.0,
+            bodies: Vec::new(),
+        }];
+        let statistics = Statistics {
+            steps: 3,
+            rejected: 0,
+            evaluations: 18,
+            run_time_s: 0.0,
+        };
+        let report = Report {
+            scene: "a \"scene\"",
+            form: "lagrangian",
+            method: "rk4",
+            samples: &samples,
+            statistics,
+        };
+        let mut bytes = Vec::new();
+        write(&report, &mut bytes).expect("memory takes it");
+        let text = String::from_utf8(bytes).expect("JSON is UTF-8");
+        assert!(text.contains(r#""t":1.0000000000000001e-1,"energy":-3.3333333333333331e-1"#));
+        let value: serde_json::Value = serde_json::from_str(&text).expect("valid JSON");
+        assert_eq!(value["samples"][0]["energy"].as_f64(), Some(-1.0 / 3.0));
+        assert_eq!(value["scene"].as_str(), Some("a \"scene\""));
+        assert_eq!(value["statistics"]["evaluations"].as_u64(), Some(18));
+    }
+}

@@ -1,0 +1,15 @@
+//! `hamel simulate`: from a scene file to a trajectory.
+
+mod args;
+mod csv;
+mod json;
+mod plan;
+mod progress;
+mod run;
+mod sample;
+mod settings;
+mod table;
+mod times;
+
+pub use args::Args;
+pub use run::run;

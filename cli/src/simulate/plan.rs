@@ -1,0 +1,71 @@
+//! What one run of `hamel simulate` is to do: the scene, the settings, the times and the files.
+
+use super::args::Args;
+use super::{settings, times};
+use crate::output::Failure;
+use hamel::integrate::Options;
+use hamel::registry::JointRegistry;
+use hamel_scene::{Scene, Settings};
+use std::path::{Path, PathBuf};
+
+/// A run, decided in every respect.
+#[derive(Debug)]
+pub struct Plan {
+    /// The scene as loaded.
+    pub scene: Scene,
+    /// Its settings under the options given; `t_end` is the end of the simulation.
+    pub settings: Settings,
+    /// Sample times, s.
+    pub times: Vec<f64>,
+    /// Where the trajectory goes, if anywhere.
+    pub csv: Option<PathBuf>,
+}
+
+impl Plan {
+    /// Loads the scene of `args` and lays the options over its settings.
+    ///
+    /// # Errors
+    /// Mistakes in the scene; options out of range.
+    pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
+        let scene = Scene::load(&args.scene, registry)?;
+        let mut settings = settings::overridden(&scene.settings, args)?;
+        let times = if args.at.is_empty() {
+            times::regular(settings.t_end, settings.sample_step)?
+        } else {
+            let given = args.t_end.map(|_| settings.t_end);
+            let (times, t_end) = times::chosen(&args.at, given)?;
+            settings.t_end = t_end;
+            times
+        };
+        Ok(Self {
+            scene,
+            settings,
+            times,
+            csv: csv_path(args),
+        })
+    }
+
+    /// What the integrator is asked to do.
+    pub fn options(&self) -> Options {
+        Options {
+            form: self.settings.form,
+            method: self.settings.method,
+            t_end: self.settings.t_end,
+            samples: self.times.clone(),
+        }
+    }
+}
+
+/// The file asked for; else, unless JSON is wanted, the scene's file name with `.csv` in the current folder.
+fn csv_path(args: &Args) -> Option<PathBuf> {
+    let default = || {
+        let stem = args.scene.file_stem().unwrap_or("trajectory".as_ref());
+        let mut name = Path::new(stem).as_os_str().to_owned();
+        name.push(".csv");
+        PathBuf::from(name)
+    };
+    match &args.csv {
+        Some(path) => Some(path.clone()),
+        None => (!args.json).then(default),
+    }
+}

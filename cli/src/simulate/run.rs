@@ -1,0 +1,164 @@
+//! The run itself: integrate, write the trajectory on the way, tell the result.
+
+use super::args::Args;
+use super::csv::Trajectory;
+use super::json::{self, Report, Statistics};
+use super::plan::Plan;
+use super::progress::Progress;
+use super::sample::Sample;
+use super::table::Summary;
+use crate::output::Failure;
+use hamel::dynamics::Reference;
+use hamel::integrate::{IntegrateError, Solution, State, Step, integrate, no_inputs};
+use hamel::mechanism::Mechanism;
+use hamel::registry::JointRegistry;
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Simulates the scene of `args`.
+///
+/// # Errors
+/// Mistakes in the scene or the options; a simulation that stops early; output that cannot be written.
+pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
+    let plan = Plan::new(args, registry)?;
+    let (solution, statistics) = simulate(&plan, args.quiet)?;
+    if args.json {
+        return print_json(&plan, &solution, statistics);
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    print_summary(&plan, &solution, statistics)
+}
+
+fn simulate(plan: &Plan, quiet: bool) -> Result<(Solution, Statistics), Failure> {
+    let mechanism = &plan.scene.mechanism;
+    let mut recorder = Recorder::new(plan, quiet)?;
+    let mut dynamics = Reference::new(Arc::clone(mechanism));
+    let start = Instant::now();
+    let result = integrate(
+        &mut dynamics,
+        &initial(plan),
+        &plan.options(),
+        &mut no_inputs,
+        &mut |step| recorder.see(step),
+    );
+    let run_time_s = start.elapsed().as_secs_f64();
+    recorder.finish()?;
+    let solution = result.map_err(|error| stopped(plan, &error))?;
+    let statistics = Statistics {
+        steps: solution.statistics.steps,
+        rejected: solution.statistics.rejected,
+        evaluations: solution.statistics.evaluations,
+        run_time_s,
+    };
+    Ok((solution, statistics))
+}
+
+fn stopped(plan: &Plan, error: &IntegrateError) -> Failure {
+    Failure::Simulation(match &plan.csv {
+        Some(path) => format!(
+            "{error} (the samples before that are in {})",
+            path.display()
+        ),
+        None => error.to_string(),
+    })
+}
+
+fn initial(plan: &Plan) -> State {
+    State {
+        time: 0.0,
+        configuration: plan.scene.configuration.clone(),
+        speeds: plan.scene.speeds.clone(),
+    }
+}
+
+fn sample<'a>(mechanism: &'a Mechanism, state: &State) -> Result<Sample<'a>, Failure> {
+    Sample::new(mechanism, state.time, &state.configuration, &state.speeds)
+        .map_err(|error| Failure::Simulation(error.to_string()))
+}
+
+/// Writes samples as they come, so that a simulation that stops leaves its trajectory up to there.
+struct Recorder<'a> {
+    mechanism: &'a Mechanism,
+    trajectory: Option<Trajectory>,
+    progress: Progress,
+    failure: Option<Failure>,
+}
+
+impl<'a> Recorder<'a> {
+    fn new(plan: &'a Plan, quiet: bool) -> Result<Self, Failure> {
+        let mechanism: &Mechanism = &plan.scene.mechanism;
+        let names = mechanism.bodies().iter().map(|body| body.name());
+        let trajectory = match &plan.csv {
+            Some(path) => Some(Trajectory::create(path, names)?),
+            None => None,
+        };
+        Ok(Self {
+            mechanism,
+            trajectory,
+            progress: Progress::new(plan.settings.t_end, quiet),
+            failure: None,
+        })
+    }
+
+    fn see(&mut self, step: &Step<'_>) -> ControlFlow<()> {
+        self.progress.at(step.time);
+        if step.sample.is_none() {
+            return ControlFlow::Continue(());
+        }
+        match self.record(step) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(failure) => {
+                self.failure = Some(failure);
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    fn record(&mut self, step: &Step<'_>) -> Result<(), Failure> {
+        let Some(trajectory) = &mut self.trajectory else {
+            return Ok(());
+        };
+        let sample = Sample::new(self.mechanism, step.time, step.configuration, step.speeds);
+        trajectory.write(&sample.map_err(|error| Failure::Simulation(error.to_string()))?)
+    }
+
+    fn finish(self) -> Result<(), Failure> {
+        self.progress.finish();
+        let flushed = self.trajectory.map_or(Ok(()), Trajectory::finish);
+        self.failure.map_or(flushed, Err)
+    }
+}
+
+fn print_json(plan: &Plan, solution: &Solution, statistics: Statistics) -> Result<(), Failure> {
+    let samples = solution.samples.iter();
+    let samples: Vec<Sample<'_>> = samples
+        .map(|state| sample(&plan.scene.mechanism, state))
+        .collect::<Result<_, _>>()?;
+    json::print(&Report {
+        scene: &plan.scene.name,
+        form: plan.settings.form_name(),
+        method: plan.settings.method_name(),
+        samples: &samples,
+        statistics,
+    })
+}
+
+fn print_summary(plan: &Plan, solution: &Solution, statistics: Statistics) -> Result<(), Failure> {
+    let mechanism = &plan.scene.mechanism;
+    let (first, last) = (initial(plan), &solution.state);
+    let kinematics = mechanism.kinematics(&first.configuration, &first.speeds);
+    let kinematics = kinematics.map_err(|error| Failure::Simulation(error.to_string()))?;
+    let summary = Summary {
+        plan,
+        first: &sample(mechanism, &first)?,
+        last: &sample(mechanism, last)?,
+        first_kinetic_energy: kinematics.kinetic_energy(),
+        samples: solution.samples.len(),
+        statistics,
+    };
+    write!(std::io::stdout().lock(), "{summary}").map_err(Failure::stdout)
+}

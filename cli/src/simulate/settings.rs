@@ -1,0 +1,160 @@
+//! The settings of a scene with the options of the command line laid over them.
+
+use super::args::{Args, FormName, MethodName};
+use crate::output::Failure;
+use hamel::integrate::{Form, Method};
+use hamel_scene::Settings;
+
+/// The settings that `args` and the scene's `settings` make together.
+///
+/// # Errors
+/// A value out of range, or an accuracy that means nothing to the method chosen.
+pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure> {
+    let t_end = args
+        .t_end
+        .map(|t_end| in_range("--t-end", t_end, t_end >= 0.0, "at least 0"));
+    let sample_step = positive("--sample-step", args.sample_step)?;
+    let form = args.form.map(|form| match form {
+        FormName::Lagrangian => Form::Lagrangian,
+        FormName::Hamiltonian => Form::Hamiltonian,
+    });
+    Ok(Settings {
+        t_end: t_end.transpose()?.unwrap_or(settings.t_end),
+        method: method(settings.method, args)?,
+        form: form.unwrap_or(settings.form),
+        sample_step: sample_step.unwrap_or(settings.sample_step),
+    })
+}
+
+/// The method named; or implied by an accuracy; or the scene's. The scene's accuracy stays where it fits.
+fn method(scene: Method, args: &Args) -> Result<Method, Failure> {
+    let dt = positive("--dt", args.dt)?;
+    let tol = args.tol.map(tolerance).transpose()?;
+    let named = match (args.method, dt, tol) {
+        (Some(MethodName::Rk4), _, Some(_)) => {
+            return refuse("--tol means nothing to rk4, whose accuracy is --dt".into());
+        }
+        (Some(MethodName::Dopri5), Some(_), _) => {
+            return refuse("--dt means nothing to dopri5, whose accuracy is --tol".into());
+        }
+        (named, None, None) => named,
+        (_, Some(_), _) => Some(MethodName::Rk4),
+        (_, _, Some(_)) => Some(MethodName::Dopri5),
+    };
+    Ok(match (named, scene) {
+        (None, _) => scene,
+        (Some(MethodName::Rk4), Method::Rk4 { dt: own }) => Method::Rk4 {
+            dt: dt.unwrap_or(own),
+        },
+        (Some(MethodName::Rk4), _) => Method::Rk4 {
+            dt: dt.unwrap_or(Settings::DEFAULT_DT),
+        },
+        (Some(MethodName::Dopri5), Method::DormandPrince { tolerance, .. }) => {
+            Method::dormand_prince(tol.unwrap_or(tolerance))
+        }
+        (Some(MethodName::Dopri5), _) => {
+            Method::dormand_prince(tol.unwrap_or(Settings::DEFAULT_TOL))
+        }
+    })
+}
+
+fn tolerance(tol: f64) -> Result<f64, Failure> {
+    let (least, largest) = (Settings::LEAST_TOL, Settings::LARGEST_TOL);
+    let limit = format!("between {least:?} and {largest:?}");
+    in_range("--tol", tol, (least..=largest).contains(&tol), &limit)
+}
+
+fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
+    value
+        .map(|value| in_range(option, value, value > 0.0, "above 0"))
+        .transpose()
+}
+
+fn in_range(option: &str, value: f64, holds: bool, limit: &str) -> Result<f64, Failure> {
+    if holds && value.is_finite() {
+        return Ok(value);
+    }
+    refuse(format!(
+        "{option} is {value:?}; it must be finite and {limit}"
+    ))
+}
+
+fn refuse<T>(message: String) -> Result<T, Failure> {
+    Err(Failure::Options(message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Args, Method, Settings, overridden};
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Command {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn settings(scene: Method, options: &str) -> Option<Settings> {
+        let words = ["hamel", "scene.toml"]
+            .into_iter()
+            .chain(options.split_whitespace());
+        let args = Command::try_parse_from(words).ok()?.args;
+        let settings = Settings {
+            method: scene,
+            ..Settings::default()
+        };
+        overridden(&settings, &args).ok()
+    }
+
+    fn method(scene: Method, options: &str) -> Option<Method> {
+        settings(scene, options).map(|settings| settings.method)
+    }
+
+    #[test]
+    fn an_accuracy_implies_its_method_and_the_scene_fills_the_rest() {
+        let (rk4, dopri5) = (Method::Rk4 { dt: 0.5 }, Method::dormand_prince(1e-5));
+        let default_dt = Settings::DEFAULT_DT;
+        for (scene, options, wanted) in [
+            (rk4, "", rk4),
+            (rk4, "--method rk4", rk4),
+            (dopri5, "--method rk4", Method::Rk4 { dt: default_dt }),
+            (dopri5, "--dt 0.1", Method::Rk4 { dt: 0.1 }),
+            (rk4, "--tol 1e-6", Method::dormand_prince(1e-6)),
+            (
+                rk4,
+                "--method dopri5",
+                Method::dormand_prince(Settings::DEFAULT_TOL),
+            ),
+            (dopri5, "--method dopri5", dopri5),
+            (
+                rk4,
+                "--method dopri5 --tol 1e-7",
+                Method::dormand_prince(1e-7),
+            ),
+        ] {
+            assert_eq!(method(scene, options), Some(wanted), "{options}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let scene = Method::Rk4 { dt: 0.5 };
+        for options in [
+            "--method rk4 --tol 1e-6",
+            "--method dopri5 --dt 0.1",
+            "--dt 0.1 --tol 1e-6",
+            "--dt 0",
+            "--dt -1",
+            "--tol nan",
+            "--tol 0.5",
+            "--tol 1e-20",
+            "--t-end -1",
+            "--t-end inf",
+            "--sample-step 0",
+            "--at 1,2 --sample-step 0.1",
+            "--json --quiet",
+        ] {
+            assert_eq!(settings(scene, options), None, "{options}");
+        }
+    }
+}

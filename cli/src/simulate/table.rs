@@ -1,0 +1,154 @@
+//! The summary for people: final state, energy, and what the simulation took.
+
+use super::json::Statistics;
+use super::plan::Plan;
+use super::sample::{BodySample, Sample};
+use comfy_table::{Cell, CellAlignment, Table, presets};
+use hamel::integrate::Method;
+use std::fmt;
+
+/// Numbers from here on are written with an exponent.
+const LARGEST_DECIMAL: f64 = 1e7;
+
+/// What a simulation came to.
+#[derive(Debug)]
+pub struct Summary<'a> {
+    /// What was asked.
+    pub plan: &'a Plan,
+    /// State at time 0.
+    pub first: &'a Sample<'a>,
+    /// State at the end.
+    pub last: &'a Sample<'a>,
+    /// Kinetic energy at time 0, J.
+    pub first_kinetic_energy: f64,
+    /// Samples of the trajectory.
+    pub samples: usize,
+    /// What the simulation took.
+    pub statistics: Statistics,
+}
+
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.scene(f)?;
+        writeln!(f, "{}", bodies(self.last).trim_fmt())?;
+        self.energy(f)?;
+        let Statistics {
+            steps,
+            rejected,
+            evaluations,
+            run_time_s,
+        } = self.statistics;
+        writeln!(
+            f,
+            "work        {steps} steps, {rejected} rejected, {evaluations} evaluations, {run_time_s:.3} s"
+        )?;
+        match &self.plan.csv {
+            Some(path) => writeln!(
+                f,
+                "trajectory  {} samples in {}",
+                self.samples,
+                path.display()
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Summary<'_> {
+    fn scene(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Plan {
+            scene, settings, ..
+        } = self.plan;
+        let layout = scene.mechanism.layout();
+        match scene.description.as_str() {
+            "" => writeln!(f, "{}", scene.name)?,
+            description => writeln!(f, "{}: {description}", scene.name)?,
+        }
+        let bodies = counted(scene.mechanism.bodies().len(), "body", "bodies");
+        let freedoms = counted(layout.freedoms, "freedom", "freedoms");
+        let speeds = counted(layout.speeds, "speed", "speeds");
+        let form = settings.form_name();
+        write!(f, "{bodies}, {freedoms}, {speeds}; {form} form; ")?;
+        match settings.method {
+            Method::Rk4 { dt } => writeln!(f, "rk4 with steps of {dt:?} s")?,
+            Method::DormandPrince { tolerance, .. } => writeln!(f, "dopri5 to {tolerance:e}")?,
+        }
+        writeln!(f, "state at {} s:", self.last.t)
+    }
+
+    fn energy(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (start, end) = (self.first.energy, self.last.energy);
+        let scale = start.abs().max(self.first_kinetic_energy);
+        let drift = end - start;
+        let relative = if scale > 0.0 { drift / scale } else { 0.0 };
+        writeln!(
+            f,
+            "energy      {} J at the start, {} J at the end: drift {drift:.2e} J, relative {relative:.2e}",
+            decimal(start),
+            decimal(end)
+        )
+    }
+}
+
+/// One line a body and axis.
+fn bodies(sample: &Sample<'_>) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header([
+        "body",
+        "axis",
+        "position\nof com, m",
+        "attitude\n(rotation vector), rad",
+        "velocity\nof com, m/s",
+        "angular velocity\n(body axes), rad/s",
+    ]);
+    for body in &sample.bodies {
+        table.add_row(row(body));
+    }
+    table
+}
+
+fn row(body: &BodySample<'_>) -> Vec<Cell> {
+    let quantities = [
+        body.position_com,
+        body.rotation_vector(),
+        body.velocity_com_world,
+        body.angular_velocity_body,
+    ];
+    let names = [body.name.to_owned(), "x\ny\nz".to_owned()];
+    let names = names.into_iter().map(Cell::new);
+    let numbers = quantities.iter().map(|quantity| {
+        let lines: Vec<String> = quantity.iter().map(|&number| decimal(number)).collect();
+        Cell::new(lines.join("\n")).set_alignment(CellAlignment::Right)
+    });
+    names.chain(numbers).collect()
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// Nine decimals, or an exponent where these would not fit; what rounds to zero has no sign.
+fn decimal(number: f64) -> String {
+    if number.abs() >= LARGEST_DECIMAL {
+        return format!("{number:.9e}");
+    }
+    let text = format!("{number:.9}");
+    match text.strip_prefix('-') {
+        Some(rest) if !rest.contains(|digit: char| ('1'..='9').contains(&digit)) => rest.to_owned(),
+        _ => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decimal;
+
+    #[test]
+    fn numbers_are_short_and_zero_has_no_sign() {
+        assert_eq!(decimal(-1e-12), "0.000000000");
+        assert_eq!(decimal(-0.0), "0.000000000");
+        assert_eq!(decimal(-1.5), "-1.500000000");
+        assert_eq!(decimal(-2.5e30), "-2.500000000e30");
+    }
+}

@@ -1,0 +1,51 @@
+//! From what a scene file says to a mechanism and its state at time 0.
+
+mod joint;
+mod state;
+
+pub(crate) use state::{State, state};
+
+use crate::description::SceneDescription;
+use crate::diagnostics::Diagnostic;
+use crate::read::Sink;
+use crate::scene::Scene;
+use hamel::mechanism::{BodySpec, Mechanism};
+use std::sync::Arc;
+
+/// Puts the mechanism together; `states` go with the bodies of `description`.
+pub(crate) fn scene(
+    description: &SceneDescription,
+    states: Vec<State>,
+    sink: &mut Sink,
+) -> Option<Scene> {
+    let mut configuration = Vec::new();
+    let mut speeds = Vec::new();
+    let mut bodies = Vec::with_capacity(states.len());
+    for (body, state) in description.bodies.iter().zip(states) {
+        configuration.extend(state.configuration);
+        speeds.extend(state.speeds);
+        bodies.push(BodySpec {
+            name: body.name.value.clone(),
+            joint_name: body.joint.name.value.clone(),
+            parent: body.parent,
+            joint: state.joint,
+            placement: body.at,
+            child_placement: body.body_at,
+            mass: body.mass,
+        });
+    }
+    let mechanism = Mechanism::new(description.gravity, bodies)
+        .map_err(|errors| {
+            let errors = errors.into_iter();
+            errors.for_each(|error| sink.push(Diagnostic::without_place(error.to_string())));
+        })
+        .ok()?;
+    Some(Scene {
+        name: description.name.clone(),
+        description: description.description.clone(),
+        mechanism: Arc::new(mechanism),
+        configuration,
+        speeds,
+        settings: description.settings,
+    })
+}

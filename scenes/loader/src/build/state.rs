@@ -1,0 +1,170 @@
+//! The state of one joint at time 0, solved from whatever the file gives.
+
+use super::joint;
+use crate::description::{
+    InitialDescription, JointDescription, Motion, Position, TwistDescription, TwistFrame,
+};
+use crate::diagnostics::Diagnostic;
+use crate::read::Sink;
+use crate::source::{Located, Span};
+use hamel::erased::AnyJoint;
+use hamel::mechanism::{BodySpec, Mechanism, StateError};
+use hamel::registry::JointRegistry;
+use hamel::spatial::{MassProperties, Pose};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// A joint and its state.
+#[derive(Debug)]
+pub(crate) struct State {
+    pub(crate) joint: Arc<dyn AnyJoint>,
+    pub(crate) configuration: Vec<f64>,
+    pub(crate) speeds: Vec<f64>,
+}
+
+/// Builds the joint and solves for its state.
+pub(crate) fn state(
+    description: &JointDescription,
+    initial: &InitialDescription,
+    registry: &JointRegistry,
+    sink: &mut Sink,
+) -> Option<State> {
+    let joint = joint::joint(description, registry, sink)?;
+    let stand = Stand::new(description, Arc::clone(&joint))
+        .map_err(|error| sink.push(error))
+        .ok()?;
+    let solved = stand
+        .configuration(&initial.position)
+        .and_then(|configuration| {
+            let speeds = stand.speeds(&configuration, &initial.motion)?;
+            Ok((configuration, speeds))
+        });
+    let (configuration, speeds) = solved.map_err(|error| sink.push(error)).ok()?;
+    Some(State {
+        joint,
+        configuration,
+        speeds,
+    })
+}
+
+/// The joint alone, between the world and a body without mass: its state is solved there, so that the errors of one joint do
+/// not hide those of another.
+struct Stand {
+    name: String,
+    mechanism: Mechanism,
+    joint: Arc<dyn AnyJoint>,
+}
+
+impl Stand {
+    fn new(description: &JointDescription, joint: Arc<dyn AnyJoint>) -> Result<Self, Diagnostic> {
+        let name = description.name.value.clone();
+        let body = BodySpec {
+            name: name.clone(),
+            joint_name: name.clone(),
+            parent: None,
+            joint: Arc::clone(&joint),
+            placement: Pose::identity(),
+            child_placement: Pose::identity(),
+            mass: MassProperties::massless(),
+        };
+        let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).map_err(|errors| {
+            let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+            Diagnostic::new(description.span.clone(), errors.join("; "))
+        })?;
+        Ok(Self {
+            name,
+            mechanism,
+            joint,
+        })
+    }
+
+    fn configuration(&self, position: &Position) -> Result<Vec<f64>, Diagnostic> {
+        match position {
+            Position::Home => Ok(self.mechanism.home()),
+            Position::Configuration(q) => self.projected(q),
+            Position::Phi(phi) => {
+                self.check_size("phi", phi, self.joint.freedoms())?;
+                let found = self.mechanism.configuration_from_local(0, &phi.value);
+                let found = found.map_err(refusal(&phi.span))?;
+                // Huge numbers overflow on the way.
+                let checked = self.mechanism.check_configuration(&found);
+                checked.map_err(refusal(&phi.span)).map(|()| found)
+            }
+            Position::Pose(pose) => {
+                let found = self.mechanism.configuration_from_pose(0, &pose.value);
+                found.map_err(refusal(&pose.span))
+            }
+        }
+    }
+
+    /// A configuration given outright, freed of its rounding.
+    fn projected(&self, q: &Located<Vec<f64>>) -> Result<Vec<f64>, Diagnostic> {
+        self.check_size("configuration", q, self.joint.coordinates())?;
+        let checked = self.mechanism.check_configuration(&q.value);
+        checked.map_err(refusal(&q.span))?;
+        let mut projected = q.value.clone();
+        self.joint.project(&mut projected);
+        Ok(projected)
+    }
+
+    fn speeds(&self, q: &[f64], motion: &Motion) -> Result<Vec<f64>, Diagnostic> {
+        match motion {
+            Motion::Rest => Ok(vec![0.0; self.joint.layout().speeds]),
+            Motion::Speeds(speeds) => {
+                self.check_size("speeds", speeds, self.joint.speeds())?;
+                Ok(speeds.value.clone())
+            }
+            Motion::Velocity(velocity) => {
+                self.check_size("velocity", velocity, self.joint.freedoms())?;
+                self.allowed(q, &velocity.value, &velocity.span)
+            }
+            Motion::Twist(twist) => {
+                let child = self.child_twist(q, &twist.value);
+                let found = self.mechanism.velocity_from_twist(0, q, &child);
+                self.allowed(q, &found.map_err(refusal(&twist.span))?, &twist.span)
+            }
+        }
+    }
+
+    fn allowed(&self, q: &[f64], velocity: &[f64], span: &Span) -> Result<Vec<f64>, Diagnostic> {
+        let speeds = self.mechanism.speeds_from_velocity(0, q, velocity);
+        speeds.map_err(refusal(span)).map_err(|error| {
+            error.help(format!(
+                "its freedoms are {}",
+                self.joint.freedoms().join(", ")
+            ))
+        })
+    }
+
+    fn child_twist(&self, q: &[f64], given: &TwistDescription) -> nalgebra::Vector6<f64> {
+        match given.frame {
+            TwistFrame::Child => given.twist,
+            TwistFrame::Parent => self.joint.pose(q).act_twist_inverse(&given.twist),
+        }
+    }
+
+    fn check_size(
+        &self,
+        key: &str,
+        values: &Located<Vec<f64>>,
+        entries: &[&str],
+    ) -> Result<(), Diagnostic> {
+        let (found, expected) = (values.value.len(), entries.len());
+        if found == expected {
+            return Ok(());
+        }
+        let message = format!(
+            "joint `{}`: `{key}` has size {found}, not {expected}",
+            self.name
+        );
+        let kind = self.joint.name();
+        let entries = entries.join(", ");
+        let help = format!("`{key}` of a joint of type `{kind}` is [{entries}]");
+        Err(Diagnostic::new(values.span.clone(), message).help(help))
+    }
+}
+
+/// What the joint says of a value at `span`.
+fn refusal(span: &Span) -> impl Fn(StateError) -> Diagnostic {
+    move |error| Diagnostic::new(span.clone(), error.to_string())
+}

@@ -1,0 +1,25 @@
+//! Scene files of Hamel: a mechanism, its initial state and how to simulate it, in TOML.
+//!
+//! A file is read in two steps. [`Scene::from_toml`] reads what the text says by itself and gives a
+//! [`SceneDescription`]; [`SceneDescription::build`] looks the joints up in a [`JointRegistry`](hamel::registry::JointRegistry),
+//! solves for their initial state and gives a [`Scene`]. [`Scene::load`] does both, and then reports the errors of both
+//! steps together. Errors are [`Diagnostics`]: all mistakes of a file, each with the line it stands on.
+
+mod build;
+mod description;
+mod diagnostics;
+mod parse;
+mod read;
+mod scene;
+mod settings;
+mod source;
+mod suggest;
+
+pub use description::{
+    BodyDescription, InitialDescription, JointDescription, Motion, Position, SceneDescription,
+    TwistDescription, TwistFrame,
+};
+pub use diagnostics::{Diagnostic, Diagnostics};
+pub use scene::Scene;
+pub use settings::Settings;
+pub use source::{Located, Span};

@@ -1,0 +1,106 @@
+//! The `[simulation]` table.
+
+use crate::diagnostics::Diagnostic;
+use crate::read::{Fields, Sink, Value};
+use crate::settings::{FORM_NAMES, METHOD_NAMES, Settings, form_named};
+use hamel::integrate::Method;
+
+/// Reads the settings; the defaults where the table or a key of it is absent or in error.
+pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
+    let Some(mut table) = fields
+        .optional("simulation")
+        .and_then(|simulation| simulation.table(sink))
+    else {
+        return Settings::default();
+    };
+    let defaults = Settings::default();
+    let settings = Settings {
+        t_end: not_negative(&mut table, "t_end", sink).unwrap_or(defaults.t_end),
+        method: method(&mut table, sink).unwrap_or(defaults.method),
+        form: table
+            .optional("form")
+            .and_then(|form| form.choice(&FORM_NAMES, sink))
+            .and_then(form_named)
+            .unwrap_or(defaults.form),
+        sample_step: positive(&mut table, "sample_step", sink).unwrap_or(defaults.sample_step),
+    };
+    table.finish(sink);
+    settings
+}
+
+/// The method, named or implied by the accuracy given.
+fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<Method> {
+    let name = table
+        .optional("method")
+        .and_then(|method| method.choice(&METHOD_NAMES, sink));
+    let dt = positive(table, "dt", sink);
+    let tol = tolerance(table, sink);
+    let rk4 = Method::Rk4 {
+        dt: dt.unwrap_or(Settings::DEFAULT_DT),
+    };
+    let dopri5 = Method::dormand_prince(tol.unwrap_or(Settings::DEFAULT_TOL));
+    match name {
+        Some("rk4") => unused(table, "tol", "rk4", "its accuracy is `dt`", sink).map(|()| rk4),
+        Some(_) => unused(table, "dt", "dopri5", "its accuracy is `tol`", sink).map(|()| dopri5),
+        None => {
+            let found = table.at_most_one(&["dt", "tol"], sink)?;
+            Some(if found.0 == 0 { rk4 } else { dopri5 })
+        }
+    }
+}
+
+/// Refuses a key that means nothing to the method chosen.
+fn unused(
+    table: &mut Fields<'_>,
+    key: &'static str,
+    method: &str,
+    advice: &str,
+    sink: &mut Sink,
+) -> Option<()> {
+    let Some(value) = table.optional(key) else {
+        return Some(());
+    };
+    let message = format!("{} means nothing to the method `{method}`", value.path());
+    sink.push(Diagnostic::new(value.span(), message).label(advice));
+    None
+}
+
+fn positive(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
+    limited(
+        &table.optional(key)?,
+        |number| number > 0.0,
+        "above 0",
+        sink,
+    )
+}
+
+fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
+    let (least, largest) = (Settings::LEAST_TOL, Settings::LARGEST_TOL);
+    let limit = format!("between {least:?} and {largest:?}");
+    let holds = |number| (least..=largest).contains(&number);
+    limited(&table.optional("tol")?, holds, &limit, sink)
+}
+
+fn not_negative(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
+    let value = table.optional(key)?;
+    limited(&value, |number| number >= 0.0, "at least 0", sink)
+}
+
+fn limited(
+    value: &Value<'_>,
+    holds: impl Fn(f64) -> bool,
+    limit: &str,
+    sink: &mut Sink,
+) -> Option<f64> {
+    let number = value.number(sink)?;
+    if holds(number.value) {
+        return Some(number.value);
+    }
+    let message = format!(
+        "{} is {:?}, but must be {limit}",
+        value.path(),
+        number.value
+    );
+    sink.push(Diagnostic::new(number.span, message));
+    None
+}

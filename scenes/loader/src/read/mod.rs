@@ -1,0 +1,32 @@
+//! Typed access to the TOML tree: every reader notes its errors in a [`Sink`] and goes on.
+
+mod fields;
+mod value;
+
+pub(crate) use fields::Fields;
+pub(crate) use value::Value;
+
+use crate::diagnostics::Diagnostic;
+
+/// Collects the errors of one source text.
+#[derive(Debug, Default)]
+pub(crate) struct Sink {
+    errors: Vec<Diagnostic>,
+}
+
+impl Sink {
+    /// Notes an error.
+    pub(crate) fn push(&mut self, error: Diagnostic) {
+        self.errors.push(error);
+    }
+
+    /// Number of errors so far.
+    pub(crate) fn len(&self) -> usize {
+        self.errors.len()
+    }
+
+    /// The errors noted.
+    pub(crate) fn into_errors(self) -> Vec<Diagnostic> {
+        self.errors
+    }
+}

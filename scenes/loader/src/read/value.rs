@@ -1,0 +1,237 @@
+//! One value of the tree, read as a number, a text, a vector, a matrix or a table.
+
+use super::{Fields, Sink};
+use crate::diagnostics::Diagnostic;
+use crate::source::{Located, Span};
+use crate::suggest::{nearest, one_of};
+use nalgebra::{Matrix3, SVector};
+use toml::Spanned;
+use toml::de::{DeInteger, DeTable, DeValue};
+
+/// A value and what messages call it.
+#[derive(Clone, Debug)]
+pub(crate) struct Value<'a> {
+    owner: String,
+    keys: String,
+    /// Which part of the value under `keys` this is, such as "entry 2 of ", or nothing for all of it.
+    part: String,
+    value: &'a Spanned<DeValue<'a>>,
+}
+
+impl<'a> Value<'a> {
+    /// The value under `keys` of the element that messages begin with, `owner`.
+    pub(super) fn new(owner: String, keys: String, value: &'a Spanned<DeValue<'a>>) -> Self {
+        Self {
+            owner,
+            keys,
+            part: String::new(),
+            value,
+        }
+    }
+
+    /// What messages call the value: "entry 2 of `com`".
+    pub(crate) fn name(&self) -> String {
+        format!("{}`{}`", self.part, self.keys)
+    }
+
+    /// Element and value, as messages begin: "body `x`: entry 2 of `com`".
+    pub(crate) fn path(&self) -> String {
+        format!("{}{}", self.owner, self.name())
+    }
+
+    /// Where the value stands.
+    pub(crate) fn span(&self) -> Span {
+        self.value.span()
+    }
+
+    /// A finite number, the f64 that is nearest to what is written.
+    pub(crate) fn number(&self, sink: &mut Sink) -> Option<Located<f64>> {
+        let number = match self.value.get_ref() {
+            DeValue::Integer(integer) => integer_value(integer),
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            _ => return self.wrong_type("a number", sink),
+        };
+        match number {
+            Some(number) if f64::is_finite(number) => Some(Located::new(number, self.span())),
+            _ => {
+                let digits = self.digits();
+                let message = format!("{} is {digits}, not a finite number", self.path());
+                sink.push(Diagnostic::new(self.span(), message));
+                None
+            }
+        }
+    }
+
+    /// An integer number of at least 0.
+    pub(crate) fn count(&self, sink: &mut Sink) -> Option<Located<u64>> {
+        match self.value.get_ref() {
+            DeValue::Integer(integer) => {
+                match u64::from_str_radix(integer.as_str(), integer.radix()) {
+                    Ok(count) => Some(Located::new(count, self.span())),
+                    Err(_) => self.wrong_type("an integer of at least 0", sink),
+                }
+            }
+            _ => self.wrong_type("an integer", sink),
+        }
+    }
+
+    /// A text in one line.
+    pub(crate) fn text(&self, sink: &mut Sink) -> Option<Located<String>> {
+        self.text_without(char::is_control, sink)
+    }
+
+    /// A text that may have several lines.
+    pub(crate) fn prose(&self, sink: &mut Sink) -> Option<Located<String>> {
+        self.text_without(|c| c.is_control() && c != '\n', sink)
+    }
+
+    /// One of `names`.
+    pub(crate) fn choice(&self, names: &[&'static str], sink: &mut Sink) -> Option<&'static str> {
+        let text = self.text(sink)?;
+        if let Some(known) = names.iter().find(|known| **known == text.value) {
+            return Some(known);
+        }
+        let names = names.iter().copied();
+        let known = one_of(names.clone());
+        let message = format!("{} is {:?}, but must be {known}", self.path(), text.value);
+        let error = Diagnostic::new(text.span, message);
+        sink.push(match nearest(&text.value, names) {
+            Some(near) => error.label(format!("did you mean `{near}`?")),
+            None => error,
+        });
+        None
+    }
+
+    /// Names and descriptions go to terminals and into tables, where control characters would do harm.
+    fn text_without(
+        &self,
+        refused: impl Fn(char) -> bool,
+        sink: &mut Sink,
+    ) -> Option<Located<String>> {
+        let DeValue::String(text) = self.value.get_ref() else {
+            return self.wrong_type("a string", sink);
+        };
+        if let Some(character) = text.chars().find(|&c| refused(c)) {
+            let path = self.path();
+            let message = format!("{path} contains the control character {character:?}");
+            sink.push(Diagnostic::new(self.span(), message));
+            return None;
+        }
+        Some(Located::new(text.clone().into_owned(), self.span()))
+    }
+
+    /// A list of finite numbers, of any length.
+    pub(crate) fn numbers(&self, sink: &mut Sink) -> Option<Located<Vec<f64>>> {
+        let items = self.items("entry", "a list of numbers", sink)?;
+        let numbers: Vec<_> = items.iter().map(|item| item.number(sink)).collect();
+        let numbers: Option<Vec<f64>> = numbers.into_iter().map(|n| Some(n?.value)).collect();
+        Some(Located::new(numbers?, self.span()))
+    }
+
+    /// `N` finite numbers.
+    pub(crate) fn vector<const N: usize>(
+        &self,
+        sink: &mut Sink,
+    ) -> Option<Located<SVector<f64, N>>> {
+        let numbers = self.numbers(sink)?;
+        self.check_length(numbers.value.len(), N, sink)?;
+        Some(numbers.map(SVector::from_iterator))
+    }
+
+    /// Three rows of three finite numbers.
+    pub(crate) fn matrix3(&self, sink: &mut Sink) -> Option<Located<Matrix3<f64>>> {
+        let items = self.items("row", "three rows of three numbers", sink)?;
+        self.check_length(items.len(), 3, sink)?;
+        let rows: Vec<_> = items.iter().map(|row| row.vector::<3>(sink)).collect();
+        let mut matrix = Matrix3::zeros();
+        for (index, row) in rows.into_iter().enumerate() {
+            matrix.set_row(index, &row?.value.transpose());
+        }
+        Some(Located::new(matrix, self.span()))
+    }
+
+    /// A table.
+    pub(crate) fn table(&self, sink: &mut Sink) -> Option<Fields<'a>> {
+        match self.value.get_ref() {
+            DeValue::Table(table) => {
+                let (owner, keys) = (self.owner.clone(), format!("{}.", self.keys));
+                Some(Fields::nested(owner, keys, self.span(), table))
+            }
+            _ => self.wrong_type("a table", sink),
+        }
+    }
+
+    /// A list of tables, each of which begins with its `[[header]]`.
+    pub(crate) fn tables(&self, sink: &mut Sink) -> Option<Vec<(Span, &'a DeTable<'a>)>> {
+        let items = match self.value.get_ref() {
+            DeValue::Array(items) => items.iter(),
+            _ => return self.not_tables(sink),
+        };
+        let tables = items.map(|item| match item.get_ref() {
+            DeValue::Table(table) => Some((item.span(), table)),
+            _ => None,
+        });
+        let tables: Option<Vec<_>> = tables.collect();
+        tables.or_else(|| self.not_tables(sink))
+    }
+
+    fn not_tables<T>(&self, sink: &mut Sink) -> Option<T> {
+        let message = format!("{} must be a list of tables", self.path());
+        let help = format!("each of them begins with `[[{}]]`", self.keys);
+        sink.push(Diagnostic::new(self.span(), message).help(help));
+        None
+    }
+
+    /// The items of a list, which messages call `item` 1, 2, …
+    fn items(&self, item: &str, expected: &str, sink: &mut Sink) -> Option<Vec<Value<'a>>> {
+        let DeValue::Array(items) = self.value.get_ref() else {
+            return self.wrong_type(expected, sink);
+        };
+        let items = items.iter().enumerate().map(|(index, value)| Self {
+            part: format!("{item} {} of {}", index + 1, self.part),
+            value,
+            ..self.clone()
+        });
+        Some(items.collect())
+    }
+
+    fn check_length(&self, found: usize, size: usize, sink: &mut Sink) -> Option<()> {
+        if found == size {
+            return Some(());
+        }
+        let message = format!("{} has length {found}, not {size}", self.path());
+        sink.push(Diagnostic::new(self.span(), message));
+        None
+    }
+
+    fn wrong_type<T>(&self, expected: &str, sink: &mut Sink) -> Option<T> {
+        let found = self.value.get_ref().type_str();
+        let message = format!("{} must be {expected}", self.path());
+        let article = if found.starts_with(['a', 'i']) {
+            "an"
+        } else {
+            "a"
+        };
+        let error = Diagnostic::new(self.span(), message);
+        sink.push(error.label(format!("this is {article} {found}")));
+        None
+    }
+
+    /// The number as it is written.
+    fn digits(&self) -> &str {
+        match self.value.get_ref() {
+            DeValue::Integer(integer) => integer.as_str(),
+            DeValue::Float(float) => float.as_str(),
+            _ => "",
+        }
+    }
+}
+
+/// Decimal digits go through the float parser, which rounds once; other radices are exact below 2¹²⁷.
+fn integer_value(integer: &DeInteger<'_>) -> Option<f64> {
+    if integer.radix() == 10 {
+        return integer.as_str().parse().ok();
+    }
+    let exact = i128::from_str_radix(integer.as_str(), integer.radix()).ok()?;
+    Some(exact as f64)
+}

@@ -1,0 +1,179 @@
+//! A scene ready to simulate, and the ways to one.
+
+use crate::build::{self, State};
+use crate::description::{BodyDescription, SceneDescription, Source};
+use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::parse::{self, BodyDraft, Draft, Tree};
+use crate::read::Sink;
+use crate::settings::Settings;
+use hamel::mechanism::Mechanism;
+use hamel::registry::JointRegistry;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A mechanism with its state at time 0 and its simulation settings.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name of the scene.
+    pub name: String,
+    /// What the scene shows; may be empty.
+    pub description: String,
+    /// The mechanism. Its bodies stand in the order of the file, except that parents come first.
+    pub mechanism: Arc<Mechanism>,
+    /// Configurations Q of all joints at time 0, one joint after the other.
+    pub configuration: Vec<f64>,
+    /// Speeds v̄ of all joints at time 0, one joint after the other.
+    pub speeds: Vec<f64>,
+    /// Simulation settings.
+    pub settings: Settings,
+}
+
+impl Scene {
+    /// What the text of a scene file says by itself, joints not yet looked up. Messages call the text `source_name`; a scene
+    /// without a name takes that of the file.
+    ///
+    /// # Errors
+    /// All mistakes of the text that show without knowing the joints.
+    pub fn from_toml(text: &str, source_name: &str) -> Result<SceneDescription, Diagnostics> {
+        let mut sink = Sink::default();
+        let draft = parse::draft(text, &mut sink);
+        let source = Source {
+            name: source_name.to_owned(),
+            text: text.to_owned(),
+        };
+        describe(draft, sink, source)
+    }
+
+    /// A scene from its text: [`Scene::from_toml`] and [`SceneDescription::build`] in one.
+    ///
+    /// # Errors
+    /// All mistakes of the text, those about joints among them.
+    pub fn parse(
+        text: &str,
+        source_name: &str,
+        registry: &JointRegistry,
+    ) -> Result<Self, Diagnostics> {
+        let mut sink = Sink::default();
+        let draft = parse::draft(text, &mut sink);
+        if sink.len() > 0 {
+            if let Some(draft) = &draft {
+                check_joints(draft, registry, &mut sink);
+            }
+            return Err(Diagnostics::new(source_name, text, sink.into_errors()));
+        }
+        let source = Source {
+            name: source_name.to_owned(),
+            text: text.to_owned(),
+        };
+        describe(draft, sink, source)?.build(registry)
+    }
+
+    /// The scene in the file `path`.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is not UTF-8, and all mistakes of its text.
+    pub fn load(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Self, Diagnostics> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let refuse =
+            |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
+        let bytes =
+            std::fs::read(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            refuse(format!("cannot read {name}: its byte {valid} is not UTF-8"))
+        })?;
+        Self::parse(&text, &name, registry)
+    }
+}
+
+impl SceneDescription {
+    /// Looks the joints up in `registry`, solves for their state at time 0, and puts the mechanism together.
+    ///
+    /// # Errors
+    /// Unknown joint types or parameters, initial states that a joint cannot take, and whatever the mechanism refuses; all
+    /// at once.
+    pub fn build(&self, registry: &JointRegistry) -> Result<Scene, Diagnostics> {
+        let mut sink = Sink::default();
+        let states: Vec<Option<State>> = self
+            .bodies
+            .iter()
+            .map(|body| build::state(&body.joint, &body.initial, registry, &mut sink))
+            .collect();
+        let states: Option<Vec<State>> = states.into_iter().collect();
+        let scene = states.and_then(|states| build::scene(self, states, &mut sink));
+        scene.ok_or_else(|| self.refuse(sink))
+    }
+
+    fn refuse(&self, sink: Sink) -> Diagnostics {
+        Diagnostics::new(&self.source.name, &self.source.text, sink.into_errors())
+    }
+}
+
+/// Looks for errors about joints where other errors have been found already.
+fn check_joints(draft: &Draft, registry: &JointRegistry, sink: &mut Sink) {
+    for body in &draft.bodies {
+        if let Some(joint) = &body.joint {
+            let initial = body.initial.clone().unwrap_or_default();
+            build::state(joint, &initial, registry, sink);
+        }
+    }
+}
+
+/// The description that a draft without errors makes.
+fn describe(
+    draft: Option<Draft>,
+    mut sink: Sink,
+    source: Source,
+) -> Result<SceneDescription, Diagnostics> {
+    let complete = draft.and_then(complete);
+    match complete {
+        Some((draft, bodies)) if sink.len() == 0 => Ok(SceneDescription {
+            name: draft.name.unwrap_or_else(|| stem(&source.name)),
+            description: draft.description,
+            gravity: draft.gravity,
+            bodies,
+            settings: draft.settings,
+            source,
+        }),
+        _ => {
+            if sink.len() == 0 {
+                sink.push(Diagnostic::without_place("the scene is not complete"));
+            }
+            Err(Diagnostics::new(
+                &source.name,
+                &source.text,
+                sink.into_errors(),
+            ))
+        }
+    }
+}
+
+/// Name of a file without folder and ending.
+fn stem(source_name: &str) -> String {
+    let stem = Path::new(source_name).file_stem();
+    stem.map_or_else(
+        || source_name.to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    )
+}
+
+/// The bodies in the order of the tree; `None` if a part of one could not be read.
+fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
+    let Tree { order, parents } = draft.tree.take()?;
+    let mut drafts: Vec<Option<BodyDraft>> = draft.bodies.drain(..).map(Some).collect();
+    let bodies = order.iter().zip(parents).map(|(&place, parent)| {
+        let body = drafts.get_mut(place)?.take()?;
+        Some(BodyDescription {
+            name: body.name?,
+            parent,
+            mass: body.mass?,
+            joint: body.joint?,
+            at: body.at,
+            body_at: body.body_at,
+            initial: body.initial?,
+        })
+    });
+    let bodies: Option<Vec<_>> = bodies.collect();
+    Some((draft, bodies?))
+}

@@ -1,0 +1,73 @@
+//! How a scene wants to be simulated: defaults that a caller may override.
+
+use hamel::integrate::{Form, Method};
+
+/// Names of the forms of the equations of motion, as scene files and the command line write them.
+pub(crate) const FORM_NAMES: [&str; 2] = ["lagrangian", "hamiltonian"];
+
+/// Names of the integration methods, as scene files and the command line write them.
+pub(crate) const METHOD_NAMES: [&str; 2] = ["rk4", "dopri5"];
+
+/// Settings of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The simulated time runs from 0 to `t_end`, s; at least 0.
+    pub t_end: f64,
+    /// Integration method.
+    pub method: Method,
+    /// Form of the equations of motion.
+    pub form: Form,
+    /// Time between two samples of the trajectory, s; above 0.
+    pub sample_step: f64,
+}
+
+impl Settings {
+    /// End of the simulated time where a scene gives none, s.
+    pub const DEFAULT_T_END: f64 = 1.0;
+    /// Time between two samples where a scene gives none, s.
+    pub const DEFAULT_SAMPLE_STEP: f64 = 0.01;
+    /// Step of `rk4` where a scene gives none, s.
+    pub const DEFAULT_DT: f64 = 1e-3;
+    /// Tolerance of `dopri5` where a scene gives none.
+    pub const DEFAULT_TOL: f64 = 1e-10;
+    /// Least tolerance of `dopri5`: a few roundings.
+    pub const LEAST_TOL: f64 = 1e-15;
+    /// Largest tolerance of `dopri5`: beyond it a step says nothing.
+    pub const LARGEST_TOL: f64 = 0.1;
+
+    /// Name of the form, as scene files and the command line write it.
+    pub const fn form_name(&self) -> &'static str {
+        match self.form {
+            Form::Lagrangian => "lagrangian",
+            Form::Hamiltonian => "hamiltonian",
+        }
+    }
+
+    /// Name of the method, as scene files and the command line write it.
+    pub const fn method_name(&self) -> &'static str {
+        match self.method {
+            Method::Rk4 { .. } => "rk4",
+            Method::DormandPrince { .. } => "dopri5",
+        }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            t_end: Self::DEFAULT_T_END,
+            method: Method::dormand_prince(Self::DEFAULT_TOL),
+            form: Form::Lagrangian,
+            sample_step: Self::DEFAULT_SAMPLE_STEP,
+        }
+    }
+}
+
+/// The form of that name.
+pub(crate) fn form_named(name: &str) -> Option<Form> {
+    match name {
+        "lagrangian" => Some(Form::Lagrangian),
+        "hamiltonian" => Some(Form::Hamiltonian),
+        _ => None,
+    }
+}

@@ -1,0 +1,67 @@
+//! The nearest known name to a misspelt one.
+
+/// Similarity (Jaro–Winkler, 0 to 1) from which a name counts as a misspelling of another.
+const THRESHOLD: f64 = 0.78;
+
+/// A list of names is cut off after this many.
+const MOST_LISTED: usize = 32;
+
+/// The name among `known` that `name` most likely means, if any is near.
+pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let name = name.to_lowercase();
+    let scored = known.into_iter().map(|candidate| {
+        let score = strsim::jaro_winkler(&name, &candidate.to_lowercase());
+        (score, candidate)
+    });
+    scored
+        .filter(|(score, _)| *score >= THRESHOLD)
+        .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(a.1)))
+        .map(|(_, candidate)| candidate)
+}
+
+/// `a`, `b` and `c` as a choice: "`a`, `b` or `c`".
+pub(crate) fn one_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    listed(names, "or")
+}
+
+/// `a`, `b` and `c` as a list: "`a`, `b` and `c`".
+pub(crate) fn all_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    listed(names, "and")
+}
+
+fn listed<'a>(names: impl IntoIterator<Item = &'a str>, conjunction: &str) -> String {
+    let mut quoted: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    let left_out = quoted.len().saturating_sub(MOST_LISTED);
+    if left_out > 0 {
+        quoted.truncate(MOST_LISTED);
+        quoted.push(format!("{left_out} more"));
+    }
+    match quoted.split_last() {
+        None => String::from("none"),
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} {conjunction} {last}", others.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{all_of, nearest, one_of};
+
+    #[test]
+    fn finds_a_misspelling_and_refuses_a_stranger() {
+        let known = ["revolute", "prismatic", "ball", "cart"];
+        assert_eq!(nearest("revolut", known), Some("revolute"));
+        assert_eq!(nearest("Ball", known), Some("ball"));
+        assert_eq!(nearest("carriage_return", known), None);
+        assert_eq!(nearest("", known), None);
+    }
+
+    #[test]
+    fn lists_as_words() {
+        assert_eq!(one_of(["a"]), "`a`");
+        assert_eq!(one_of(["a", "b", "c"]), "`a`, `b` or `c`");
+        assert_eq!(all_of(["a", "b", "c"]), "`a`, `b` and `c`");
+        assert_eq!(one_of([]), "none");
+        assert!(one_of(["x"; 40]).ends_with("`x` or 8 more"));
+    }
+}
