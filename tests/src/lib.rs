@@ -1,5 +1,7 @@
 //! What the suites share: specs by name, seeded random input, oracles.
 
+pub mod laws;
+
 use hamel_codegen::derived::Derived;
 use std::path::{Path, PathBuf};
 

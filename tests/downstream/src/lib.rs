@@ -1,0 +1,6 @@
+//! A joint of one's own, beside the library's.
+
+/// The joints that the build script generated.
+pub mod joints {
+    include!(concat!(env!("OUT_DIR"), "/joints.rs"));
+}
