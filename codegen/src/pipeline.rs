@@ -52,7 +52,7 @@ fn series(spec: &JointSpec, expansion: &Expansion) -> (Matrix, Matrix) {
 }
 
 fn too_much_work(spec: &JointSpec, limit: u64) -> Diagnostic {
-    Diagnostic::new("E0420", spec.name.span.clone(), format!("expanding this joint takes more than {limit} term operations"))
+    Diagnostic::new(spec::code::WORK, spec.name.span.clone(), format!("expanding this joint takes more than {limit} term operations"))
         .label("the bound on symbolic work")
         .help("shorten the expressions of H, X and S_bar, or use let to name a simpler form")
 }

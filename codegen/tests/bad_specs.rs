@@ -3,7 +3,7 @@
 //! A new case is a new `.joint` file; `UPDATE_EXPECT=1 cargo test -p hamel-codegen --test bad_specs` writes its message, to be
 //! read before it is committed.
 
-use hamel_codegen::spec::{self, code};
+use hamel_codegen::spec::code;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ fn corpus() -> Vec<PathBuf> {
 fn message(path: &Path) -> Result<String, String> {
     let source = std::fs::read_to_string(path).expect("a text file");
     let name = path.file_name().expect("a file").to_string_lossy();
-    match spec::parse(&source, &name) {
+    match hamel_codegen::derive(&source, &name) {
         Ok(_) => Err(format!("{name} is accepted")),
         Err(errors) => Ok(errors.render() + "\n"),
     }

@@ -1,6 +1,11 @@
 //! What the suites share: specs by name, seeded random input, oracles.
 
+pub mod differences;
+pub mod figures;
 pub mod laws;
+pub mod oracle;
+pub mod random;
+pub mod scenes;
 
 use hamel_codegen::derived::Derived;
 use std::path::{Path, PathBuf};

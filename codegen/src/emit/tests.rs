@@ -136,7 +136,7 @@ fn the_series_of_the_ball_joint_is_that_of_the_paper() {
 fn a_joint_explains_itself() {
     let text = explain_text(&derived(BALL)).expect("the template holds");
     for part in [
-        "ball: Ball joint.",
+        "ball\n\n  Ball joint.",
         "J22 = ",
         "pose_in_se3",
         "18 multiplications",

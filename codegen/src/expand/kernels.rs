@@ -7,6 +7,7 @@ use crate::expr::Role;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
+use crate::spec::code;
 
 /// All kernels of a joint.
 pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
@@ -145,7 +146,7 @@ fn structure_of(outputs: &[Matrix]) -> Structure {
 }
 
 fn no_closed_form(spec: &JointSpec) -> Diagnostic {
-    Diagnostic::new("E0404", spec.freedoms.span.clone(), "exp of this basis has no closed form that the generator knows")
+    Diagnostic::new(code::NO_CLOSED_FORM, spec.freedoms.span.clone(), "exp of this basis has no closed form that the generator knows")
         .label("Φ = Q exp(ϕ) cannot be emitted")
         .help("use a basis of a known algebra: r1 … r6, so2, se2, so3, se3")
 }

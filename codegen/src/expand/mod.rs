@@ -25,6 +25,7 @@ use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::{JointSpec, VelocityFrame};
+use crate::spec::code;
 
 /// Everything that the kernels and the proofs are made of.
 #[derive(Clone, Debug)]
@@ -61,7 +62,7 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
     let ideal = spec.manifold.value.ideal();
     let arguments = arguments(spec);
     let motion = Motion::of_exponential(spec);
-    let structure_constants = structure_constants(spec)?;
+    let structure_constants = structure_constants(spec);
     let jacobian = TwistJacobian::new(&spec.pose.value, &motion, ideal);
     let to_child = adjoint_inverse(&spec.pose.value);
     let twist_map = twist_map(spec, &jacobian, &to_child, ideal)?;
@@ -128,7 +129,7 @@ fn check_dimensions(spec: &JointSpec) -> Result<(), Vec<Diagnostic>> {
             let dimension = factor.kind.dimension();
             (moved != dimension || factor.kind.algebra_name().is_none()).then(|| {
                 let message = format!("{} has dimension {dimension}, but the basis moves {moved} of it", factor.kind.name());
-                Diagnostic::new("E0401", spec.freedoms.span.clone(), message)
+                Diagnostic::new(code::DIMENSION, spec.freedoms.span.clone(), message)
                     .label("these local coordinates")
                     .help(format!("give {} a basis of {dimension} elements, or choose a manifold of dimension {moved}", factor.name))
             })
@@ -137,8 +138,8 @@ fn check_dimensions(spec: &JointSpec) -> Result<(), Vec<Diagnostic>> {
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-/// `c^i_kj` with `[b_k, b_j] = Σ_i c^i_kj b_i`, in the declared basis.
-fn structure_constants(spec: &JointSpec) -> Result<Vec<Matrix>, Vec<Diagnostic>> {
+/// `c^i_kj` with `[b_k, b_j] = Σ_i c^i_kj b_i`, in the declared basis. The language has checked that the basis closes.
+fn structure_constants(spec: &JointSpec) -> Vec<Matrix> {
     let freedoms = &spec.freedoms.value;
     let count = freedoms.len();
     let mut constants = vec![vec![vec![Expr::zero(); count]; count]; count];
@@ -150,22 +151,30 @@ fn structure_constants(spec: &JointSpec) -> Result<Vec<Matrix>, Vec<Diagnostic>>
             for (b, &j) in places.iter().enumerate() {
                 let (x, y) = (algebra::hat(factor.kind, &basis[a]), algebra::hat(factor.kind, &basis[b]));
                 let bracket = algebra::vee(factor.kind, &algebra::commutator(&x, &y));
-                let coordinates = algebra::coordinates_in(&columns, &bracket)
-                    .map_err(|rest| vec![not_closed(spec, k, j, &rest)])?;
-                for (place, value) in places.iter().zip(coordinates) {
+                for (place, value) in places.iter().zip(algebra::coordinates_in(&columns, &bracket).unwrap_or_default()) {
                     constants[k][*place][j] = value;
                 }
             }
         }
     }
-    Ok(constants.iter().map(|slice| Matrix::from_fn(count, count, |i, j| slice[i][j].clone())).collect())
+    constants.iter().map(|slice| Matrix::from_fn(count, count, |i, j| slice[i][j].clone())).collect()
 }
 
-/// X: as declared; else the velocity of Φ itself; read in the parent frame, the constant that the latter is in the child frame.
+/// X: as declared, else the velocity of Φ itself; read in the parent frame, the constant that the latter is in the child frame.
 fn twist_map(spec: &JointSpec, jacobian: &TwistJacobian, to_child: &Matrix, ideal: &Ideal) -> Result<Matrix, Vec<Diagnostic>> {
-    if let Some(declared) = &spec.twist_map {
-        return Ok(declared.value.clone());
+    match &spec.twist_map {
+        Some(declared) => Ok(declared.value.clone()),
+        None => twist_map_in_frame(spec, jacobian, to_child, ideal),
     }
+}
+
+/// X as the declared frame of v has it.
+pub(crate) fn twist_map_in_frame(
+    spec: &JointSpec,
+    jacobian: &TwistJacobian,
+    to_child: &Matrix,
+    ideal: &Ideal,
+) -> Result<Matrix, Vec<Diagnostic>> {
     let moving = ideal.simplest_entries(&jacobian.base);
     if spec.velocity.value != VelocityFrame::Parent {
         return Ok(moving);
@@ -174,7 +183,7 @@ fn twist_map(spec: &JointSpec, jacobian: &TwistJacobian, to_child: &Matrix, idea
     match child.is_constant() {
         true => Ok(child),
         false => Err(vec![
-            Diagnostic::new("E0402", spec.velocity.span.clone(), "this joint has no constant velocity directions to read in the parent frame")
+            Diagnostic::new(code::PARENT_FRAME, spec.velocity.span.clone(), "this joint has no constant velocity directions to read in the parent frame")
                 .label("declared here")
                 .note(format!("in the child frame they are\n{child}"))
                 .help("declare X, the twist of the child in the parent frame for each velocity"),
@@ -182,17 +191,9 @@ fn twist_map(spec: &JointSpec, jacobian: &TwistJacobian, to_child: &Matrix, idea
     }
 }
 
-fn not_closed(spec: &JointSpec, k: usize, j: usize, rest: &[Expr]) -> Diagnostic {
-    let names = &spec.freedoms.value;
-    Diagnostic::new("E0403", spec.freedoms.span.clone(), "the basis does not close under the bracket")
-        .label(format!("[{}, {}] leaves its span", names[k].name, names[j].name))
-        .note(format!("the part outside is\n{}", Matrix::column_vector(rest.to_vec())))
-        .help("exp of the span is no group: add the missing directions")
-}
-
 fn singular_twist_map(spec: &JointSpec, twist_map: &Matrix) -> Diagnostic {
     let span = spec.twist_map.as_ref().map_or(spec.pose.span.clone(), |declared| declared.span.clone());
-    Diagnostic::new("E0408", span, "X has dependent columns at every configuration")
+    Diagnostic::new(code::DEPENDENT_TWISTS, span, "X has dependent columns at every configuration")
         .label("some velocity moves nothing")
         .note(format!("X =\n{twist_map}"))
         .help("each velocity must move the child in a way of its own")
@@ -200,7 +201,7 @@ fn singular_twist_map(spec: &JointSpec, twist_map: &Matrix) -> Diagnostic {
 
 fn singular_velocity_map(spec: &JointSpec, base: &Matrix) -> Diagnostic {
     let span = spec.twist_map.as_ref().map_or(spec.freedoms.span.clone(), |declared| declared.span.clone());
-    Diagnostic::new("E0407", span, "S₀ is singular at every configuration")
+    Diagnostic::new(code::SINGULAR_VELOCITY_MAP, span, "S₀ is singular at every configuration")
         .label("the velocities do not determine the motion")
         .note(format!("S₀ =\n{base}"))
 }

@@ -7,6 +7,7 @@ use crate::expr::Expr;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
+use crate::spec::code;
 
 /// The nonholonomic parts of a joint; trivial for a holonomic one.
 #[derive(Clone, Debug)]
@@ -56,7 +57,7 @@ fn complement(columns: &Matrix, ideal: &Ideal) -> Option<Matrix> {
 }
 
 fn no_complement(declared: &str, missing: &str, span: std::ops::Range<usize>, value: &Matrix) -> Diagnostic {
-    Diagnostic::new("E0411", span, format!("{missing} cannot be found from {declared} by one formula for every configuration"))
+    Diagnostic::new(code::NO_COMPLEMENT, span, format!("{missing} cannot be found from {declared} by one formula for every configuration"))
         .label("no choice of rows has a constant determinant")
         .note(format!("{declared} =\n{value}"))
         .help(format!("declare {missing} as well; it is then checked"))

@@ -1,6 +1,7 @@
 //! The paper's step: J, X and S to first order in ϕ, (23).
 
 use super::motion::Motion;
+use super::rank;
 use crate::expr::Expr;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
@@ -98,25 +99,30 @@ impl VelocityMap {
     }
 }
 
-/// A left inverse of X that is as simple as the manifold allows: from a frame in which X is constant, else from rows whose
-/// determinant is a constant, else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
+/// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
+/// constant of one term; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
 pub fn left_inverse(twist_map: &Matrix, child: &Matrix, to_child: &Matrix, ideal: &Ideal) -> Option<Matrix> {
-    if twist_map.is_constant() {
-        return pseudo_inverse(twist_map, ideal);
+    let in_parent = || row_inverse(twist_map, ideal);
+    let in_child = || Some(row_inverse(child, ideal)?.times(to_child));
+    match child.is_constant() && !twist_map.is_constant() {
+        true => in_child().or_else(in_parent),
+        false => in_parent().or_else(in_child),
     }
-    if child.is_constant() {
-        return Some(pseudo_inverse(child, ideal)?.times(to_child));
-    }
-    let size = twist_map.columns();
-    for rows in super::rank::combinations(twist_map.rows(), size) {
-        let square = twist_map.select_rows(&rows);
-        let determinant = square.determinant(&|e: &Expr| ideal.normal_form(e));
-        if let (true, Some(inverse)) = (super::rank::is_unit(&determinant), determinant.recip()) {
-            let inverse = square.adjugate(&|e: &Expr| ideal.normal_form(e)).scale(&inverse);
-            return Some(spread_columns(&inverse, &rows, twist_map.rows()));
+    .or_else(|| pseudo_inverse(twist_map, ideal))
+}
+
+/// The inverse of the first rows with a determinant of one constant term, zero elsewhere.
+fn row_inverse(m: &Matrix, ideal: &Ideal) -> Option<Matrix> {
+    let simplify = |e: &Expr| ideal.normal_form(e);
+    rank::combinations(m.rows(), m.columns()).into_iter().find_map(|rows| {
+        let square = m.select_rows(&rows);
+        let determinant = square.determinant(&simplify);
+        if !rank::is_unit(&determinant) {
+            return None;
         }
-    }
-    pseudo_inverse(twist_map, ideal)
+        let inverse = square.adjugate(&simplify).scale(&determinant.recip()?);
+        Some(spread_columns(&inverse, &rows, m.rows()))
+    })
 }
 
 fn pseudo_inverse(m: &Matrix, ideal: &Ideal) -> Option<Matrix> {

@@ -79,7 +79,7 @@ impl Ideal {
                 all.push(relation);
             }
         }
-        // A relation of a function is monic in it, so that this fails only where the basis itself did.
+        // Fails only for the reciprocal of a sum of parameters; what needs that relation is then not proved, and refused.
         let basis = groebner::groebner_basis(&all).unwrap_or_else(|_| self.basis.clone());
         self.extended.borrow_mut().insert(functions, basis.clone());
         basis

@@ -7,11 +7,12 @@ mod fibres;
 
 use crate::derived::{Claim, Proof};
 use crate::diagnostic::Diagnostic;
-use crate::expand::{Expansion, Motion, rank};
+use crate::expand::{Expansion, Motion, adjoint_inverse, rank, twist_map_in_frame};
 use crate::expr::Expr;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::model::{JointSpec, VelocityFrame};
+use crate::spec::code;
 use std::ops::Range;
 
 /// All claims, or every one that fails.
@@ -22,6 +23,7 @@ pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         prover.retract_starts_at_q(),
         prover.retract_stays_on_manifold(),
         prover.declared_retract(),
+        prover.declared_twist_map(),
         prover.twists_agree(),
         prover.slopes_agree(),
         prover.velocity_map_is_invertible(),
@@ -67,7 +69,7 @@ impl Prover<'_> {
         self.identity("pose_in_se3", "H(Q) ∈ SE(3)", &residual, |residual| {
             let entries = residual.entries().to_vec();
             let gram = Matrix::from_fn(3, 3, |i, j| entries[3 * i + j].clone());
-            refuted("E0410", &pose.span, "H is not a rigid motion", "its rotation part is no rotation")
+            refuted(code::NOT_RIGID, &pose.span, "H is not a rigid motion", "its rotation part is no rotation")
                 .note(format!("RᵀR − I =\n{gram}\ndet R − 1 = {}", entries[9]))
         })
     }
@@ -84,7 +86,7 @@ impl Prover<'_> {
         let base: Vec<Expr> = moved.iter().map(|entry| entry.at_zero(&self.x.arguments.local)).collect();
         let difference = Matrix::column_vector(base).minus(&Matrix::symbols(&manifold.coordinates()));
         self.identity("retract_at_zero", "Φ(Q, 0) = Q", &difference, |residual| {
-            refuted("E0411", &span, "Φ(Q, 0) is not Q", "does not start at Q").note(format!("Φ(Q, 0) − Q =\n{residual}"))
+            refuted(code::RETRACT_AT_ZERO, &span, "Φ(Q, 0) is not Q", "does not start at Q").note(format!("Φ(Q, 0) − Q =\n{residual}"))
         })
     }
 
@@ -102,7 +104,7 @@ impl Prover<'_> {
         let span = declared.map_or(self.spec.freedoms.span.clone(), |(_, span)| span);
         self.identity("retract_on_manifold", "Φ(Q, ϕ) stays on the manifold to second order in ϕ", &residual, |residual| {
             let left: Vec<Expr> = residual.entries().iter().filter(|entry| !entry.is_zero()).take(3).cloned().collect();
-            refuted("E0412", &span, "Φ leaves the manifold", "its derivatives at ϕ = 0 break the manifold's relations")
+            refuted(code::LEAVES_MANIFOLD, &span, "Φ leaves the manifold", "its derivatives at ϕ = 0 break the manifold's relations")
                 .note(format!("derivatives of the relations along ϕ that do not vanish:\n{}", Matrix::column_vector(left)))
         })
     }
@@ -111,7 +113,7 @@ impl Prover<'_> {
         let Some((moved, span)) = self.retract() else { return Ok(None) };
         let difference = Matrix::column_vector(moved).minus(&Matrix::column_vector(exponential(self.spec)));
         self.identity("retract_is_exponential", "Φ(Q, ϕ) = Q exp(ϕ)", &difference, |residual| {
-            refuted("E0405", &span, "Φ is not Q * exp(phi), nor q + phi", "the only maps whose finite inverse the generator knows")
+            refuted(code::NOT_EXPONENTIAL, &span, "Φ is not Q * exp(phi), nor q + phi", "the only maps whose finite inverse the generator knows")
                 .note(format!("Φ − Q exp(ϕ) =\n{residual}"))
         })
     }
@@ -121,11 +123,28 @@ impl Prover<'_> {
         declared.map_or(self.spec.pose.span.clone(), |x| x.span.clone())
     }
 
+    /// X beside a frame of v is redundant: a claim.
+    fn declared_twist_map(&self) -> Attempt {
+        let (Some(declared), frame) = (&self.spec.twist_map, self.spec.velocity.value) else { return Ok(None) };
+        let statement = match frame {
+            VelocityFrame::Child => "X maps velocities in child axes",
+            VelocityFrame::Parent => "X maps velocities in parent axes",
+            VelocityFrame::Rates => return Ok(None),
+        };
+        let to_child = adjoint_inverse(&self.spec.pose.value);
+        let Ok(expected) = twist_map_in_frame(self.spec, &self.x.jacobian, &to_child, self.ideal) else { return Ok(None) };
+        self.identity("twist_map_in_frame", statement, &declared.value.minus(&expected), |_| {
+            refuted(code::TWIST_MAP_FRAME, &declared.span, "X is not the velocity in the declared frame", "declared here")
+                .note(format!("with `velocity in …` as declared, X =\n{expected}"))
+                .help("drop `velocity` to read v as X says, or drop X")
+        })
+    }
+
     fn twists_agree(&self) -> Attempt {
         let j = &self.x.jacobian.base;
         let difference = self.x.twist_map.times(&self.x.velocity_map.base).minus(j);
         self.identity("twist_map_matches_pose", "X S₀ = J₀", &difference, |residual| {
-            refuted("E0413", &self.twist_map_span(), "X does not span the velocities of H", "no S₀ solves X S₀ = J₀")
+            refuted(code::TWIST_MAP, &self.twist_map_span(), "X does not span the velocities of H", "no S₀ solves X S₀ = J₀")
                 .note(format!("J₀, the twists of H along ϕ, is\n{j}"))
                 .note(format!("X S₀ − J₀ =\n{residual}"))
         })
@@ -141,7 +160,7 @@ impl Prover<'_> {
         });
         let residual = Matrix::column_vector(residuals.collect());
         self.identity("velocity_map_first_order", "X S = J to first order in ϕ, (23)", &residual, |_| {
-            refuted("E0414", &self.twist_map_span(), "X does not span the velocities of H near Q", "no ∂S/∂ϕ solves X S = J")
+            refuted(code::TWIST_MAP_SLOPE, &self.twist_map_span(), "X does not span the velocities of H near Q", "no ∂S/∂ϕ solves X S = J")
         })
     }
 
@@ -155,7 +174,7 @@ impl Prover<'_> {
                 &format!("det S₀ = {determinant} and the manifold's relations generate 1"),
             ))),
             false => Err(Box::new(
-                refuted("E0415", &self.twist_map_span(), "S₀ is not invertible at every configuration", "here")
+                refuted(code::VELOCITY_MAP_LOCUS, &self.twist_map_span(), "S₀ is not invertible at every configuration", "here")
                     .note(format!("it is singular where {determinant} = 0")),
             )),
         }
@@ -177,7 +196,7 @@ impl Prover<'_> {
             true => (&self.x.twist_map_child, "rank X = k (shown for X^c = Ad_{H⁻¹} X)"),
             false => (&self.x.twist_map, "rank X = k"),
         };
-        self.rank_claim(m, "twist_map_rank", statement, "E0416", self.twist_map_span(), "X")
+        self.rank_claim(m, "twist_map_rank", statement, code::TWIST_MAP_LOCUS, self.twist_map_span(), "X")
     }
 
     fn is_nonholonomic(&self) -> bool {
@@ -196,7 +215,7 @@ impl Prover<'_> {
         let parts = &self.x.nonholonomic;
         let product = parts.constraint.transpose().times(&parts.speed_basis);
         self.identity("speeds_meet_constraint", "Aᵀ S̄ = 0", &product, |residual| {
-            refuted("E0417", &self.span_of(self.spec.speed_basis.as_ref()), "S_bar holds forbidden velocities", "Aᵀ S̄ is not 0")
+            refuted(code::FORBIDDEN_SPEEDS, &self.span_of(self.spec.speed_basis.as_ref()), "S_bar holds forbidden velocities", "Aᵀ S̄ is not 0")
                 .note(format!("Aᵀ S̄ =\n{residual}"))
         })
     }
@@ -206,7 +225,7 @@ impl Prover<'_> {
             return Ok(None);
         }
         let span = self.span_of(self.spec.speed_basis.as_ref());
-        self.rank_claim(&self.x.nonholonomic.speed_basis, "speed_basis_rank", "rank S̄ = k̄", "E0418", span, "S_bar")
+        self.rank_claim(&self.x.nonholonomic.speed_basis, "speed_basis_rank", "rank S̄ = k̄", code::SPEED_BASIS_LOCUS, span, "S_bar")
     }
 
     fn constraint_has_full_rank(&self) -> Attempt {
@@ -214,7 +233,7 @@ impl Prover<'_> {
             return Ok(None);
         }
         let span = self.span_of(self.spec.constraint.as_ref());
-        self.rank_claim(&self.x.nonholonomic.constraint, "constraint_rank", "rank A = k − k̄", "E0419", span, "A")
+        self.rank_claim(&self.x.nonholonomic.constraint, "constraint_rank", "rank A = k − k̄", code::CONSTRAINT_LOCUS, span, "A")
     }
 }
 

@@ -44,13 +44,12 @@ pub const SPECS: &[(&str, &str)] = &[
 #[macro_export]
 macro_rules! for_each_joint {
     ($callback:path) => {
-        $callback ! (ball, $crate::joints::Ball, $crate::joints::Ball, 9, 3, 3, 0);
-        $callback ! (cart, $crate::joints::Cart, $crate::joints::Cart, 6, 3, 2, 1);
-        $callback ! (free, $crate::joints::Free, $crate::joints::Free, 12, 6, 6, 0);
-        $callback ! (planar, $crate::joints::Planar, $crate::joints::Planar, 6, 3, 3, 0);
-        $callback ! (planar_euclidean, $crate::joints::PlanarEuclidean,
-        $crate::joints::PlanarEuclidean, 3, 3, 3, 0); $callback ! (prismatic,
-        $crate::joints::Prismatic, $crate::joints::Prismatic, 1, 1, 1, 0); $callback !
-        (revolute, $crate::joints::Revolute, $crate::joints::Revolute, 1, 1, 1, 0);
+        $callback!(ball, $crate::joints::Ball, $crate::joints::Ball, 9, 3, 3, 0);
+        $callback!(cart, $crate::joints::Cart, $crate::joints::Cart, 6, 3, 2, 1);
+        $callback!(free, $crate::joints::Free, $crate::joints::Free, 12, 6, 6, 0);
+        $callback!(planar, $crate::joints::Planar, $crate::joints::Planar, 6, 3, 3, 0);
+        $callback!(planar_euclidean, $crate::joints::PlanarEuclidean, $crate::joints::PlanarEuclidean, 3, 3, 3, 0);
+        $callback!(prismatic, $crate::joints::Prismatic, $crate::joints::Prismatic, 1, 1, 1, 0);
+        $callback!(revolute, $crate::joints::Revolute, $crate::joints::Revolute, 1, 1, 1, 0);
     };
 }

@@ -6,7 +6,7 @@
 //!
 //! - Configuration: theta ∈ R1, x ∈ R1, y ∈ R1, stored as θ, x, y.
 //! - Freedoms: `theta` (ϕ₁, rad), `x` (ϕ₂, m), `y` (ϕ₃, m).
-//! - Velocity v: read as the rates of the local coordinates, or as X declares.
+//! - Velocity v: read as the rates of the local coordinates.
 //!
 //! ```text
 //!     ⎡cos θ  −sin θ  0  x⎤
@@ -106,8 +106,6 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: none.
-    ///
-    /// From `config theta: R1, x: R1, y: R1;`
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let (x, y) = (q[1], q[2]);
         let zero = T::zero();

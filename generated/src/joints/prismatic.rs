@@ -5,7 +5,7 @@
 //!
 //! - Configuration: q ∈ R1, stored as q.
 //! - Freedoms: `q` (ϕ, m).
-//! - Velocity v: read as the rates of the local coordinates, or as X declares.
+//! - Velocity v: read as the rates of the local coordinates.
 //!
 //! ```text
 //!     ⎡1  0  0  0⎤
@@ -104,8 +104,6 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in m/s. Independent of Q. Operations: none.
-    ///
-    /// From `config q: R1;`
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
         let one = T::one();

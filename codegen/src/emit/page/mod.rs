@@ -36,5 +36,6 @@ fn render(name: &str, template: &str, context: &tera::Context) -> tera::TeraResu
     let mut tera = Tera::new();
     tera.add_raw_template(name, template)?;
     let text = tera.render(name, context)?;
-    Ok(format!("{}\n", text.trim()))
+    let lines: Vec<&str> = text.trim().lines().map(str::trim_end).collect();
+    Ok(lines.join("\n") + "\n")
 }

@@ -15,7 +15,7 @@ pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow};
 
 use super::names::type_name;
 use crate::derived::Derived;
-use crate::model::VelocityFrame;
+use crate::model::{JointSpec, VelocityFrame};
 use notation::Notation;
 
 /// All that a page shows.
@@ -76,7 +76,7 @@ impl Report {
                 .collect(),
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
-            velocity_frame: velocity_frame(spec.velocity.value).to_owned(),
+            velocity_frame: velocity_frame(spec).to_owned(),
             formulas: formulas::formulas(derived, &notation),
             claims: tables::claims(derived),
             counts: tables::counts(derived),
@@ -111,10 +111,11 @@ pub fn manifold(derived: &Derived) -> String {
 }
 
 /// The frame of v, in words.
-pub fn velocity_frame(frame: VelocityFrame) -> &'static str {
-    match frame {
+pub fn velocity_frame(spec: &JointSpec) -> &'static str {
+    match spec.velocity.value {
         VelocityFrame::Child => "in the axes of the child",
         VelocityFrame::Parent => "in the axes of the parent",
-        VelocityFrame::Rates => "as the rates of the local coordinates, or as X declares",
+        VelocityFrame::Rates if spec.twist_map.is_some() => "as X declares",
+        VelocityFrame::Rates => "as the rates of the local coordinates",
     }
 }

@@ -1,7 +1,7 @@
 //! The lines of a spec that a kernel comes from.
 
 use crate::derived::KernelKind;
-use crate::model::JointSpec;
+use crate::model::{JointSpec, VelocityFrame};
 use std::ops::Range;
 
 /// The statements that a kernel comes from directly, as written; nothing for kernels that follow from several.
@@ -10,6 +10,8 @@ pub fn statement(spec: &JointSpec, kind: KernelKind) -> Option<String> {
         KernelKind::Pose => spec.pose.span.clone(),
         KernelKind::TwistMap => match &spec.twist_map {
             Some(declared) => declared.span.clone(),
+            // Nothing in the spec says what follows from H alone.
+            None if spec.velocity.value == VelocityFrame::Rates => return None,
             None => spec.velocity.span.clone(),
         },
         KernelKind::Constraint => spec.constraint.as_ref()?.span.clone(),

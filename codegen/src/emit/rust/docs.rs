@@ -60,10 +60,7 @@ fn storage(derived: &Derived, report: &Report) -> Vec<String> {
             report.coordinates.join(", ")
         ),
         format!("- Freedoms: {}.", freedoms.join(", ")),
-        format!(
-            "- Velocity v: read {}.",
-            velocity_frame(derived.spec.velocity.value)
-        ),
+        format!("- Velocity v: read {}.", velocity_frame(&derived.spec)),
     ];
     if derived.shape.constraints > 0 {
         let speeds: Vec<String> = report

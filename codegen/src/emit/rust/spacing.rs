@@ -11,10 +11,10 @@ pub fn spaced(file: &File) -> String {
             text += "\n";
         }
         let alone = prettyplease::unparse(&file_of(vec![], vec![item.clone()]));
-        text += &if matches!(item, Item::Impl(_)) {
-            apart(&alone)
-        } else {
-            alone
+        text += &match item {
+            Item::Impl(_) => apart(&alone),
+            Item::Macro(_) => one_call_a_line(&alone),
+            _ => alone,
         };
         before = Some(item);
     }
@@ -51,4 +51,19 @@ fn apart(text: &str) -> String {
         before = line;
     }
     spaced
+}
+
+/// Breaks the body of the macro that calls another once for each joint at its calls alone; it holds no literals but numbers.
+fn one_call_a_line(text: &str) -> String {
+    let mut parts = text.split("$callback !");
+    let mut broken = parts.next().unwrap_or_default().trim_end().to_owned();
+    for call in parts {
+        let (arguments, rest) = call.split_at(call.find(';').map_or(call.len(), |at| at + 1));
+        let words: Vec<&str> = arguments.split_whitespace().collect();
+        broken += &format!("\n        $callback!{}", words.join(" "));
+        if !rest.trim().is_empty() {
+            broken += rest;
+        }
+    }
+    broken
 }

@@ -45,17 +45,12 @@ pub(super) fn matrices(
         read(Target::Constraint),
         read(Target::SpeedBasis),
     );
-    check_pair(
-        context,
-        freedoms.len(),
-        &constraint,
-        &speed_basis,
-        evaluator,
-    );
+    let k = freedoms.len();
+    check_pair(k, &constraint, &speed_basis, evaluator);
     let speed_names = context
         .statements
         .speeds
-        .map(|speeds| speed_names(context, speeds, &speed_basis, evaluator));
+        .map(|speeds| speed_names(context, k, speeds, &constraint, &speed_basis, evaluator));
     Matrices {
         twist_map,
         constraint,
@@ -154,36 +149,13 @@ fn matrix(
     })
 }
 
-/// A and S_bar stand together, and their columns add up to the freedoms.
+/// The columns of A and of S_bar, where both stand, add up to the freedoms.
 fn check_pair(
-    context: &Context<'_>,
     k: usize,
     constraint: &Option<Declared<Matrix>>,
     speed_basis: &Option<Declared<Matrix>>,
     evaluator: &mut Evaluator<'_>,
 ) {
-    let of = |target| context.statements.target(target);
-    let alone = match (of(Target::Constraint), of(Target::SpeedBasis)) {
-        (Some(here), None) => Some((
-            here,
-            "A",
-            "S_bar",
-            "`S_bar = …;`, a basis of the velocities that Aᵀ v = 0 allows",
-        )),
-        (None, Some(here)) => Some((
-            here,
-            "S_bar",
-            "A",
-            "`A = …;`, whose columns are the velocities that S_bar leaves out",
-        )),
-        _ => None,
-    };
-    if let Some((here, present, absent, advice)) = alone.filter(|_| !context.file.partial) {
-        let message = format!("{present} is declared and {absent} is not");
-        let error = Diagnostic::new(code::CONSTRAINT, here.span.clone(), message)
-            .label(format!("needs {absent} beside it"));
-        evaluator.report(error.help(format!("add {advice}")));
-    }
     if let (Some(a), Some(s)) = (constraint, speed_basis)
         && a.value.columns() + s.value.columns() != k
     {
@@ -196,9 +168,21 @@ fn check_pair(
     }
 }
 
+/// k̄, where A or S_bar decides it.
+fn speed_count(
+    freedoms: usize,
+    constraint: &Option<Declared<Matrix>>,
+    speed_basis: &Option<Declared<Matrix>>,
+) -> Option<usize> {
+    let allowed = speed_basis.as_ref().map(|s| s.value.columns());
+    allowed.or_else(|| Some(freedoms - constraint.as_ref()?.value.columns()))
+}
+
 fn speed_names(
     context: &Context<'_>,
+    freedoms: usize,
     speeds: At<'_, [Name]>,
+    constraint: &Option<Declared<Matrix>>,
     speed_basis: &Option<Declared<Matrix>>,
     evaluator: &mut Evaluator<'_>,
 ) -> Declared<Vec<String>> {
@@ -217,15 +201,15 @@ fn speed_names(
         }
         list.push(name.text.clone());
     }
-    let count = speed_basis.as_ref().map(|s| s.value.columns());
-    let undeclared =
-        context.statements.target(Target::SpeedBasis).is_none() && !context.file.partial;
+    let count = speed_count(freedoms, constraint, speed_basis);
+    let of = |target| context.statements.target(target).is_none();
+    let holonomic = of(Target::SpeedBasis) && of(Target::Constraint) && !context.file.partial;
     let message = match count {
         Some(count) if count != list.len() => Some(format!(
-            "{} names for the {count} speeds of S_bar",
+            "{} names for {count} speeds",
             list.len()
         )),
-        None if undeclared => Some("names of speeds without S_bar".to_owned()),
+        None if holonomic => Some("names of speeds without A or S_bar".to_owned()),
         _ => None,
     };
     if let Some(message) = message {

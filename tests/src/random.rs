@@ -1,0 +1,140 @@
+//! Seeded random mechanisms and states: trees of any joints, placed anywhere, with physical inertias.
+
+use hamel::erased::AnyJoint;
+use hamel::mechanism::{BodySpec, Mechanism};
+use hamel::nalgebra::{Matrix3, Vector3};
+use hamel::spatial::{MassProperties, Pose, so3};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
+
+/// Longest ϕ from home, rad and m: most of a half turn.
+const REACH: f64 = 2.5;
+
+/// A mechanism with a state and applied efforts.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Which one, for messages.
+    pub seed: u64,
+    /// The mechanism.
+    pub mechanism: Arc<Mechanism>,
+    /// All joints' Q.
+    pub q: Vec<f64>,
+    /// v̄, of order 1.
+    pub speeds: Vec<f64>,
+    /// v̄̇, of order 1.
+    pub rates: Vec<f64>,
+    /// τ, one entry a freedom, of order 1.
+    pub efforts: Vec<f64>,
+}
+
+/// Every joint of the library with every parameter 0.7: a new spec enters by itself.
+///
+/// # Panics
+/// Where a joint refuses the parameter.
+pub fn library() -> Vec<Arc<dyn AnyJoint>> {
+    let registry = hamel_joints::registry();
+    let entries = registry.entries();
+    let joints = entries.map(|entry| {
+        (entry.build)(&vec![0.7; entry.parameters.len()]).expect("0.7 is a legal parameter")
+    });
+    joints.collect()
+}
+
+/// `count` cases on trees of 1 to `largest` joints of the given kinds, each kind at the root of some of them.
+pub fn cases(
+    kinds: &[Arc<dyn AnyJoint>],
+    largest: usize,
+    count: u64,
+) -> impl Iterator<Item = Case> + '_ {
+    (0..count).map(move |seed| case(kinds, largest, seed))
+}
+
+fn case(kinds: &[Arc<dyn AnyJoint>], largest: usize, seed: u64) -> Case {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let size = 1 + seed as usize % largest;
+    let mut joints = vec![Arc::clone(&kinds[seed as usize % kinds.len()])];
+    for _ in 1..size {
+        joints.push(Arc::clone(&kinds[random.random_range(0..kinds.len())]));
+    }
+    let mechanism = tree(&mut random, &joints);
+    let layout = *mechanism.layout();
+    Case {
+        seed,
+        q: configuration(&mut random, &mechanism),
+        speeds: numbers(&mut random, layout.speeds),
+        rates: numbers(&mut random, layout.speeds),
+        efforts: numbers(&mut random, layout.freedoms),
+        mechanism,
+    }
+}
+
+/// Numbers in [−1, 1).
+pub fn numbers(random: &mut ChaCha8Rng, size: usize) -> Vec<f64> {
+    (0..size).map(|_| random.random_range(-1.0..1.0)).collect()
+}
+
+fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| random.random_range(-1.0..1.0))
+}
+
+/// A tree on the given joints in slanted gravity: half of the bodies hang on the one before, the others on any before.
+///
+/// # Panics
+/// Never, for joints that a mechanism accepts.
+pub fn tree(random: &mut ChaCha8Rng, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism> {
+    let body = |(index, joint): (usize, &Arc<dyn AnyJoint>)| {
+        let last = index.checked_sub(1);
+        let parent = match last {
+            Some(last) if random.random_bool(0.5) => Some(random.random_range(0..=last)),
+            other => other,
+        };
+        BodySpec {
+            name: format!("body {index}"),
+            joint_name: format!("{} {index}", joint.name()),
+            parent,
+            joint: Arc::clone(joint),
+            placement: pose(random),
+            child_placement: pose(random),
+            mass: mass(random),
+        }
+    };
+    let bodies = joints.iter().enumerate().map(body).collect();
+    let gravity = Vector3::new(0.8, -1.1, -9.7);
+    Arc::new(Mechanism::new(gravity, bodies).expect("valid by construction"))
+}
+
+fn pose(random: &mut ChaCha8Rng) -> Pose<f64> {
+    Pose::new(so3::exp(&(vector(random) * 1.8)), vector(random))
+}
+
+/// A body of point masses on its principal axes, its centre of mass away from the frame's origin.
+fn mass(random: &mut ChaCha8Rng) -> MassProperties {
+    let axes = so3::exp(&(vector(random) * 1.8));
+    let second = vector(random).map(|entry| 0.05 + entry.abs());
+    let principal = Matrix3::from_diagonal(&second.map(|entry| second.sum() - entry));
+    let inertia = axes * principal * axes.transpose();
+    let symmetric = (inertia + inertia.transpose()) * 0.5;
+    let mass = random.random_range(0.5..2.5);
+    MassProperties::new(mass, vector(random), symmetric).expect("physical by construction")
+}
+
+/// Φ(home, ϕ) for every joint, |ϕ| up to 2.5.
+///
+/// # Panics
+/// Where a joint cannot be moved from home.
+pub fn configuration(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Vec<f64> {
+    let own = |(index, size): (usize, usize)| {
+        let mut phi = numbers(random, size);
+        let norm = phi.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+        let scale = random.random_range(0.0..REACH) / norm.max(1e-3);
+        phi.iter_mut().for_each(|entry| *entry *= scale);
+        let moved = mechanism.configuration_from_local(index, &phi);
+        moved.expect("phi is finite and of the joint's size")
+    };
+    let sizes = mechanism
+        .bodies()
+        .iter()
+        .map(|body| body.ranges().freedoms.len());
+    sizes.enumerate().flat_map(own).collect()
+}
