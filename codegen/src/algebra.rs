@@ -10,7 +10,9 @@ use num_traits::One;
 /// Rotations first: `so3` is (e1, e2, e3), `se2` (turn, x, y), `se3` (rotations, translations). Elements of `so3` on S3 act as
 /// half-angle quaternions, so that coordinates are rotation vectors there too.
 pub fn standard_basis(kind: Kind) -> Vec<Matrix> {
-    (0..kind.dimension()).map(|n| hat(kind, &unit(kind.dimension(), n))).collect()
+    (0..kind.dimension())
+        .map(|n| hat(kind, &unit(kind.dimension(), n)))
+        .collect()
 }
 
 fn unit(size: usize, n: usize) -> Vec<Expr> {
@@ -27,11 +29,13 @@ pub fn hat(kind: Kind, x: &[Expr]) -> Matrix {
             _ => zero(),
         })
     };
-    let turn = |angle: &Expr| Matrix::from_fn(2, 2, |i, j| match (i, j) {
-        (0, 1) => -angle,
-        (1, 0) => angle.clone(),
-        _ => zero(),
-    });
+    let turn = |angle: &Expr| {
+        Matrix::from_fn(2, 2, |i, j| match (i, j) {
+            (0, 1) => -angle,
+            (1, 0) => angle.clone(),
+            _ => zero(),
+        })
+    };
     match kind {
         Kind::Real(size) => bordered(size, Matrix::zeros(size, size), x),
         Kind::S1 | Kind::So2 => turn(&x[0]),
@@ -49,14 +53,22 @@ pub fn hat(kind: Kind, x: &[Expr]) -> Matrix {
 
 /// Coordinates in the standard basis: the inverse of [`hat`].
 pub fn vee(kind: Kind, m: &Matrix) -> Vec<Expr> {
-    let pick = |entries: &[(usize, usize)]| entries.iter().map(|&(i, j)| m.at(i, j).clone()).collect::<Vec<_>>();
+    let pick = |entries: &[(usize, usize)]| {
+        entries
+            .iter()
+            .map(|&(i, j)| m.at(i, j).clone())
+            .collect::<Vec<_>>()
+    };
     match kind {
         Kind::Real(size) => (0..size).map(|i| m.at(i, size).clone()).collect(),
         Kind::S1 | Kind::So2 => pick(&[(1, 0)]),
         Kind::Se2 => pick(&[(1, 0), (0, 2), (1, 2)]),
         Kind::So3 => pick(&[(2, 1), (0, 2), (1, 0)]),
         Kind::Se3 => pick(&[(2, 1), (0, 2), (1, 0), (0, 3), (1, 3), (2, 3)]),
-        Kind::S3 => pick(&[(1, 0), (2, 0), (3, 0)]).iter().map(|x| x * &Expr::integer(2)).collect(),
+        Kind::S3 => pick(&[(1, 0), (2, 0), (3, 0)])
+            .iter()
+            .map(|x| x * &Expr::integer(2))
+            .collect(),
         Kind::S2 => vec![],
     }
 }
@@ -73,7 +85,10 @@ pub fn coordinates_in(columns: &Matrix, target: &[Expr]) -> Result<Vec<Expr>, Ve
     let determinant = gram.determinant(&Expr::clone);
     let inverse = determinant.recip().unwrap_or_default();
     let target = Matrix::column_vector(target.to_vec());
-    let x = gram.adjugate(&Expr::clone).times(&transposed.times(&target)).scale(&inverse);
+    let x = gram
+        .adjugate(&Expr::clone)
+        .times(&transposed.times(&target))
+        .scale(&inverse);
     let rest = target.minus(&columns.times(&x));
     match rest.is_zero() {
         true => Ok(x.entries().to_vec()),
@@ -136,7 +151,10 @@ pub fn exp_by(xi: &Matrix, mut coefficient: impl FnMut(u8, &Expr) -> Expr) -> Op
             let (c2, c3) = (coefficient(2, &s), coefficient(3, &s));
             let squared = square();
             let cube = squared.times(xi);
-            identity.plus(xi).plus(&squared.scale(&c2)).plus(&cube.scale(&c3))
+            identity
+                .plus(xi)
+                .plus(&squared.scale(&c2))
+                .plus(&cube.scale(&c3))
         }
     })
 }
@@ -148,7 +166,9 @@ pub fn exp(xi: &Matrix) -> Option<Matrix> {
 
 /// `exp(xi)` to second order: `I + ξ + ½ ξ²`.
 pub fn exp_second_order(xi: &Matrix) -> Matrix {
-    Matrix::identity(xi.rows()).plus(xi).plus(&xi.times(xi).scale(&Expr::fraction(1, 2)))
+    Matrix::identity(xi.rows())
+        .plus(xi)
+        .plus(&xi.times(xi).scale(&Expr::fraction(1, 2)))
 }
 
 #[cfg(test)]
@@ -158,8 +178,15 @@ mod tests {
     use crate::manifold::Kind;
     use crate::matrix::Matrix;
 
-    const GROUPS: [Kind; 7] =
-        [Kind::Real(2), Kind::S1, Kind::So2, Kind::Se2, Kind::So3, Kind::S3, Kind::Se3];
+    const GROUPS: [Kind; 7] = [
+        Kind::Real(2),
+        Kind::S1,
+        Kind::So2,
+        Kind::Se2,
+        Kind::So3,
+        Kind::S3,
+        Kind::Se3,
+    ];
 
     fn symbols(kind: Kind) -> Vec<Symbol> {
         Symbol::series(Role::Local, "x", kind.dimension())
@@ -172,11 +199,21 @@ mod tests {
     /// The power series of exp at ‖ξ‖ < 2: 40 terms leave less than 2⁴⁰/40! = 1e-36.
     fn exp_by_series(xi: &Matrix) -> Vec<f64> {
         let n = xi.rows();
-        let xi: Vec<f64> = xi.entries().iter().map(|e| evaluate_f64(e, &value)).collect();
-        let identity: Vec<f64> = (0..n * n).map(|i| f64::from(u8::from(i / n == i % n))).collect();
+        let xi: Vec<f64> = xi
+            .entries()
+            .iter()
+            .map(|e| evaluate_f64(e, &value))
+            .collect();
+        let identity: Vec<f64> = (0..n * n)
+            .map(|i| f64::from(u8::from(i / n == i % n)))
+            .collect();
         let (mut sum, mut power) = (identity.clone(), identity);
         for order in 1..40 {
-            let product = |i: usize| (0..n).map(|k| power[n * (i / n) + k] * xi[n * k + i % n]).sum::<f64>();
+            let product = |i: usize| {
+                (0..n)
+                    .map(|k| power[n * (i / n) + k] * xi[n * k + i % n])
+                    .sum::<f64>()
+            };
             power = (0..n * n).map(|i| product(i) / f64::from(order)).collect();
             sum.iter_mut().zip(&power).for_each(|(s, p)| *s += p);
         }
@@ -192,7 +229,11 @@ mod tests {
             for (entry, expected) in closed.entries().iter().zip(exp_by_series(&xi)) {
                 let got = evaluate_f64(entry, &value);
                 // Sums of a dozen terms below 4 in double precision.
-                assert!((got - expected).abs() < 1e-14, "{}: {got} against {expected}", kind.name());
+                assert!(
+                    (got - expected).abs() < 1e-14,
+                    "{}: {got} against {expected}",
+                    kind.name()
+                );
             }
         }
     }
@@ -202,11 +243,17 @@ mod tests {
         for kind in GROUPS {
             let locals = symbols(kind);
             let x: Vec<Expr> = locals.iter().map(Expr::symbol).collect();
-            let difference = exp(&hat(kind, &x)).expect("a closed form").minus(&exp_second_order(&hat(kind, &x)));
+            let difference = exp(&hat(kind, &x))
+                .expect("a closed form")
+                .minus(&exp_second_order(&hat(kind, &x)));
             for a in &locals {
                 for b in &locals {
                     let second = difference.derivative(a).derivative(b);
-                    assert!(second.map(|e| e.at_zero(&locals)).is_zero(), "{}", kind.name());
+                    assert!(
+                        second.map(|e| e.at_zero(&locals)).is_zero(),
+                        "{}",
+                        kind.name()
+                    );
                 }
             }
         }
@@ -216,7 +263,9 @@ mod tests {
     fn coordinates_come_back() {
         for kind in GROUPS {
             for (n, element) in standard_basis(kind).iter().enumerate() {
-                let unit: Vec<Expr> = (0..kind.dimension()).map(|i| Expr::integer((i == n).into())).collect();
+                let unit: Vec<Expr> = (0..kind.dimension())
+                    .map(|i| Expr::integer((i == n).into()))
+                    .collect();
                 assert_eq!(vee(kind, element), unit, "{}", kind.name());
             }
         }

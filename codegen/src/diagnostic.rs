@@ -23,7 +23,14 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error at a span.
     pub fn new(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { code, message: message.into(), span, label: String::new(), notes: vec![], help: None }
+        Self {
+            code,
+            message: message.into(),
+            span,
+            label: String::new(),
+            notes: vec![],
+            help: None,
+        }
     }
 
     /// With a text at the underline.
@@ -33,10 +40,12 @@ impl Diagnostic {
         self
     }
 
-    /// With a note below.
+    /// With a note below. Long lines of a residual are cut: their beginning says what is wrong.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
-        self.notes.push(note.into());
+        let note: String = note.into();
+        let lines: Vec<String> = note.lines().map(shortened).collect();
+        self.notes.push(lines.join("\n"));
         self
     }
 
@@ -45,6 +54,25 @@ impl Diagnostic {
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
+    }
+}
+
+/// Longest line of a note, in characters.
+const LONGEST_LINE: usize = 160;
+
+fn shortened(line: &str) -> String {
+    // Columns are aligned to their longest entry: where lines are cut, so is the blank space before shorter entries.
+    let packed: String = match line.chars().count() > LONGEST_LINE {
+        true => line.split_whitespace().collect::<Vec<_>>().join(" "),
+        false => line.to_owned(),
+    };
+    match packed.chars().count() > LONGEST_LINE {
+        true => packed
+            .chars()
+            .take(LONGEST_LINE - 2)
+            .chain(" …".chars())
+            .collect(),
+        false => packed,
     }
 }
 
@@ -71,18 +99,35 @@ impl Diagnostics {
     }
 
     fn render_with(&self, renderer: &Renderer) -> String {
-        let shown: Vec<String> = self.errors.iter().map(|error| self.render_one(error, renderer)).collect();
+        let shown: Vec<String> = self
+            .errors
+            .iter()
+            .map(|error| self.render_one(error, renderer))
+            .collect();
         shown.join("\n\n")
     }
 
     fn render_one(&self, error: &Diagnostic, renderer: &Renderer) -> String {
         let end = self.source.len();
         let span = error.span.start.min(end)..error.span.end.min(end);
-        let annotation = AnnotationKind::Primary.span(span).label(error.label.as_str());
-        let snippet = Snippet::source(self.source.as_str()).line_start(1).path(self.file.as_str()).annotation(annotation);
-        let title = Level::ERROR.primary_title(error.message.as_str()).id(error.code);
-        let notes = error.notes.iter().map(|note| Level::NOTE.message(note.as_str()));
-        let help = error.help.iter().map(|help| Level::HELP.message(help.as_str()));
+        let annotation = AnnotationKind::Primary
+            .span(span)
+            .label(error.label.as_str());
+        let snippet = Snippet::source(self.source.as_str())
+            .line_start(1)
+            .path(self.file.as_str())
+            .annotation(annotation);
+        let title = Level::ERROR
+            .primary_title(error.message.as_str())
+            .id(error.code);
+        let notes = error
+            .notes
+            .iter()
+            .map(|note| Level::NOTE.message(note.as_str()));
+        let help = error
+            .help
+            .iter()
+            .map(|help| Level::HELP.message(help.as_str()));
         let group: Group<'_> = title.element(snippet).elements(notes.chain(help));
         renderer.render(&[group]).to_string()
     }

@@ -1,6 +1,6 @@
 //! Symbolic generator of joint kernels: a `.joint` file in, proven and readable Rust out.
 //!
-//! [`derive`] is the whole of it: parse, expand to first order in the local coordinates ϕ, prove, and hand over a
+//! [`derive()`] is the whole of it: parse, expand to first order in the local coordinates ϕ, prove, and hand over a
 //! [`derived::Derived`], from which Rust and pages are made. Equation numbers
 //! are those of Duindam and Stramigioli, *Singularity-free dynamic equations of open-chain mechanisms with general
 //! holonomic and nonholonomic joints*.

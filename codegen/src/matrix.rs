@@ -14,18 +14,32 @@ pub struct Matrix {
 impl Matrix {
     /// The matrix with entry `(i, j)` from a function.
     pub fn from_fn(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> Expr) -> Self {
-        let entries = (0..rows * columns).map(|n| entry(n / columns, n % columns)).collect();
-        Self { rows, columns, entries }
+        let entries = (0..rows * columns)
+            .map(|n| entry(n / columns, n % columns))
+            .collect();
+        Self {
+            rows,
+            columns,
+            entries,
+        }
     }
 
     /// The matrix with the given entries, row by row; `None` where their number does not fit.
     pub fn from_entries(rows: usize, columns: usize, entries: Vec<Expr>) -> Option<Self> {
-        (entries.len() == rows * columns).then_some(Self { rows, columns, entries })
+        (entries.len() == rows * columns).then_some(Self {
+            rows,
+            columns,
+            entries,
+        })
     }
 
     /// The column vector of the given entries.
     pub fn column_vector(entries: Vec<Expr>) -> Self {
-        Self { rows: entries.len(), columns: 1, entries }
+        Self {
+            rows: entries.len(),
+            columns: 1,
+            entries,
+        }
     }
 
     /// The column vector of symbols.
@@ -52,11 +66,21 @@ impl Matrix {
     pub fn tilde(a: &[Expr]) -> Self {
         let zero = Expr::zero;
         let entries = vec![
-            zero(), -&a[2], a[1].clone(),
-            a[2].clone(), zero(), -&a[0],
-            -&a[1], a[0].clone(), zero(),
+            zero(),
+            -&a[2],
+            a[1].clone(),
+            a[2].clone(),
+            zero(),
+            -&a[0],
+            -&a[1],
+            a[0].clone(),
+            zero(),
         ];
-        Self { rows: 3, columns: 3, entries }
+        Self {
+            rows: 3,
+            columns: 3,
+            entries,
+        }
     }
 
     /// Number of rows.
@@ -107,20 +131,30 @@ impl Matrix {
     /// `self` above `other`.
     pub fn stack(&self, other: &Self) -> Self {
         let entries = self.entries.iter().chain(&other.entries).cloned().collect();
-        Self { rows: self.rows + other.rows, columns: self.columns, entries }
+        Self {
+            rows: self.rows + other.rows,
+            columns: self.columns,
+            entries,
+        }
     }
 
     /// `self` to the left of `other`.
     pub fn beside(&self, other: &Self) -> Self {
-        Self::from_fn(self.rows, self.columns + other.columns, |i, j| match j < self.columns {
-            true => self.at(i, j).clone(),
-            false => other.at(i, j - self.columns).clone(),
+        Self::from_fn(self.rows, self.columns + other.columns, |i, j| {
+            match j < self.columns {
+                true => self.at(i, j).clone(),
+                false => other.at(i, j - self.columns).clone(),
+            }
         })
     }
 
     /// Entry by entry.
     pub fn map(&self, f: impl FnMut(&Expr) -> Expr) -> Self {
-        Self { rows: self.rows, columns: self.columns, entries: self.entries.iter().map(f).collect() }
+        Self {
+            rows: self.rows,
+            columns: self.columns,
+            entries: self.entries.iter().map(f).collect(),
+        }
     }
 
     /// Transpose.
@@ -131,18 +165,24 @@ impl Matrix {
     /// Product.
     pub fn times(&self, other: &Self) -> Self {
         Self::from_fn(self.rows, other.columns, |i, j| {
-            (0..self.columns).map(|k| self.at(i, k) * other.at(k, j)).sum()
+            (0..self.columns)
+                .map(|k| self.at(i, k) * other.at(k, j))
+                .sum()
         })
     }
 
     /// Sum.
     pub fn plus(&self, other: &Self) -> Self {
-        Self::from_fn(self.rows, self.columns, |i, j| self.at(i, j) + other.at(i, j))
+        Self::from_fn(self.rows, self.columns, |i, j| {
+            self.at(i, j) + other.at(i, j)
+        })
     }
 
     /// Difference.
     pub fn minus(&self, other: &Self) -> Self {
-        Self::from_fn(self.rows, self.columns, |i, j| self.at(i, j) - other.at(i, j))
+        Self::from_fn(self.rows, self.columns, |i, j| {
+            self.at(i, j) - other.at(i, j)
+        })
     }
 
     /// The matrix times a scalar.
@@ -152,7 +192,9 @@ impl Matrix {
 
     /// Sum of the diagonal.
     pub fn trace(&self) -> Expr {
-        (0..self.rows.min(self.columns)).map(|i| self.at(i, i).clone()).sum()
+        (0..self.rows.min(self.columns))
+            .map(|i| self.at(i, i).clone())
+            .sum()
     }
 
     /// Whether every entry is zero as it stands.
@@ -178,7 +220,9 @@ impl Matrix {
     /// The matrix without row `i` and column `j`.
     pub fn minor(&self, i: usize, j: usize) -> Self {
         let skip = |n: usize, removed: usize| n + usize::from(n >= removed);
-        Self::from_fn(self.rows - 1, self.columns - 1, |r, c| self.at(skip(r, i), skip(c, j)).clone())
+        Self::from_fn(self.rows - 1, self.columns - 1, |r, c| {
+            self.at(skip(r, i), skip(c, j)).clone()
+        })
     }
 
     /// Determinant of a square matrix, each sub-determinant simplified by `simplify`.
@@ -187,12 +231,21 @@ impl Matrix {
             return Expr::one();
         }
         // Expanding along the sparsest column keeps the number of sub-determinants small.
-        let zeros = |j: &usize| self.column(*j).iter().filter(|entry| entry.is_zero()).count();
-        let j = (0..self.columns).max_by_key(|j| (zeros(j), self.columns - j)).unwrap_or(0);
-        let expansion = (0..self.rows).filter(|&i| !self.at(i, j).is_zero()).map(|i| {
-            let product = self.at(i, j) * &self.minor(i, j).determinant(simplify);
-            if (i + j) % 2 == 0 { product } else { -product }
-        });
+        let zeros = |j: &usize| {
+            self.column(*j)
+                .iter()
+                .filter(|entry| entry.is_zero())
+                .count()
+        };
+        let j = (0..self.columns)
+            .max_by_key(|j| (zeros(j), self.columns - j))
+            .unwrap_or(0);
+        let expansion = (0..self.rows)
+            .filter(|&i| !self.at(i, j).is_zero())
+            .map(|i| {
+                let product = self.at(i, j) * &self.minor(i, j).determinant(simplify);
+                if (i + j) % 2 == 0 { product } else { -product }
+            });
         simplify(&expansion.sum())
     }
 
@@ -200,7 +253,11 @@ impl Matrix {
     pub fn adjugate(&self, simplify: &impl Fn(&Expr) -> Expr) -> Self {
         Self::from_fn(self.rows, self.columns, |i, j| {
             let cofactor = self.minor(j, i).determinant(simplify);
-            if (i + j) % 2 == 0 { cofactor } else { -cofactor }
+            if (i + j) % 2 == 0 {
+                cofactor
+            } else {
+                -cofactor
+            }
         })
     }
 }
@@ -209,12 +266,22 @@ impl Display for Matrix {
     /// Rows on lines of their own, columns aligned.
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let texts: Vec<String> = self.entries.iter().map(Expr::to_string).collect();
-        let width = |j: usize| (0..self.rows).map(|i| texts[i * self.columns + j].chars().count()).max().unwrap_or(0);
+        let width = |j: usize| {
+            (0..self.rows)
+                .map(|i| texts[i * self.columns + j].chars().count())
+                .max()
+                .unwrap_or(0)
+        };
         for i in 0..self.rows {
             f.write_str(if i == 0 { "[" } else { "\n " })?;
             for j in 0..self.columns {
                 let text = &texts[i * self.columns + j];
-                write!(f, "{}{text:>width$}", if j == 0 { "" } else { "  " }, width = width(j))?;
+                write!(
+                    f,
+                    "{}{text:>width$}",
+                    if j == 0 { "" } else { "  " },
+                    width = width(j)
+                )?;
             }
         }
         f.write_str("]")

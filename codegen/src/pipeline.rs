@@ -8,15 +8,19 @@ use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use crate::{prove, spec};
 
-/// Bound on symbolic work for one joint, in products of two terms. The library's largest joint spends about a fiftieth.
-pub const WORK_LIMIT: u64 = 20_000_000;
+/// Bound on symbolic work for one joint, in products of two terms. The library's largest joint spends less than a tenth.
+pub const WORK_LIMIT: u64 = 1_000_000;
 
 /// Parses, expands and proves one spec. `file` is the name by which errors call it.
 pub fn derive(source: &str, file: &str) -> Result<Derived, Diagnostics> {
     let spec = spec::parse(source, file)?;
     let failed = |mut errors: Vec<Diagnostic>| {
         errors.sort_by_key(|error| error.span.start);
-        Diagnostics { file: file.to_owned(), source: source.to_owned(), errors }
+        Diagnostics {
+            file: file.to_owned(),
+            source: source.to_owned(),
+            errors,
+        }
     };
     match budget::scope(WORK_LIMIT, || derive_spec(spec.clone())) {
         Ok(result) => result.map_err(failed),
@@ -44,15 +48,30 @@ fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
 fn series(spec: &JointSpec, expansion: &Expansion) -> (Matrix, Matrix) {
     let s = &expansion.velocity_map;
     let start = Matrix::identity(s.base.rows());
-    let right = s.slopes.iter().zip(&expansion.arguments.local).fold(start, |sum, (slope, local)| {
-        let factored = expansion.velocity_map_inverse.times(slope);
-        sum.plus(&spec.manifold.value.ideal().normal_forms(&factored).scale(&Expr::symbol(local)))
-    });
+    let right =
+        s.slopes
+            .iter()
+            .zip(&expansion.arguments.local)
+            .fold(start, |sum, (slope, local)| {
+                let factored = expansion.velocity_map_inverse.times(slope);
+                sum.plus(
+                    &spec
+                        .manifold
+                        .value
+                        .ideal()
+                        .normal_forms(&factored)
+                        .scale(&Expr::symbol(local)),
+                )
+            });
     (s.base.clone(), right)
 }
 
 fn too_much_work(spec: &JointSpec, limit: u64) -> Diagnostic {
-    Diagnostic::new(spec::code::WORK, spec.name.span.clone(), format!("expanding this joint takes more than {limit} term operations"))
-        .label("the bound on symbolic work")
-        .help("shorten the expressions of H, X and S_bar, or use let to name a simpler form")
+    Diagnostic::new(
+        spec::code::WORK,
+        spec.name.span.clone(),
+        format!("expanding this joint takes more than {limit} term operations"),
+    )
+    .label("the bound on symbolic work")
+    .help("shorten the expressions of H, X and S_bar, or use let to name a simpler form")
 }

@@ -13,7 +13,9 @@ use std::time::{Duration, Instant, SystemTime};
 const RUNS: usize = 11;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize()?;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .canonicalize()?;
     let scratch = root.join("target/generation-bench");
     library(&root, &scratch)?;
     downstream(&root, &scratch)
@@ -25,9 +27,16 @@ fn library(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
     cargo(root, &target, &["build", "--package", "hamel-joints"])?;
     let script = newest_script(&target, "hamel-joints")?;
     let specs = fs::read_dir(root.join("joint-specs"))?.filter_map(Result::ok);
-    let count = specs.filter(|entry| entry.path().extension() == Some(OsStr::new("joint"))).count();
+    let count = specs
+        .filter(|entry| entry.path().extension() == Some(OsStr::new("joint")))
+        .count();
     // In check mode the script derives and renders everything and compares it with the files, but writes nothing.
-    let times = run(&script, &root.join("generated"), scratch, &[("HAMEL_GENERATE", "check")])?;
+    let times = run(
+        &script,
+        &root.join("generated"),
+        scratch,
+        &[("HAMEL_GENERATE", "check")],
+    )?;
     report(&format!("library, {count} specs"), times);
     Ok(())
 }
@@ -45,7 +54,10 @@ fn downstream(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
     let target = scratch.join("downstream");
     cargo(&package, &target, &["build"])?;
     let script = newest_script(&target, "hamel-downstream")?;
-    report("downstream, 1 spec, unoptimised", run(&script, &package, scratch, &[])?);
+    report(
+        "downstream, 1 spec, unoptimised",
+        run(&script, &package, scratch, &[])?,
+    );
     Ok(())
 }
 
@@ -60,29 +72,60 @@ fn manifest(root: &Path) -> String {
 fn cargo(folder: &Path, target: &Path, arguments: &[&str]) -> Result<(), Box<dyn Error>> {
     eprintln!("building: cargo {}", arguments.join(" "));
     let mut command = Command::new(env!("CARGO"));
-    command.current_dir(folder).args(arguments).arg("--quiet").env("CARGO_TARGET_DIR", target);
+    command
+        .current_dir(folder)
+        .args(arguments)
+        .arg("--quiet")
+        .env("CARGO_TARGET_DIR", target);
     match command.status()?.success() {
         true => Ok(()),
-        false => Err(format!("cargo {} failed in {}", arguments.join(" "), folder.display()).into()),
+        false => Err(format!(
+            "cargo {} failed in {}",
+            arguments.join(" "),
+            folder.display()
+        )
+        .into()),
     }
 }
 
 /// The build script's program that was built last.
 fn newest_script(target: &Path, package: &str) -> Result<PathBuf, Box<dyn Error>> {
     let entries = fs::read_dir(target.join("debug/build"))?.filter_map(Result::ok);
-    let of_package = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(&format!("{package}-")));
-    let programs = of_package.map(|entry| entry.path().join("build-script-build")).filter(|path| path.exists());
-    let age = |path: &PathBuf| fs::metadata(path).and_then(|data| data.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
-    programs.max_by_key(age).ok_or_else(|| format!("no build script of {package} below {}", target.display()).into())
+    let of_package = entries.filter(|entry| {
+        entry
+            .file_name()
+            .to_string_lossy()
+            .starts_with(&format!("{package}-"))
+    });
+    let programs = of_package
+        .map(|entry| entry.path().join("build-script-build"))
+        .filter(|path| path.exists());
+    let age = |path: &PathBuf| {
+        fs::metadata(path)
+            .and_then(|data| data.modified())
+            .unwrap_or(SystemTime::UNIX_EPOCH)
+    };
+    programs
+        .max_by_key(age)
+        .ok_or_else(|| format!("no build script of {package} below {}", target.display()).into())
 }
 
-fn run(script: &Path, package: &Path, scratch: &Path, environment: &[(&str, &str)]) -> Result<Vec<Duration>, Box<dyn Error>> {
+fn run(
+    script: &Path,
+    package: &Path,
+    scratch: &Path,
+    environment: &[(&str, &str)],
+) -> Result<Vec<Duration>, Box<dyn Error>> {
     let out = scratch.join("out");
     fs::create_dir_all(&out)?;
     let mut times = vec![];
     for _ in 0..RUNS {
         let mut command = Command::new(script);
-        command.current_dir(package).env("CARGO_MANIFEST_DIR", package).env("OUT_DIR", &out).envs(environment.iter().copied());
+        command
+            .current_dir(package)
+            .env("CARGO_MANIFEST_DIR", package)
+            .env("OUT_DIR", &out)
+            .envs(environment.iter().copied());
         let start = Instant::now();
         let output = command.stdout(Stdio::null()).output()?;
         times.push(start.elapsed());
@@ -96,7 +139,10 @@ fn run(script: &Path, package: &Path, scratch: &Path, environment: &[(&str, &str
 
 fn report(name: &str, times: Vec<Duration>) {
     let seconds = |time: &Duration| time.as_secs_f64();
-    let (least, median) = (times.first().map(seconds), times.get(times.len() / 2).map(seconds));
+    let (least, median) = (
+        times.first().map(seconds),
+        times.get(times.len() / 2).map(seconds),
+    );
     println!(
         "{name}: minimum {:.3} s, median {:.3} s over {} runs",
         least.unwrap_or(f64::NAN),

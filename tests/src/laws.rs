@@ -27,11 +27,22 @@ struct At<'a, J, const N: usize, const K: usize, const S: usize, const C: usize>
 ///
 /// # Panics
 /// With the law, the joint and the figures, where one does not hold.
-pub fn check_all<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize>(joint: &J) {
+pub fn check_all<
+    J: Joint<N, K, S, C>,
+    const N: usize,
+    const K: usize,
+    const S: usize,
+    const C: usize,
+>(
+    joint: &J,
+) {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     for _ in 0..CONFIGURATIONS {
         let away: SVector<f64, K> = vector(&mut random, 1.5);
-        let at = At { joint, q: joint.retract(&joint.home(), &away) };
+        let at = At {
+            joint,
+            q: joint.retract(&joint.home(), &away),
+        };
         at.velocity_laws(&vector(&mut random, 2.0), &vector(&mut random, 2.0));
         at.speed_laws(&vector(&mut random, 2.0), &vector(&mut random, 2.0));
         at.manifold_laws(&vector(&mut random, 1e-6));
@@ -46,30 +57,53 @@ fn vector<const K: usize>(random: &mut ChaCha8Rng, size: f64) -> SVector<f64, K>
     SVector::from_fn(|_, _| random.random_range(-size..size))
 }
 
-fn close<const R: usize, const M: usize>(law: &str, name: &str, got: &SMatrix<f64, R, M>, expected: &SMatrix<f64, R, M>) {
+fn close<const R: usize, const M: usize>(
+    law: &str,
+    name: &str,
+    got: &SMatrix<f64, R, M>,
+    expected: &SMatrix<f64, R, M>,
+) {
     close_within(law, name, got, expected, TOLERANCE);
 }
 
-fn close_within<const R: usize, const M: usize>(law: &str, name: &str, got: &SMatrix<f64, R, M>, expected: &SMatrix<f64, R, M>, tolerance: f64) {
+fn close_within<const R: usize, const M: usize>(
+    law: &str,
+    name: &str,
+    got: &SMatrix<f64, R, M>,
+    expected: &SMatrix<f64, R, M>,
+    tolerance: f64,
+) {
     let size = 1.0 + got.amax().max(expected.amax());
     let error = (got - expected).amax() / size;
-    assert!(!(error.is_nan() || error > tolerance), "{name}: {law}: relative error {error:e}\ngot {got}expected {expected}");
+    assert!(
+        !(error.is_nan() || error > tolerance),
+        "{name}: {law}: relative error {error:e}\ngot {got}expected {expected}"
+    );
 }
 
 /// The dual vector `base + ε direction`.
-fn moving<T: Scalar, const M: usize>(base: &SVector<T, M>, direction: &SVector<T, M>) -> SVector<Dual<T>, M> {
+fn moving<T: Scalar, const M: usize>(
+    base: &SVector<T, M>,
+    direction: &SVector<T, M>,
+) -> SVector<Dual<T>, M> {
     SVector::from_fn(|i, _| Dual::new(base[i], direction[i]))
 }
 
-fn constant<T: Scalar, const R: usize, const M: usize>(value: &SMatrix<T, R, M>) -> SMatrix<Dual<T>, R, M> {
+fn constant<T: Scalar, const R: usize, const M: usize>(
+    value: &SMatrix<T, R, M>,
+) -> SMatrix<Dual<T>, R, M> {
     value.map(Dual::constant)
 }
 
-fn values<T: Scalar, const R: usize, const M: usize>(m: &SMatrix<Dual<T>, R, M>) -> SMatrix<T, R, M> {
+fn values<T: Scalar, const R: usize, const M: usize>(
+    m: &SMatrix<Dual<T>, R, M>,
+) -> SMatrix<T, R, M> {
     m.map(|entry| entry.value)
 }
 
-fn slopes<T: Scalar, const R: usize, const M: usize>(m: &SMatrix<Dual<T>, R, M>) -> SMatrix<T, R, M> {
+fn slopes<T: Scalar, const R: usize, const M: usize>(
+    m: &SMatrix<Dual<T>, R, M>,
+) -> SMatrix<T, R, M> {
     m.map(|entry| entry.derivative)
 }
 
@@ -86,10 +120,14 @@ fn unit<const K: usize>(k: usize) -> SVector<f64, K> {
     SVector::from_fn(|i, _| f64::from(u8::from(i == k)))
 }
 
-impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize> At<'_, J, N, K, S, C> {
+impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize>
+    At<'_, J, N, K, S, C>
+{
     /// ϕ = 0, of size 1e-8, as given, and with its turn within 1e-6 of π.
     fn sizes(&self, phi: &SVector<f64, K>) -> [SVector<f64, K>; 4] {
-        let turn = (self.joint.twist_map_child(&self.q) * self.joint.velocity_map(&self.q) * phi).fixed_rows::<3>(0).norm();
+        let turn = (self.joint.twist_map_child(&self.q) * self.joint.velocity_map(&self.q) * phi)
+            .fixed_rows::<3>(0)
+            .norm();
         let scale = match turn > 0.1 {
             true => (std::f64::consts::PI - 1e-6) / turn,
             false => std::f64::consts::PI,
@@ -111,18 +149,38 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let inverse = joint.velocity_map_inverse(q);
         close("S₀ S₀⁻¹ = I", J::NAME, &(s * inverse), &SMatrix::identity());
         let child = joint.twist_map_child(q);
-        close("X = Ad X^c", J::NAME, &(joint.pose(q).adjoint() * child), &x);
+        close(
+            "X = Ad X^c",
+            J::NAME,
+            &(joint.pose(q).adjoint() * child),
+            &x,
+        );
         let gradient = joint.velocity_map_gradient(q);
         let child_gradient = joint.twist_map_child_gradient(q);
         for k in 0..K {
             let moved = self.along(&unit(k));
-            close("J₀ = X S₀", J::NAME, &twist(&joint.pose(&moved)), &(x * s.column(k)));
-            close("∂X^c/∂ϕ", J::NAME, &slopes(&joint.twist_map_child(&moved)), &child_gradient[k]);
+            close(
+                "J₀ = X S₀",
+                J::NAME,
+                &twist(&joint.pose(&moved)),
+                &(x * s.column(k)),
+            );
+            close(
+                "∂X^c/∂ϕ",
+                J::NAME,
+                &slopes(&joint.twist_map_child(&moved)),
+                &child_gradient[k],
+            );
             let left = x * gradient[k] + slopes(&joint.twist_map(&moved)) * s;
             close("X ∂S + ∂X S = ∂J", J::NAME, &left, &self.jacobian_slope(k));
         }
         let rate = inverse * v;
-        close("Q̇", J::NAME, &joint.configuration_rate(q, v), &slopes(&self.along(&rate)));
+        close(
+            "Q̇",
+            J::NAME,
+            &joint.configuration_rate(q, v),
+            &slopes(&self.along(&rate)),
+        );
         self.hamel_laws(v, p, &gradient, &inverse);
     }
 
@@ -142,45 +200,114 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     }
 
     /// (17) and (28) from S₀⁻¹ and ∂S/∂ϕ.
-    fn hamel_laws(&self, v: &SVector<f64, K>, p: &SVector<f64, K>, gradient: &[SMatrix<f64, K, K>; K], inverse: &SMatrix<f64, K, K>) {
+    fn hamel_laws(
+        &self,
+        v: &SVector<f64, K>,
+        p: &SVector<f64, K>,
+        gradient: &[SMatrix<f64, K, K>; K],
+        inverse: &SMatrix<f64, K, K>,
+    ) {
         let w = inverse * v;
-        let inner = SMatrix::<f64, K, K>::from_fn(|l, j| (0..K).map(|m| (gradient[m][(j, l)] - gradient[l][(j, m)]) * w[m]).sum());
+        let inner = SMatrix::<f64, K, K>::from_fn(|l, j| {
+            (0..K)
+                .map(|m| (gradient[m][(j, l)] - gradient[l][(j, m)]) * w[m])
+                .sum()
+        });
         let gamma = self.joint.gamma(&self.q, v);
         close("γ, (17)", J::NAME, &gamma, &inverse.tr_mul(&inner));
-        let b = SMatrix::<f64, K, K>::from_fn(|i, m| (0..K).map(|l| gradient[m][(l, i)] * p[l]).sum());
+        let b =
+            SMatrix::<f64, K, K>::from_fn(|i, m| (0..K).map(|l| gradient[m][(l, i)] * p[l]).sum());
         let j22 = self.joint.j22(&self.q, p);
-        close("J22, (28)", J::NAME, &j22, &(inverse.tr_mul(&(b.transpose() - b)) * inverse));
-        close("Σ γ_k v_k p = −J22 v", J::NAME, &(gamma * p), &(j22 * v * -1.0));
+        close(
+            "J22, (28)",
+            J::NAME,
+            &j22,
+            &(inverse.tr_mul(&(b.transpose() - b)) * inverse),
+        );
+        close(
+            "Σ γ_k v_k p = −J22 v",
+            J::NAME,
+            &(gamma * p),
+            &(j22 * v * -1.0),
+        );
     }
 
     /// Laws of the constraint and of the speeds.
     fn speed_laws(&self, speeds: &SVector<f64, S>, wrench: &Vector6<f64>) {
         let (joint, q) = (self.joint, &self.q);
         let basis = joint.speed_basis(q);
-        close("Aᵀ S̄ = 0", J::NAME, &joint.constraint(q).tr_mul(&basis), &SMatrix::zeros());
+        close(
+            "Aᵀ S̄ = 0",
+            J::NAME,
+            &joint.constraint(q).tr_mul(&basis),
+            &SMatrix::zeros(),
+        );
         let gradient = joint.speed_basis_gradient(q);
         for (k, slice) in gradient.iter().enumerate() {
-            close("∂S̄/∂ϕ", J::NAME, &slopes(&joint.speed_basis(&self.along(&unit(k)))), slice);
+            close(
+                "∂S̄/∂ϕ",
+                J::NAME,
+                &slopes(&joint.speed_basis(&self.along(&unit(k)))),
+                slice,
+            );
         }
         let moved = self.along(&(joint.velocity_map_inverse(q) * basis * speeds));
         let rate = slopes(&(joint.twist_map_child(&moved) * joint.speed_basis(&moved)));
-        close("c = Ẋ̄^c v̄", J::NAME, &joint.bias_acceleration(q, speeds), &(rate * speeds));
-        close("Ẋ̄^cᵀ h", J::NAME, &joint.bias_momentum(q, speeds, wrench), &rate.tr_mul(wrench));
+        close(
+            "c = Ẋ̄^c v̄",
+            J::NAME,
+            &joint.bias_acceleration(q, speeds),
+            &(rate * speeds),
+        );
+        close(
+            "Ẋ̄^cᵀ h",
+            J::NAME,
+            &joint.bias_momentum(q, speeds, wrench),
+            &rate.tr_mul(wrench),
+        );
     }
 
     /// The manifold: relations, projection.
     fn manifold_laws(&self, disturbance: &SVector<f64, N>) {
         let (joint, q) = (self.joint, &self.q);
         // RᵀR − I of a product of two rotations: nine entries of a few ulp each.
-        assert!(joint.residual(q) < 1e-14, "{}: residual {:e}", J::NAME, joint.residual(q));
+        assert!(
+            joint.residual(q) < 1e-14,
+            "{}: residual {:e}",
+            J::NAME,
+            joint.residual(q)
+        );
         let pose = joint.pose(q);
-        close("RᵀR = I", J::NAME, &pose.rotation.tr_mul(&pose.rotation), &Matrix3::identity());
-        assert!((pose.rotation.determinant() - 1.0).abs() < TOLERANCE, "{}: det R", J::NAME);
-        close("projection keeps the manifold", J::NAME, &joint.project(q), q);
+        close(
+            "RᵀR = I",
+            J::NAME,
+            &pose.rotation.tr_mul(&pose.rotation),
+            &Matrix3::identity(),
+        );
+        assert!(
+            (pose.rotation.determinant() - 1.0).abs() < TOLERANCE,
+            "{}: det R",
+            J::NAME
+        );
+        close(
+            "projection keeps the manifold",
+            J::NAME,
+            &joint.project(q),
+            q,
+        );
         let back = joint.project(&(q + disturbance));
-        assert!(joint.residual(&back) < 1e-14, "{}: residual {:e} after projection", J::NAME, joint.residual(&back));
+        assert!(
+            joint.residual(&back) < 1e-14,
+            "{}: residual {:e} after projection",
+            J::NAME,
+            joint.residual(&back)
+        );
         // The nearest point is at most twice the disturbance from Q.
-        assert!((back - q).norm() <= 2.0 * disturbance.norm(), "{}: projection moves far", J::NAME);
+        assert!(
+            (back - q).norm() <= 2.0 * disturbance.norm(),
+            "{}: projection moves far",
+            J::NAME
+        );
     }
 
     /// N_X: no force, no inertia felt.
@@ -188,12 +315,22 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let other = self.joint.retract(&self.q, phi);
         for parameters in J::IMPERCEPTIBLE {
             let n = spatial_inertia(parameters);
-            close("N X^c = 0", J::NAME, &(n * self.joint.twist_map_child(&self.q)), &SMatrix::zeros());
+            close(
+                "N X^c = 0",
+                J::NAME,
+                &(n * self.joint.twist_map_child(&self.q)),
+                &SMatrix::zeros(),
+            );
             let in_parent = |q: &SVector<f64, N>| {
                 let inverse = self.joint.pose(q).inverse().adjoint();
                 inverse.transpose() * n * inverse
             };
-            close("N is constant in the parent", J::NAME, &in_parent(&self.q), &in_parent(&other));
+            close(
+                "N is constant in the parent",
+                J::NAME,
+                &in_parent(&self.q),
+                &in_parent(&other),
+            );
         }
     }
 
@@ -201,15 +338,35 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     fn finite_laws(&self, phi: &SVector<f64, K>, v: &SVector<f64, K>) {
         let (joint, q) = (self.joint, &self.q);
         let moved = joint.retract(q, phi);
-        assert!(joint.residual(&moved) < 2e-14, "{}: Φ leaves the manifold by {:e}", J::NAME, joint.residual(&moved));
+        assert!(
+            joint.residual(&moved) < 2e-14,
+            "{}: Φ leaves the manifold by {:e}",
+            J::NAME,
+            joint.residual(&moved)
+        );
         close("Φ⁻¹(Q, Φ(Q, ϕ)) = ϕ", J::NAME, &joint.local(q, &moved), phi);
         let u = joint.velocity_map_inverse(&moved) * v;
         let rate = joint.retract_differential_inverse(q, phi, &u);
         let path = joint.retract(&constant(q), &moving(phi, &rate));
-        close("X(Φ) v = J ϕ̇ at finite ϕ", J::NAME, &twist(&joint.pose(&path)), &(joint.twist_map(&moved) * v));
-        close("Q̇ along Φ", J::NAME, &slopes(&path), &joint.configuration_rate(&moved, v));
+        close(
+            "X(Φ) v = J ϕ̇ at finite ϕ",
+            J::NAME,
+            &twist(&joint.pose(&path)),
+            &(joint.twist_map(&moved) * v),
+        );
+        close(
+            "Q̇ along Φ",
+            J::NAME,
+            &slopes(&path),
+            &joint.configuration_rate(&moved, v),
+        );
         let inverse_path = joint.local(&constant(q), &path);
-        close("differential of Φ⁻¹", J::NAME, &slopes(&inverse_path), &rate);
+        close(
+            "differential of Φ⁻¹",
+            J::NAME,
+            &slopes(&inverse_path),
+            &rate,
+        );
     }
 }
 
@@ -221,6 +378,8 @@ fn spatial_inertia(n: &[f64; 10]) -> Matrix6<f64> {
     spatial.fixed_view_mut::<3, 3>(0, 0).copy_from(&inertia);
     spatial.fixed_view_mut::<3, 3>(0, 3).copy_from(&moment);
     spatial.fixed_view_mut::<3, 3>(3, 0).copy_from(&-moment);
-    spatial.fixed_view_mut::<3, 3>(3, 3).copy_from(&(Matrix3::identity() * m));
+    spatial
+        .fixed_view_mut::<3, 3>(3, 3)
+        .copy_from(&(Matrix3::identity() * m));
     spatial
 }

@@ -7,6 +7,7 @@ pub mod oracle;
 pub mod random;
 pub mod scenes;
 
+use hamel::registry::JointRegistry;
 use hamel_codegen::derived::Derived;
 use std::path::{Path, PathBuf};
 
@@ -22,8 +23,13 @@ pub fn spec_folder() -> PathBuf {
 pub fn spec_names() -> Vec<String> {
     let entries = std::fs::read_dir(spec_folder()).expect("the joint library is beside this crate");
     let paths = entries.map(|entry| entry.expect("a folder entry").path());
-    let specs = paths.filter(|path| path.extension().is_some_and(|extension| extension == "joint"));
-    let mut names: Vec<String> = specs.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
+    let specs = paths.filter(|path| {
+        path.extension()
+            .is_some_and(|extension| extension == "joint")
+    });
+    let mut names: Vec<String> = specs
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect();
     names.sort();
     names
 }
@@ -36,4 +42,26 @@ pub fn derived(name: &str) -> Derived {
     let file = format!("{name}.joint");
     let source = std::fs::read_to_string(spec_folder().join(&file)).expect("the spec can be read");
     hamel_codegen::derive(&source, &file).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+/// A registry of the paper's joints alone, so that messages which list the known types stay the same when the library grows.
+pub fn paper_registry() -> JointRegistry {
+    const PAPER: [&str; 7] = [
+        "ball",
+        "cart",
+        "free",
+        "planar",
+        "planar_euclidean",
+        "prismatic",
+        "revolute",
+    ];
+    let mut registry = JointRegistry::new();
+    let entries = hamel_joints::ENTRIES
+        .iter()
+        .filter(|entry| PAPER.contains(&entry.name));
+    for entry in entries {
+        // Names in the library are distinct.
+        let _ = registry.insert(*entry);
+    }
+    registry
 }

@@ -38,19 +38,30 @@ impl Copy {
 
     fn cargo(&self, arguments: &[&str], environment: &[(&str, &str)]) -> Output {
         let mut command = Command::new(env!("CARGO"));
-        command.current_dir(&self.root).args(arguments).env_remove("HAMEL_GENERATE").envs(environment.iter().copied());
+        command
+            .current_dir(&self.root)
+            .args(arguments)
+            .env_remove("HAMEL_GENERATE")
+            .envs(environment.iter().copied());
         command.env("CARGO_TARGET_DIR", self.root.join("target"));
         command.output().expect("cargo runs")
     }
 
     fn succeeds(&self, arguments: &[&str]) {
         let output = self.cargo(arguments, &[]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
     }
 
     /// The errors of a build that only checks.
     fn check(&self) -> Result<(), String> {
-        let output = self.cargo(&["build", "--package", "hamel-joints"], &[("HAMEL_GENERATE", "check")]);
+        let output = self.cargo(
+            &["build", "--package", "hamel-joints"],
+            &[("HAMEL_GENERATE", "check")],
+        );
         match output.status.success() {
             true => Ok(()),
             false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
@@ -84,26 +95,46 @@ fn a_new_spec_is_picked_up_checked_and_removed() {
 
     fs::write(copy.path("joint-specs/cylindrical.joint"), SPEC).expect("a new spec");
     let missing = copy.check().expect_err("a file is missing");
-    assert!(missing.contains("missing") && missing.contains("cylindrical.rs"), "{missing}");
-    assert!(!copy.path("generated/src/joints/cylindrical.rs").exists(), "checking writes nothing");
+    assert!(
+        missing.contains("missing") && missing.contains("cylindrical.rs"),
+        "{missing}"
+    );
+    assert!(
+        !copy.path("generated/src/joints/cylindrical.rs").exists(),
+        "checking writes nothing"
+    );
 
     copy.succeeds(&build);
     assert!(copy.path("generated/src/joints/cylindrical.rs").exists());
     assert!(copy.path("generated/pages/cylindrical.md").exists());
     assert_eq!(copy.check(), Ok(()));
     copy.succeeds(&["test", "--package", "hamel-tests", "--test", "laws"]);
-    copy.succeeds(&["run", "--package", "hamel-cli", "--", "joints", "explain", "cylindrical"]);
+    copy.succeeds(&[
+        "run",
+        "--package",
+        "hamel-cli",
+        "--",
+        "joints",
+        "explain",
+        "cylindrical",
+    ]);
 
     let kernels = copy.path("generated/src/joints/cylindrical.rs");
     let text = fs::read_to_string(&kernels).expect("the kernels");
     fs::write(&kernels, format!("{text}\n// edited\n")).expect("an edit");
     let stale = copy.check().expect_err("a file is stale");
-    assert!(stale.contains("stale") && stale.contains("cylindrical.rs"), "{stale}");
+    assert!(
+        stale.contains("stale") && stale.contains("cylindrical.rs"),
+        "{stale}"
+    );
     fs::write(&kernels, text).expect("the edit undone");
 
     fs::remove_file(copy.path("joint-specs/cylindrical.joint")).expect("the spec removed");
     let surplus = copy.check().expect_err("a file is surplus");
-    assert!(surplus.contains("surplus") && surplus.contains("cylindrical.rs"), "{surplus}");
+    assert!(
+        surplus.contains("surplus") && surplus.contains("cylindrical.rs"),
+        "{surplus}"
+    );
     copy.succeeds(&build);
     assert!(!copy.path("generated/src/joints/cylindrical.rs").exists());
     assert!(!copy.path("generated/pages/cylindrical.md").exists());

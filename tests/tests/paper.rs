@@ -6,15 +6,27 @@ use hamel_codegen::matrix::Matrix;
 use hamel_tests::derived;
 
 fn output(joint: &Derived, kind: KernelKind) -> &Matrix {
-    &joint.kernel(kind).expect("every joint has every kernel").outputs[0]
+    &joint
+        .kernel(kind)
+        .expect("every joint has every kernel")
+        .outputs[0]
 }
 
 fn structure(joint: &Derived, kind: KernelKind) -> Structure {
-    joint.kernel(kind).expect("every joint has every kernel").structure
+    joint
+        .kernel(kind)
+        .expect("every joint has every kernel")
+        .structure
 }
 
 fn same_on_manifold(joint: &Derived, a: &Matrix, b: &Matrix) -> bool {
-    joint.spec.manifold.value.ideal().normal_forms(&a.minus(b)).is_zero()
+    joint
+        .spec
+        .manifold
+        .value
+        .ideal()
+        .normal_forms(&a.minus(b))
+        .is_zero()
 }
 
 fn vector(symbols: &[Symbol]) -> Vec<Expr> {
@@ -44,8 +56,14 @@ fn ball_velocity_map_is_q_times_one_plus_half_phi() {
     assert!(same_on_manifold(&ball, &series(&ball), &expected));
     // By itself: S₀ is printed as the entries of Q, which needs cof Q = Q, and I + ½ ϕ~ as it stands.
     assert_eq!(ball.velocity_map_series.0, q(&ball));
-    assert_eq!(ball.velocity_map_series.1, Matrix::identity(3).plus(&phi.scale(&half())));
-    assert_eq!(*output(&ball, KernelKind::TwistMap), Matrix::identity(3).stack(&Matrix::zeros(3, 3)));
+    assert_eq!(
+        ball.velocity_map_series.1,
+        Matrix::identity(3).plus(&phi.scale(&half()))
+    );
+    assert_eq!(
+        *output(&ball, KernelKind::TwistMap),
+        Matrix::identity(3).stack(&Matrix::zeros(3, 3))
+    );
 }
 
 /// Example 5.
@@ -53,7 +71,10 @@ fn ball_velocity_map_is_q_times_one_plus_half_phi() {
 fn ball_j22_is_minus_p_tilde() {
     let ball = derived("ball");
     let p = vector(&ball.arguments.momentum);
-    assert_eq!(*output(&ball, KernelKind::J22), Matrix::tilde(&p).map(|entry| -entry));
+    assert_eq!(
+        *output(&ball, KernelKind::J22),
+        Matrix::tilde(&p).map(|entry| -entry)
+    );
 }
 
 /// (13), whose entries are those of Q.
@@ -63,12 +84,24 @@ fn planar_twist_map_is_that_of_example_2() {
     let q = q(&planar);
     let zero = Expr::zero;
     let rows = vec![
-        zero(), zero(), zero(),
-        zero(), zero(), zero(),
-        Expr::one(), zero(), zero(),
-        q.at(1, 2).clone(), q.at(0, 0).clone(), q.at(0, 1).clone(),
-        -q.at(0, 2), q.at(1, 0).clone(), q.at(1, 1).clone(),
-        zero(), zero(), zero(),
+        zero(),
+        zero(),
+        zero(),
+        zero(),
+        zero(),
+        zero(),
+        Expr::one(),
+        zero(),
+        zero(),
+        q.at(1, 2).clone(),
+        q.at(0, 0).clone(),
+        q.at(0, 1).clone(),
+        -q.at(0, 2),
+        q.at(1, 0).clone(),
+        q.at(1, 1).clone(),
+        zero(),
+        zero(),
+        zero(),
     ];
     let expected = Matrix::from_entries(6, 3, rows).expect("18 entries");
     assert_eq!(*output(&planar, KernelKind::TwistMap), expected);
@@ -78,9 +111,15 @@ fn planar_twist_map_is_that_of_example_2() {
 fn ad_of_se2(x: &[Expr]) -> Matrix {
     let zero = Expr::zero;
     let rows = vec![
-        zero(), zero(), zero(),
-        x[2].clone(), zero(), -&x[0],
-        -&x[1], x[0].clone(), zero(),
+        zero(),
+        zero(),
+        zero(),
+        x[2].clone(),
+        zero(),
+        -&x[0],
+        -&x[1],
+        x[0].clone(),
+        zero(),
     ];
     Matrix::from_entries(3, 3, rows).expect("9 entries")
 }
@@ -90,9 +129,18 @@ fn ad_of_se2(x: &[Expr]) -> Matrix {
 fn planar_velocity_map_has_a_first_order_part() {
     let planar = derived("planar");
     let ad = ad_of_se2(&vector(&planar.arguments.local));
-    assert_eq!(series(&planar), Matrix::identity(3).minus(&ad.scale(&half())));
-    assert_eq!(structure(&planar, KernelKind::VelocityMap), Structure::Identity);
-    assert_ne!(structure(&planar, KernelKind::VelocityMapGradient), Structure::Zero);
+    assert_eq!(
+        series(&planar),
+        Matrix::identity(3).minus(&ad.scale(&half()))
+    );
+    assert_eq!(
+        structure(&planar, KernelKind::VelocityMap),
+        Structure::Identity
+    );
+    assert_ne!(
+        structure(&planar, KernelKind::VelocityMapGradient),
+        Structure::Zero
+    );
 }
 
 /// With M = diag(J, m, m): `m v̇₂ − m v₁ v₃ = 0`, `m v̇₃ + m v₁ v₂ = 0`: the velocity is constant in world axes.
@@ -115,13 +163,23 @@ fn a_free_planar_body_moves_straight() {
 #[test]
 fn cart_constraint_and_reduced_j22() {
     let cart = derived("cart");
-    assert_eq!(*output(&cart, KernelKind::Constraint), Matrix::integers(&[[0], [0], [1]]));
+    assert_eq!(
+        *output(&cart, KernelKind::Constraint),
+        Matrix::integers(&[[0], [0], [1]])
+    );
     let basis = output(&cart, KernelKind::SpeedBasis);
     assert_eq!(*basis, Matrix::integers(&[[1, 0], [0, 1], [0, 0]]));
-    assert_eq!(structure(&cart, KernelKind::SpeedBasisGradient), Structure::Zero);
-    let reduced = basis.transpose().times(output(&cart, KernelKind::J22)).times(basis);
+    assert_eq!(
+        structure(&cart, KernelKind::SpeedBasisGradient),
+        Structure::Zero
+    );
+    let reduced = basis
+        .transpose()
+        .times(output(&cart, KernelKind::J22))
+        .times(basis);
     let lateral = Expr::symbol(&cart.arguments.momentum[2]);
-    let expected = Matrix::from_entries(2, 2, vec![Expr::zero(), -&lateral, lateral, Expr::zero()]).expect("4 entries");
+    let expected = Matrix::from_entries(2, 2, vec![Expr::zero(), -&lateral, lateral, Expr::zero()])
+        .expect("4 entries");
     assert_eq!(reduced, expected);
     assert_eq!(cart.speed_names, ["turn", "forward"]);
 }
@@ -131,10 +189,22 @@ fn cart_constraint_and_reduced_j22() {
 fn euclidean_joints_have_trivial_hamel_terms() {
     for name in ["revolute", "prismatic", "planar_euclidean"] {
         let joint = derived(name);
-        for kind in [KernelKind::VelocityMap, KernelKind::VelocityMapInverse, KernelKind::RetractDifferentialInverse] {
-            assert_eq!(structure(&joint, kind), Structure::Identity, "{name} {kind:?}");
+        for kind in [
+            KernelKind::VelocityMap,
+            KernelKind::VelocityMapInverse,
+            KernelKind::RetractDifferentialInverse,
+        ] {
+            assert_eq!(
+                structure(&joint, kind),
+                Structure::Identity,
+                "{name} {kind:?}"
+            );
         }
-        for kind in [KernelKind::VelocityMapGradient, KernelKind::Gamma, KernelKind::J22] {
+        for kind in [
+            KernelKind::VelocityMapGradient,
+            KernelKind::Gamma,
+            KernelKind::J22,
+        ] {
             assert_eq!(structure(&joint, kind), Structure::Zero, "{name} {kind:?}");
         }
     }
@@ -161,7 +231,12 @@ fn gamma_and_j22_are_two_forms_of_one_term() {
         let joint = derived(&name);
         let p = Matrix::symbols(&joint.arguments.momentum);
         let v = Matrix::symbols(&joint.arguments.velocity);
-        let sum = output(&joint, KernelKind::Gamma).times(&p).plus(&output(&joint, KernelKind::J22).times(&v));
-        assert!(same_on_manifold(&joint, &sum, &Matrix::zeros(v.rows(), 1)), "{name}");
+        let sum = output(&joint, KernelKind::Gamma)
+            .times(&p)
+            .plus(&output(&joint, KernelKind::J22).times(&v));
+        assert!(
+            same_on_manifold(&joint, &sum, &Matrix::zeros(v.rows(), 1)),
+            "{name}"
+        );
     }
 }

@@ -35,7 +35,7 @@ fn refusal(path: &Path) -> Result<String, Box<dyn Error>> {
         .ok_or("a file has a name")?
         .to_string_lossy();
     let text = fs::read_to_string(path)?;
-    match Scene::parse(&text, &name, &hamel_joints::registry()) {
+    match Scene::parse(&text, &name, &hamel_tests::paper_registry()) {
         Ok(_) => Ok(String::from("accepted\n")),
         Err(diagnostics) => Ok(diagnostics.to_string()),
     }

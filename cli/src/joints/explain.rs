@@ -14,6 +14,7 @@ pub struct Args {
 /// Prints the page of the joint.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let joint = source::derive(&args.joint)?;
-    let page = hamel_codegen::emit::explain_text(&joint).map_err(|error| Failure::Page(error.to_string()))?;
+    let page = hamel_codegen::emit::explain_text(&joint)
+        .map_err(|error| Failure::Page(error.to_string()))?;
     output::print(&page)
 }

@@ -9,9 +9,7 @@ pub fn find(name: &str) -> Result<(String, String), Failure> {
     if name.contains(['/', '\\']) || name.ends_with(".joint") {
         return read(Path::new(name));
     }
-    match hamel_joints::specs()
-        .find(|(known, _)| *known == name)
-    {
+    match hamel_joints::specs().find(|(known, _)| *known == name) {
         Some((known, text)) => Ok((format!("{known}.joint"), text.to_owned())),
         None => Err(unknown(name)),
     }
@@ -26,9 +24,7 @@ fn read(path: &Path) -> Result<(String, String), Failure> {
 }
 
 fn unknown(name: &str) -> Failure {
-    let names: Vec<&str> = hamel_joints::specs()
-        .map(|(known, _)| known)
-        .collect();
+    let names: Vec<&str> = hamel_joints::specs().map(|(known, _)| known).collect();
     let nearest = names
         .iter()
         .max_by(|a, b| strsim::jaro(a, name).total_cmp(&strsim::jaro(b, name)));

@@ -29,7 +29,9 @@ pub fn retract(spec: &JointSpec) -> Option<Body> {
         let xi = local_element(spec, n);
         let mut square = None;
         let exp = algebra::exp_by(&xi, |order, s| {
-            let bound = square.get_or_insert_with(|| steps.bind(&format!("{prefix}theta_squared"), s.clone())).clone();
+            let bound = square
+                .get_or_insert_with(|| steps.bind(&format!("{prefix}theta_squared"), s.clone()))
+                .clone();
             steps.bind(&format!("{prefix}c{order}"), bound.stumpff(order))
         })?;
         let exp = match factor.kind {
@@ -49,7 +51,12 @@ pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
         let relative = factor.inverse(&factor.matrix())?.times(&goal.matrix());
         let prefix = prefix(spec, factor);
         let standard = logarithm(factor.kind, &relative, &prefix, &mut steps)?;
-        let freedoms = spec.freedoms.value.iter().enumerate().filter(|(_, f)| f.factor == n);
+        let freedoms = spec
+            .freedoms
+            .value
+            .iter()
+            .enumerate()
+            .filter(|(_, f)| f.factor == n);
         let (places, freedoms): (Vec<usize>, Vec<&Freedom>) = freedoms.unzip();
         for (place, value) in places.into_iter().zip(in_basis(&freedoms, &standard)?) {
             locals[place] = value;
@@ -60,11 +67,19 @@ pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
 
 /// Coordinates in the declared basis of the element with the given standard coordinates.
 fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Option<Vec<Expr>> {
-    let columns: Vec<Vec<Expr>> = freedoms.iter().map(|freedom| freedom.generator.clone()).collect();
+    let columns: Vec<Vec<Expr>> = freedoms
+        .iter()
+        .map(|freedom| freedom.generator.clone())
+        .collect();
     let basis = Matrix::from_columns(standard.len(), &columns);
     let inverse = basis.determinant(&Expr::clone).recip()?;
     let inverse = basis.adjugate(&Expr::clone).scale(&inverse);
-    Some(inverse.times(&Matrix::column_vector(standard.to_vec())).entries().to_vec())
+    Some(
+        inverse
+            .times(&Matrix::column_vector(standard.to_vec()))
+            .entries()
+            .to_vec(),
+    )
 }
 
 /// Standard coordinates of the logarithm of a group element given as a matrix.
@@ -97,7 +112,10 @@ fn logarithm(kind: Kind, m: &Matrix, prefix: &str, steps: &mut Steps) -> Option<
             let once = steps.bind_matrix(&named("r_cross_t"), &tilde.times(&p));
             let twice = tilde.times(&once).scale(&g);
             let rho = p.minus(&once.scale(&Expr::fraction(1, 2))).plus(&twice);
-            omega.into_iter().chain(rho.entries().iter().cloned()).collect()
+            omega
+                .into_iter()
+                .chain(rho.entries().iter().cloned())
+                .collect()
         }
         Kind::S2 => return None,
     })
@@ -105,7 +123,11 @@ fn logarithm(kind: Kind, m: &Matrix, prefix: &str, steps: &mut Steps) -> Option<
 
 fn rotation_vector(rotation: Matrix, prefix: &str, steps: &mut Steps) -> Vec<Expr> {
     let names = ["r1", "r2", "r3"].map(|name| format!("{prefix}{name}"));
-    steps.call(Primitive::RotationVector, rotation, &names.each_ref().map(String::as_str))
+    steps.call(
+        Primitive::RotationVector,
+        rotation,
+        &names.each_ref().map(String::as_str),
+    )
 }
 
 /// The rotation matrix of a unit quaternion `(w, x, y, z)`.
@@ -113,16 +135,24 @@ pub fn rotation_of_quaternion(q: &[Expr]) -> Matrix {
     let vector = Matrix::tilde(&q[1..4]);
     let two = Expr::integer(2);
     let once = vector.scale(&(&two * &q[0]));
-    Matrix::identity(3).plus(&once).plus(&vector.times(&vector).scale(&two))
+    Matrix::identity(3)
+        .plus(&once)
+        .plus(&vector.times(&vector).scale(&two))
 }
 
 /// `D⁻¹ u` with `D = Σ (−ad_ϕ)ⁿ/(n+1)!`: `u + ½ [ϕ, u] + G [ϕ, [ϕ, u]] + …`; `None` where no closed form fits.
-pub fn retract_differential_inverse(spec: &JointSpec, constants: &[Matrix], rate: &[Symbol]) -> Option<Body> {
+pub fn retract_differential_inverse(
+    spec: &JointSpec,
+    constants: &[Matrix],
+    rate: &[Symbol],
+) -> Option<Body> {
     let size = rate.len();
     let mut steps = Steps::default();
     let mut rates = Matrix::symbols(rate);
     for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
-        let places: Vec<usize> = (0..size).filter(|&k| spec.freedoms.value[k].factor == n).collect();
+        let places: Vec<usize> = (0..size)
+            .filter(|&k| spec.freedoms.value[k].factor == n)
+            .collect();
         let ad = restricted_adjoint(spec, constants, &places);
         if ad.is_zero() {
             continue;
@@ -130,9 +160,11 @@ pub fn retract_differential_inverse(spec: &JointSpec, constants: &[Matrix], rate
         let prefix = prefix(spec, factor);
         let rate = rates.select_rows(&places);
         let solved = inverse_differential(&ad, &rate, &prefix, &mut steps)?;
-        rates = Matrix::from_fn(size, 1, |i, _| match places.iter().position(|&place| place == i) {
-            Some(row) => solved.at(row, 0).clone(),
-            None => rates.at(i, 0).clone(),
+        rates = Matrix::from_fn(size, 1, |i, _| {
+            match places.iter().position(|&place| place == i) {
+                Some(row) => solved.at(row, 0).clone(),
+                None => rates.at(i, 0).clone(),
+            }
         });
     }
     Some((steps.finish(), rates))
@@ -141,12 +173,19 @@ pub fn retract_differential_inverse(spec: &JointSpec, constants: &[Matrix], rate
 /// `ad_ϕ` on the freedoms at `places`: entry (i, j) is `Σ_k c^i_kj ϕ_k`.
 fn restricted_adjoint(spec: &JointSpec, constants: &[Matrix], places: &[usize]) -> Matrix {
     Matrix::from_fn(places.len(), places.len(), |i, j| {
-        let term = |&k: &usize| constants[k].at(places[i], places[j]) * &Expr::symbol(&spec.freedoms.value[k].local);
+        let term = |&k: &usize| {
+            constants[k].at(places[i], places[j]) * &Expr::symbol(&spec.freedoms.value[k].local)
+        };
         places.iter().map(term).sum()
     })
 }
 
-fn inverse_differential(ad: &Matrix, rate: &Matrix, prefix: &str, steps: &mut Steps) -> Option<Matrix> {
+fn inverse_differential(
+    ad: &Matrix,
+    rate: &Matrix,
+    prefix: &str,
+    steps: &mut Steps,
+) -> Option<Matrix> {
     let named = |name: &str| format!("{prefix}{name}");
     let square = ad.times(ad);
     let once = steps.bind_matrix(&named("bracket"), &ad.times(rate));
@@ -160,7 +199,12 @@ fn inverse_differential(ad: &Matrix, rate: &Matrix, prefix: &str, steps: &mut St
         let s = &-square.trace() * &Expr::fraction(1, rank);
         let simple = cube.plus(&ad.scale(&s)).is_zero();
         let two_s = &s * &Expr::integer(2);
-        let double = || cube.times(&square).plus(&cube.scale(&two_s)).plus(&ad.scale(&s.square())).is_zero();
+        let double = || {
+            cube.times(&square)
+                .plus(&cube.scale(&two_s))
+                .plus(&ad.scale(&s.square()))
+                .is_zero()
+        };
         if !simple && !double() {
             continue;
         }
@@ -175,7 +219,11 @@ fn inverse_differential(ad: &Matrix, rate: &Matrix, prefix: &str, steps: &mut St
         let alpha = steps.bind(&named("alpha"), &g - &(&theta_squared * &slope));
         let thrice = steps.bind_matrix(&named("triple_bracket"), &ad.times(&twice));
         let fourth = ad.times(&thrice);
-        return Some(linear.plus(&twice.scale(&alpha)).minus(&fourth.scale(&slope)));
+        return Some(
+            linear
+                .plus(&twice.scale(&alpha))
+                .minus(&fourth.scale(&slope)),
+        );
     }
     None
 }
@@ -211,7 +259,9 @@ fn projected_factor(factor: &Factor, prefix: &str, steps: &mut Steps) -> Vec<Exp
         }
         Kind::So3 | Kind::Se3 => {
             let m = factor.matrix();
-            let names: Vec<String> = (0..9).map(|n| format!("{prefix}r{}{}", n / 3 + 1, n % 3 + 1)).collect();
+            let names: Vec<String> = (0..9)
+                .map(|n| format!("{prefix}r{}{}", n / 3 + 1, n % 3 + 1))
+                .collect();
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let r = steps.call(Primitive::NearestRotation, m.block(0, 0, 3, 3), &names);
             let turned = Matrix::from_fn(m.rows(), m.columns(), |i, j| match i < 3 && j < 3 {
@@ -226,13 +276,23 @@ fn projected_factor(factor: &Factor, prefix: &str, steps: &mut Steps) -> Vec<Exp
 fn normalised(q: &[Expr], prefix: &str, steps: &mut Steps) -> Vec<Expr> {
     let square: Expr = q.iter().map(Expr::square).sum();
     let norm = steps.bind(&format!("{prefix}norm"), square.sqrt());
-    let inverse = steps.bind(&format!("{prefix}inverse_norm"), norm.recip().unwrap_or_default());
+    let inverse = steps.bind(
+        &format!("{prefix}inverse_norm"),
+        norm.recip().unwrap_or_default(),
+    );
     q.iter().map(|entry| entry * &inverse).collect()
 }
 
 /// The relations whose residual says how far Q is off its manifold: enough of them, none twice.
 pub fn residual(spec: &JointSpec) -> Matrix {
-    Matrix::column_vector(spec.manifold.value.factors().iter().flat_map(residual_of_factor).collect())
+    Matrix::column_vector(
+        spec.manifold
+            .value
+            .factors()
+            .iter()
+            .flat_map(residual_of_factor)
+            .collect(),
+    )
 }
 
 fn residual_of_factor(factor: &Factor) -> Vec<Expr> {
@@ -243,7 +303,10 @@ fn residual_of_factor(factor: &Factor) -> Vec<Expr> {
             let upper = (0..3).flat_map(|i| (i..3).map(move |j| (i, j)));
             // RᵀR = I leaves reflections; the determinant does not.
             let orientation = &r.determinant(&Expr::clone) - &Expr::one();
-            upper.map(|(i, j)| gram.at(i, j).clone()).chain([orientation]).collect()
+            upper
+                .map(|(i, j)| gram.at(i, j).clone())
+                .chain([orientation])
+                .collect()
         }
         _ => factor.relations(),
     }

@@ -20,7 +20,12 @@ pub fn gamma(s: &VelocityMap, s_inverse: &Matrix, velocity: &Matrix) -> Matrix {
 pub fn j22(s: &VelocityMap, s_inverse: &Matrix, momentum: &Matrix) -> Matrix {
     let size = s.base.rows();
     let b = Matrix::from_fn(size, size, |i, m| -> Expr {
-        (0..size).map(|l| s.slopes[m].at(l, i) * momentum.at(l, 0)).sum()
+        (0..size)
+            .map(|l| s.slopes[m].at(l, i) * momentum.at(l, 0))
+            .sum()
     });
-    s_inverse.transpose().times(&b.transpose().minus(&b)).times(s_inverse)
+    s_inverse
+        .transpose()
+        .times(&b.transpose().minus(&b))
+        .times(s_inverse)
 }

@@ -11,7 +11,11 @@ use crate::spec::code;
 
 /// All kernels of a joint.
 pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
-    let maker = Maker { spec, x: expansion, ideal: spec.manifold.value.ideal() };
+    let maker = Maker {
+        spec,
+        x: expansion,
+        ideal: spec.manifold.value.ideal(),
+    };
     let mut kernels = maker.pose_and_velocity();
     kernels.extend(maker.nonholonomic());
     kernels.extend(maker.finite_maps()?);
@@ -46,15 +50,27 @@ impl Maker<'_> {
         let home = Matrix::column_vector(self.spec.manifold.value.home());
         vec![
             plain(KernelKind::Home, vec![home]),
-            plain(KernelKind::Pose, vec![pose.rotation.clone(), pose.translation.clone()]),
+            plain(
+                KernelKind::Pose,
+                vec![pose.rotation.clone(), pose.translation.clone()],
+            ),
             plain(KernelKind::TwistMap, vec![self.x.twist_map.clone()]),
-            plain(KernelKind::TwistMapChild, vec![self.x.twist_map_child.clone()]),
+            plain(
+                KernelKind::TwistMapChild,
+                vec![self.x.twist_map_child.clone()],
+            ),
             plain(KernelKind::TwistMapChildGradient, child_slopes.collect()),
             plain(KernelKind::VelocityMap, vec![s.base.clone()]),
             plain(KernelKind::VelocityMapInverse, vec![inverse.clone()]),
             plain(KernelKind::VelocityMapGradient, s.slopes.clone()),
-            plain(KernelKind::Gamma, vec![self.normal(&hamel::gamma(s, inverse, &velocity))]),
-            plain(KernelKind::J22, vec![self.normal(&hamel::j22(s, inverse, &momentum))]),
+            plain(
+                KernelKind::Gamma,
+                vec![self.normal(&hamel::gamma(s, inverse, &velocity))],
+            ),
+            plain(
+                KernelKind::J22,
+                vec![self.normal(&hamel::j22(s, inverse, &momentum))],
+            ),
         ]
     }
 
@@ -71,11 +87,17 @@ impl Maker<'_> {
         let (spec, arguments) = (self.spec, &self.x.arguments);
         let missing = || vec![no_closed_form(spec)];
         let (retract_steps, retract) = finite::retract(spec).ok_or_else(missing)?;
-        let (local_steps, local) = finite::local(spec, &spec.manifold.value.target()).ok_or_else(missing)?;
-        let (differential_steps, differential) =
-            finite::retract_differential_inverse(spec, &self.x.structure_constants, &arguments.velocity).ok_or_else(missing)?;
+        let (local_steps, local) =
+            finite::local(spec, &spec.manifold.value.target()).ok_or_else(missing)?;
+        let (differential_steps, differential) = finite::retract_differential_inverse(
+            spec,
+            &self.x.structure_constants,
+            &arguments.velocity,
+        )
+        .ok_or_else(missing)?;
         let (project_steps, project) = finite::project(spec);
-        let identity = |value: &Matrix, symbols: &[crate::expr::Symbol]| *value == Matrix::symbols(symbols);
+        let identity =
+            |value: &Matrix, symbols: &[crate::expr::Symbol]| *value == Matrix::symbols(symbols);
         let differential_structure = match identity(&differential, &arguments.velocity) {
             true => Structure::Identity,
             false => Structure::General,
@@ -85,19 +107,42 @@ impl Maker<'_> {
             false => Structure::General,
         };
         Ok(vec![
-            plain(KernelKind::ConfigurationRate, vec![self.configuration_rate()]),
-            with(KernelKind::Retract, retract_steps, retract, Structure::General),
+            plain(
+                KernelKind::ConfigurationRate,
+                vec![self.configuration_rate()],
+            ),
+            with(
+                KernelKind::Retract,
+                retract_steps,
+                retract,
+                Structure::General,
+            ),
             with(KernelKind::Local, local_steps, local, Structure::General),
-            with(KernelKind::RetractDifferentialInverse, differential_steps, differential, differential_structure),
-            with(KernelKind::Project, project_steps, project, project_structure),
+            with(
+                KernelKind::RetractDifferentialInverse,
+                differential_steps,
+                differential,
+                differential_structure,
+            ),
+            with(
+                KernelKind::Project,
+                project_steps,
+                project,
+                project_structure,
+            ),
             plain(KernelKind::Residual, vec![finite::residual(spec)]),
         ])
     }
 
     /// `Q̇ = Σ_k δ_k (S₀⁻¹ v)_k`, (31).
     fn configuration_rate(&self) -> Matrix {
-        let rates = self.x.velocity_map_inverse.times(&Matrix::symbols(&self.x.arguments.velocity));
-        let directions: Vec<Vec<_>> = (0..self.x.shape.freedoms).map(|k| self.x.motion.direction(k).to_vec()).collect();
+        let rates = self
+            .x
+            .velocity_map_inverse
+            .times(&Matrix::symbols(&self.x.arguments.velocity));
+        let directions: Vec<Vec<_>> = (0..self.x.shape.freedoms)
+            .map(|k| self.x.motion.direction(k).to_vec())
+            .collect();
         let directions = Matrix::from_columns(self.x.shape.configuration, &directions);
         let rate = directions.times(&rates);
         self.short(&rate)
@@ -111,10 +156,18 @@ impl Maker<'_> {
         let reduced = self.normal(&self.x.twist_map_child.times(basis));
         let zero = Matrix::zeros(6, basis.columns());
         let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| {
-            sum.plus(&self.normal(&self.x.motion.along_each(&reduced, k)).scale(rates.at(k, 0)))
+            sum.plus(
+                &self
+                    .normal(&self.x.motion.along_each(&reduced, k))
+                    .scale(rates.at(k, 0)),
+            )
         });
         let acceleration = self.normal(&rate.times(&speeds));
-        let momentum = self.normal(&rate.transpose().times(&Matrix::symbols(&self.x.arguments.wrench)));
+        let momentum = self.normal(
+            &rate
+                .transpose()
+                .times(&Matrix::symbols(&self.x.arguments.wrench)),
+        );
         vec![
             plain(KernelKind::BiasAcceleration, vec![acceleration]),
             plain(KernelKind::BiasMomentum, vec![momentum]),
@@ -125,28 +178,46 @@ impl Maker<'_> {
 /// A kernel without intermediate lines.
 fn plain(kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
     let structure = structure_of(&outputs);
-    Kernel { kind, steps: vec![], outputs, structure }
+    Kernel {
+        kind,
+        steps: vec![],
+        outputs,
+        structure,
+    }
 }
 
 fn with(kind: KernelKind, steps: Vec<Step>, output: Matrix, structure: Structure) -> Kernel {
-    Kernel { kind, steps, outputs: vec![output], structure }
+    Kernel {
+        kind,
+        steps,
+        outputs: vec![output],
+        structure,
+    }
 }
 
 fn structure_of(outputs: &[Matrix]) -> Structure {
     let depends = |role: Role| {
         let entries = outputs.iter().flat_map(|output| output.entries());
-        entries.clone().any(|entry| entry.symbols().iter().any(|symbol| symbol.role == role))
+        entries
+            .clone()
+            .any(|entry| entry.symbols().iter().any(|symbol| symbol.role == role))
     };
     match outputs {
         _ if outputs.iter().all(Matrix::is_zero) => Structure::Zero,
-        [output] if output.rows() == output.columns() && output.is_identity() => Structure::Identity,
+        [output] if output.rows() == output.columns() && output.is_identity() => {
+            Structure::Identity
+        }
         _ if !depends(Role::Coordinate) => Structure::Constant,
         _ => Structure::General,
     }
 }
 
 fn no_closed_form(spec: &JointSpec) -> Diagnostic {
-    Diagnostic::new(code::NO_CLOSED_FORM, spec.freedoms.span.clone(), "exp of this basis has no closed form that the generator knows")
-        .label("Φ = Q exp(ϕ) cannot be emitted")
-        .help("use a basis of a known algebra: r1 … r6, so2, se2, so3, se3")
+    Diagnostic::new(
+        code::NO_CLOSED_FORM,
+        spec.freedoms.span.clone(),
+        "exp of this basis has no closed form that the generator knows",
+    )
+    .label("Φ = Q exp(ϕ) cannot be emitted")
+    .help("use a basis of a known algebra: r1 … r6, so2, se2, so3, se3")
 }

@@ -72,8 +72,11 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
     let velocity_map = VelocityMap::new(&jacobian, &twist_map, &left_inverse, &motion, ideal);
     let simplify = |e: &Expr| ideal.normal_form(e);
     let determinant = velocity_map.base.determinant(&simplify);
-    let inverse = determinant.recip().ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
-    let velocity_map_inverse = ideal.normal_forms(&velocity_map.base.adjugate(&simplify).scale(&inverse));
+    let inverse = determinant
+        .recip()
+        .ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
+    let velocity_map_inverse =
+        ideal.normal_forms(&velocity_map.base.adjugate(&simplify).scale(&inverse));
     let nonholonomic = Nonholonomic::new(spec, &motion, ideal)?;
     let twists = ideal.normal_forms(&to_child.times(&jacobian.base));
     Ok(Expansion {
@@ -101,16 +104,29 @@ fn arguments(spec: &JointSpec) -> Arguments {
     let manifold = &spec.manifold.value;
     let freedoms = &spec.freedoms.value;
     let named = |role: Role, prefix: &str| -> Vec<Symbol> {
-        let name = |(i, freedom): (usize, &crate::model::Freedom)| Symbol::new(role, i, &format!("{prefix}_{}", freedom.name));
+        let name = |(i, freedom): (usize, &crate::model::Freedom)| {
+            Symbol::new(role, i, &format!("{prefix}_{}", freedom.name))
+        };
         freedoms.iter().enumerate().map(name).collect()
     };
     let speeds = nonholonomic::speed_names(spec);
     Arguments {
         configuration: manifold.coordinates(),
-        target: manifold.target().into_iter().flat_map(|factor| factor.coordinates).collect(),
-        local: freedoms.iter().map(|freedom| freedom.local.clone()).collect(),
+        target: manifold
+            .target()
+            .into_iter()
+            .flat_map(|factor| factor.coordinates)
+            .collect(),
+        local: freedoms
+            .iter()
+            .map(|freedom| freedom.local.clone())
+            .collect(),
         velocity: named(Role::Velocity, "v"),
-        speeds: speeds.iter().enumerate().map(|(i, name)| Symbol::new(Role::Speed, i, &format!("speed_{name}"))).collect(),
+        speeds: speeds
+            .iter()
+            .enumerate()
+            .map(|(i, name)| Symbol::new(Role::Speed, i, &format!("speed_{name}")))
+            .collect(),
         momentum: named(Role::Momentum, "p"),
         wrench: Symbol::series(Role::Wrench, "h", 6),
     }
@@ -135,7 +151,11 @@ fn check_dimensions(spec: &JointSpec) -> Result<(), Vec<Diagnostic>> {
             })
         })
         .collect();
-    if errors.is_empty() { Ok(()) } else { Err(errors) }
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(errors)
+    }
 }
 
 /// `c^i_kj` with `[b_k, b_j] = Σ_i c^i_kj b_i`, in the declared basis. The language has checked that the basis closes.
@@ -145,23 +165,40 @@ fn structure_constants(spec: &JointSpec) -> Vec<Matrix> {
     let mut constants = vec![vec![vec![Expr::zero(); count]; count]; count];
     for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
         let places: Vec<usize> = (0..count).filter(|&k| freedoms[k].factor == n).collect();
-        let basis = places.iter().map(|&k| freedoms[k].generator.clone()).collect::<Vec<_>>();
+        let basis = places
+            .iter()
+            .map(|&k| freedoms[k].generator.clone())
+            .collect::<Vec<_>>();
         let columns = Matrix::from_columns(factor.kind.dimension(), &basis);
         for (a, &k) in places.iter().enumerate() {
             for (b, &j) in places.iter().enumerate() {
-                let (x, y) = (algebra::hat(factor.kind, &basis[a]), algebra::hat(factor.kind, &basis[b]));
+                let (x, y) = (
+                    algebra::hat(factor.kind, &basis[a]),
+                    algebra::hat(factor.kind, &basis[b]),
+                );
                 let bracket = algebra::vee(factor.kind, &algebra::commutator(&x, &y));
-                for (place, value) in places.iter().zip(algebra::coordinates_in(&columns, &bracket).unwrap_or_default()) {
+                for (place, value) in places
+                    .iter()
+                    .zip(algebra::coordinates_in(&columns, &bracket).unwrap_or_default())
+                {
                     constants[k][*place][j] = value;
                 }
             }
         }
     }
-    constants.iter().map(|slice| Matrix::from_fn(count, count, |i, j| slice[i][j].clone())).collect()
+    constants
+        .iter()
+        .map(|slice| Matrix::from_fn(count, count, |i, j| slice[i][j].clone()))
+        .collect()
 }
 
 /// X: as declared, else the velocity of Φ itself; read in the parent frame, the constant that the latter is in the child frame.
-fn twist_map(spec: &JointSpec, jacobian: &TwistJacobian, to_child: &Matrix, ideal: &Ideal) -> Result<Matrix, Vec<Diagnostic>> {
+fn twist_map(
+    spec: &JointSpec,
+    jacobian: &TwistJacobian,
+    to_child: &Matrix,
+    ideal: &Ideal,
+) -> Result<Matrix, Vec<Diagnostic>> {
     match &spec.twist_map {
         Some(declared) => Ok(declared.value.clone()),
         None => twist_map_in_frame(spec, jacobian, to_child, ideal),
@@ -183,25 +220,43 @@ pub(crate) fn twist_map_in_frame(
     match child.is_constant() {
         true => Ok(child),
         false => Err(vec![
-            Diagnostic::new(code::PARENT_FRAME, spec.velocity.span.clone(), "this joint has no constant velocity directions to read in the parent frame")
-                .label("declared here")
-                .note(format!("in the child frame they are\n{child}"))
-                .help("declare X, the twist of the child in the parent frame for each velocity"),
+            Diagnostic::new(
+                code::PARENT_FRAME,
+                spec.velocity.span.clone(),
+                "this joint has no constant velocity directions to read in the parent frame",
+            )
+            .label("declared here")
+            .note(format!("in the child frame they are\n{child}"))
+            .help("declare X, the twist of the child in the parent frame for each velocity"),
         ]),
     }
 }
 
 fn singular_twist_map(spec: &JointSpec, twist_map: &Matrix) -> Diagnostic {
-    let span = spec.twist_map.as_ref().map_or(spec.pose.span.clone(), |declared| declared.span.clone());
-    Diagnostic::new(code::DEPENDENT_TWISTS, span, "X has dependent columns at every configuration")
-        .label("some velocity moves nothing")
-        .note(format!("X =\n{twist_map}"))
-        .help("each velocity must move the child in a way of its own")
+    let span = spec
+        .twist_map
+        .as_ref()
+        .map_or(spec.pose.span.clone(), |declared| declared.span.clone());
+    Diagnostic::new(
+        code::DEPENDENT_TWISTS,
+        span,
+        "X has dependent columns at every configuration",
+    )
+    .label("some velocity moves nothing")
+    .note(format!("X =\n{twist_map}"))
+    .help("each velocity must move the child in a way of its own")
 }
 
 fn singular_velocity_map(spec: &JointSpec, base: &Matrix) -> Diagnostic {
-    let span = spec.twist_map.as_ref().map_or(spec.freedoms.span.clone(), |declared| declared.span.clone());
-    Diagnostic::new(code::SINGULAR_VELOCITY_MAP, span, "S₀ is singular at every configuration")
-        .label("the velocities do not determine the motion")
-        .note(format!("S₀ =\n{base}"))
+    let span = spec
+        .twist_map
+        .as_ref()
+        .map_or(spec.freedoms.span.clone(), |declared| declared.span.clone());
+    Diagnostic::new(
+        code::SINGULAR_VELOCITY_MAP,
+        span,
+        "S₀ is singular at every configuration",
+    )
+    .label("the velocities do not determine the motion")
+    .note(format!("S₀ =\n{base}"))
 }

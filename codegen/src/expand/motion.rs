@@ -19,7 +19,12 @@ pub struct Motion {
 pub fn local_element(spec: &JointSpec, factor: usize) -> Matrix {
     let kind = spec.manifold.value.factors()[factor].kind;
     let mut standard = vec![Expr::zero(); kind.dimension()];
-    for freedom in spec.freedoms.value.iter().filter(|freedom| freedom.factor == factor) {
+    for freedom in spec
+        .freedoms
+        .value
+        .iter()
+        .filter(|freedom| freedom.factor == factor)
+    {
         for (sum, component) in standard.iter_mut().zip(&freedom.generator) {
             *sum += &(component * &Expr::symbol(&freedom.local));
         }
@@ -40,11 +45,30 @@ impl Motion {
 
     /// Any Φ, given as stored scalars in Q and ϕ.
     pub fn of_map(spec: &JointSpec, moved: &[Expr]) -> Self {
-        let locals: Vec<Symbol> = spec.freedoms.value.iter().map(|freedom| freedom.local.clone()).collect();
-        let at_base = |entries: &[Expr]| entries.iter().map(|e| e.at_zero(&locals)).collect::<Vec<_>>();
-        let along = |entries: &[Expr], k: usize| entries.iter().map(|e| e.derivative(&locals[k])).collect::<Vec<_>>();
+        let locals: Vec<Symbol> = spec
+            .freedoms
+            .value
+            .iter()
+            .map(|freedom| freedom.local.clone())
+            .collect();
+        let at_base = |entries: &[Expr]| {
+            entries
+                .iter()
+                .map(|e| e.at_zero(&locals))
+                .collect::<Vec<_>>()
+        };
+        let along = |entries: &[Expr], k: usize| {
+            entries
+                .iter()
+                .map(|e| e.derivative(&locals[k]))
+                .collect::<Vec<_>>()
+        };
         let slopes: Vec<Vec<Expr>> = (0..locals.len()).map(|k| along(moved, k)).collect();
-        let second = |k: usize| (0..locals.len()).map(|l| at_base(&along(&slopes[k], l))).collect();
+        let second = |k: usize| {
+            (0..locals.len())
+                .map(|l| at_base(&along(&slopes[k], l)))
+                .collect()
+        };
         Self {
             coordinates: spec.manifold.value.coordinates(),
             first: slopes.iter().map(|slope| at_base(slope)).collect(),
@@ -74,7 +98,11 @@ impl Motion {
 
     /// ∂²/∂ϕ_k∂ϕ_l at ϕ = 0 of a function of Φ(Q, ϕ).
     pub fn along_both(&self, function: &Expr, k: usize, l: usize) -> Expr {
-        let curved = self.coordinates.iter().zip(&self.first[k]).zip(&self.second[k][l]);
+        let curved = self
+            .coordinates
+            .iter()
+            .zip(&self.first[k])
+            .zip(&self.second[k][l]);
         curved
             .map(|((symbol, first), second)| {
                 let slope = function.derivative(symbol);
@@ -87,7 +115,13 @@ impl Motion {
     }
 
     fn contract(&self, function: &Expr, direction: &[Expr]) -> Expr {
-        let terms = self.coordinates.iter().zip(direction).filter(|(_, speed)| !speed.is_zero());
-        terms.map(|(symbol, speed)| &function.derivative(symbol) * speed).sum()
+        let terms = self
+            .coordinates
+            .iter()
+            .zip(direction)
+            .filter(|(_, speed)| !speed.is_zero());
+        terms
+            .map(|(symbol, speed)| &function.derivative(symbol) * speed)
+            .sum()
     }
 }

@@ -24,7 +24,10 @@ impl std::fmt::Display for Certificate {
                 write!(f, "the minor of rows {} is {value}", rows.join(", "))
             }
             Self::Gram(value) => write!(f, "det(MᵀM) = {value}"),
-            Self::NoCommonZero(count) => write!(f, "the {count} minors and the manifold's relations generate 1"),
+            Self::NoCommonZero(count) => write!(
+                f,
+                "the {count} minors and the manifold's relations generate 1"
+            ),
         }
     }
 }
@@ -41,10 +44,12 @@ pub fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
     }
     (size - 1..count)
         .flat_map(|last| {
-            combinations(last, size - 1).into_iter().map(move |mut chosen| {
-                chosen.push(last);
-                chosen
-            })
+            combinations(last, size - 1)
+                .into_iter()
+                .map(move |mut chosen| {
+                    chosen.push(last);
+                    chosen
+                })
         })
         .collect()
 }

@@ -52,7 +52,11 @@ impl Steps {
     pub fn call(&mut self, primitive: Primitive, argument: Matrix, names: &[&str]) -> Vec<Expr> {
         let outputs: Vec<Symbol> = names.iter().map(|name| self.fresh(name)).collect();
         let values = outputs.iter().map(Expr::symbol).collect();
-        self.steps.push(Step::Call { primitive, argument, outputs });
+        self.steps.push(Step::Call {
+            primitive,
+            argument,
+            outputs,
+        });
         values
     }
 }

@@ -29,7 +29,7 @@ pub fn scope<T>(limit: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
 }
 
 /// Spends `amount`; false where the budget is exhausted.
-pub(super) fn spend(amount: u64) -> bool {
+pub(crate) fn spend(amount: u64) -> bool {
     let left = REMAINING.get().saturating_sub(amount);
     REMAINING.set(left);
     left > 0

@@ -60,10 +60,17 @@ impl Expr {
     }
 }
 
-fn substituted_term(monomial: &Monomial, coefficient: &Rational, replaced: &BTreeMap<Atom, Expr>) -> Expr {
+fn substituted_term(
+    monomial: &Monomial,
+    coefficient: &Rational,
+    replaced: &BTreeMap<Atom, Expr>,
+) -> Expr {
     let mut product = Expr::rational(coefficient.clone());
     for (atom, power) in monomial.factors() {
-        let factor = replaced.get(atom).cloned().unwrap_or_else(|| Expr::atom(atom.clone()));
+        let factor = replaced
+            .get(atom)
+            .cloned()
+            .unwrap_or_else(|| Expr::atom(atom.clone()));
         let factor = match power < 0 {
             true => factor.recip().unwrap_or_default(),
             false => factor,
@@ -83,7 +90,11 @@ fn substituted_atom(atom: &Atom, values: &BTreeMap<Symbol, Expr>) -> Option<Expr
                 .iter()
                 .any(|argument| argument.symbols().iter().any(|s| values.contains_key(s)));
             touched.then(|| {
-                let arguments: Vec<Expr> = application.arguments.iter().map(|a| a.substitute(values)).collect();
+                let arguments: Vec<Expr> = application
+                    .arguments
+                    .iter()
+                    .map(|a| a.substitute(values))
+                    .collect();
                 Expr::applied(application.function, &arguments)
             })
         }
@@ -99,12 +110,20 @@ fn derivative_of_atom(atom: &Atom, symbol: &Symbol) -> Expr {
 }
 
 fn derivative_of_function(application: &Application, atom: &Atom, symbol: &Symbol) -> Expr {
-    let inner: Vec<Expr> = application.arguments.iter().map(|a| a.derivative(symbol)).collect();
+    let inner: Vec<Expr> = application
+        .arguments
+        .iter()
+        .map(|a| a.derivative(symbol))
+        .collect();
     if inner.iter().all(Expr::is_zero) {
         return Expr::zero();
     }
     let itself = Expr::atom(atom.clone());
-    match (application.function, application.arguments.as_slice(), inner.as_slice()) {
+    match (
+        application.function,
+        application.arguments.as_slice(),
+        inner.as_slice(),
+    ) {
         (Function::Cos, [x], [dx]) => -(&x.sin() * dx),
         (Function::Sin, [x], [dx]) => &x.cos() * dx,
         (Function::Exp, _, [dx]) => &itself * dx,

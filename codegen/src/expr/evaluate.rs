@@ -19,7 +19,8 @@ pub trait Number: Clone {
     /// The integer power.
     fn power(&self, exponent: i32) -> Self {
         let one = self.rational(&Rational::from_integer(1.into()));
-        let power = (0..exponent.unsigned_abs()).fold(one.clone(), |product, _| product.times(self));
+        let power =
+            (0..exponent.unsigned_abs()).fold(one.clone(), |product, _| product.times(self));
         match exponent < 0 {
             true => one.over(&power),
             false => power,
@@ -30,13 +31,16 @@ pub trait Number: Clone {
 impl Expr {
     /// The value where `symbol` gives each symbol's. `unit` is any number of the arithmetic (it may carry a precision).
     pub fn evaluate<N: Number>(&self, unit: &N, symbol: &impl Fn(&Symbol) -> N) -> N {
-        self.terms().fold(unit.rational(&Rational::default()), |sum, (monomial, coefficient)| {
-            let start = unit.rational(coefficient);
-            let term = monomial.factors().fold(start, |product, (atom, power)| {
-                product.times(&value_of_atom(atom, unit, symbol).power(power))
-            });
-            sum.plus(&term)
-        })
+        self.terms().fold(
+            unit.rational(&Rational::default()),
+            |sum, (monomial, coefficient)| {
+                let start = unit.rational(coefficient);
+                let term = monomial.factors().fold(start, |product, (atom, power)| {
+                    product.times(&value_of_atom(atom, unit, symbol).power(power))
+                });
+                sum.plus(&term)
+            },
+        )
     }
 }
 
@@ -47,8 +51,16 @@ fn value_of_atom<N: Number>(atom: &Atom, unit: &N, symbol: &impl Fn(&Symbol) -> 
     }
 }
 
-fn value_of_function<N: Number>(application: &Application, unit: &N, symbol: &impl Fn(&Symbol) -> N) -> N {
-    let arguments: Vec<N> = application.arguments.iter().map(|a| a.evaluate(unit, symbol)).collect();
+fn value_of_function<N: Number>(
+    application: &Application,
+    unit: &N,
+    symbol: &impl Fn(&Symbol) -> N,
+) -> N {
+    let arguments: Vec<N> = application
+        .arguments
+        .iter()
+        .map(|a| a.evaluate(unit, symbol))
+        .collect();
     match (application.function, arguments.as_slice()) {
         (Function::Recip, [x]) => unit.rational(&Rational::from_integer(1.into())).over(x),
         (function, _) => unit.function(function, &arguments),
@@ -104,7 +116,8 @@ fn dexp_inverse_series(derivative: u32, s: f64) -> f64 {
     let last = 4000.0;
     let head: f64 = (1..4000).rev().map(|m| term(f64::from(m))).sum();
     let exponent = 2 * power - 1;
-    let tail = tau.powi(-2 * power) * f64::powi(last, -exponent) / f64::from(exponent) + 0.5 * term(last);
+    let tail =
+        tau.powi(-2 * power) * f64::powi(last, -exponent) / f64::from(exponent) + 0.5 * term(last);
     let factorial: f64 = (1..=derivative).map(f64::from).product();
     2.0 * factorial * (head + tail)
 }

@@ -136,7 +136,10 @@ fn relation_of_atom(atom: &Atom) -> Option<Expr> {
     let itself = Expr::atom(atom.clone());
     match (application.function, application.arguments.as_slice()) {
         (Function::Cos | Function::Sin, [x]) => {
-            let (cos, sin) = (apply(Function::Cos, vec![x.clone()]), apply(Function::Sin, vec![x.clone()]));
+            let (cos, sin) = (
+                apply(Function::Cos, vec![x.clone()]),
+                apply(Function::Sin, vec![x.clone()]),
+            );
             Some(&(&cos.square() + &sin.square()) - &Expr::one())
         }
         (Function::Sqrt, [x]) => Some(&itself.square() - x),
@@ -161,9 +164,10 @@ fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) 
     }
     let negative = coefficient.is_negative();
     let size = coefficient.abs();
-    let multiple = size.to_integer().to_i64().filter(|n| {
-        size.is_integer() && (2..=LARGEST_MULTIPLE).contains(n)
-    });
+    let multiple = size
+        .to_integer()
+        .to_i64()
+        .filter(|n| size.is_integer() && (2..=LARGEST_MULTIPLE).contains(n));
     let base = match multiple {
         Some(_) => Rational::one(),
         None => size,

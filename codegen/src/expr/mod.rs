@@ -75,7 +75,9 @@ impl Expr {
     }
 
     /// The terms, in ascending term order.
-    pub fn terms(&self) -> impl DoubleEndedIterator<Item = (&Monomial, &Rational)> + ExactSizeIterator {
+    pub fn terms(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = (&Monomial, &Rational)> + ExactSizeIterator {
         self.terms.iter()
     }
 
@@ -121,7 +123,9 @@ impl Expr {
 
     /// Whether this depends on no symbol but parameters.
     pub fn is_constant(&self) -> bool {
-        self.symbols().iter().all(|symbol| symbol.role == Role::Parameter)
+        self.symbols()
+            .iter()
+            .all(|symbol| symbol.role == Role::Parameter)
     }
 
     /// All symbols, those inside functions included.

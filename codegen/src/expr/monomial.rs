@@ -77,7 +77,10 @@ impl Monomial {
     /// All atoms with their powers.
     pub fn factors(&self) -> impl Iterator<Item = (&Atom, i32)> {
         let main = self.main.iter().map(|(atom, power)| (atom, *power as i32));
-        self.units.iter().map(|(atom, power)| (atom, *power)).chain(main)
+        self.units
+            .iter()
+            .map(|(atom, power)| (atom, *power))
+            .chain(main)
     }
 
     /// The power of `atom`.
@@ -110,7 +113,11 @@ impl Monomial {
     pub fn recip(&self) -> Option<Self> {
         self.is_unit().then(|| Self {
             main: vec![],
-            units: self.units.iter().map(|(a, power)| (a.clone(), -power)).collect(),
+            units: self
+                .units
+                .iter()
+                .map(|(a, power)| (a.clone(), -power))
+                .collect(),
         })
     }
 

@@ -10,7 +10,10 @@ fn symbols() -> (Symbol, Symbol, Expr, Expr) {
 #[test]
 fn sums_that_are_equal_are_the_same_value() {
     let (_, _, x, y) = symbols();
-    assert_eq!((&x + &y).square(), &(&x.square() + &y.square()) + &(&Expr::integer(2) * &(&y * &x)));
+    assert_eq!(
+        (&x + &y).square(),
+        &(&x.square() + &y.square()) + &(&Expr::integer(2) * &(&y * &x))
+    );
 }
 
 #[test]
@@ -18,7 +21,10 @@ fn angles_written_differently_agree() {
     let (_, _, x, y) = symbols();
     let two = Expr::integer(2);
     assert_eq!((&two * &x).sin(), &two * &(&x.sin() * &x.cos()));
-    assert_eq!((&x + &y).cos(), &(&x.cos() * &y.cos()) - &(&x.sin() * &y.sin()));
+    assert_eq!(
+        (&x + &y).cos(),
+        &(&x.cos() * &y.cos()) - &(&x.sin() * &y.sin())
+    );
     assert_eq!((-&x).sin(), -x.sin());
     assert_eq!((&x + &Expr::pi()).sin(), -x.sin());
 }
@@ -42,10 +48,19 @@ fn derivatives_agree_with_differences() {
         s.dexp_inverse(1),
     ];
     for f in candidates {
-        let at = |value: f64| evaluate_f64(&f, &|symbol: &Symbol| if *symbol == a { value } else { 0.7 });
-        let exact = evaluate_f64(&f.derivative(&a), &|symbol: &Symbol| if *symbol == a { 0.4 } else { 0.7 });
+        let at = |value: f64| {
+            evaluate_f64(&f, &|symbol: &Symbol| {
+                if *symbol == a { value } else { 0.7 }
+            })
+        };
+        let exact = evaluate_f64(&f.derivative(&a), &|symbol: &Symbol| {
+            if *symbol == a { 0.4 } else { 0.7 }
+        });
         let difference = (at(0.4 + 1e-5) - at(0.4 - 1e-5)) / 2e-5;
-        assert!((difference - exact).abs() < 2e-9, "{f}: {exact} against {difference}");
+        assert!(
+            (difference - exact).abs() < 2e-9,
+            "{f}: {exact} against {difference}"
+        );
     }
 }
 
@@ -53,7 +68,12 @@ fn derivatives_agree_with_differences() {
 fn values_at_zero_are_the_limits() {
     let (a, _, x, _) = symbols();
     let tiny = |f: &Expr| evaluate_f64(f, &|_| 1e-9);
-    for f in [x.stumpff(2), x.stumpff(3), x.dexp_inverse(0), x.dexp_inverse(1)] {
+    for f in [
+        x.stumpff(2),
+        x.stumpff(3),
+        x.dexp_inverse(0),
+        x.dexp_inverse(1),
+    ] {
         let limit = evaluate_f64(&f.at_zero(std::slice::from_ref(&a)), &|_| f64::NAN);
         // The functions change by less than their argument here.
         assert!((limit - tiny(&f)).abs() < 1e-9, "{f}: {limit}");

@@ -40,7 +40,9 @@ impl Kind {
             "S2" => Self::S2,
             _ => {
                 let size: usize = name.strip_prefix('R')?.parse().ok()?;
-                (1..=LARGEST_REAL).contains(&size).then_some(Self::Real(size))?
+                (1..=LARGEST_REAL)
+                    .contains(&size)
+                    .then_some(Self::Real(size))?
             }
         })
     }
@@ -134,7 +136,11 @@ impl Factor {
             (_, false) => format!("{prefix}_{local}"),
         };
         let symbol = |(n, local): (usize, &String)| Symbol::new(role, first + n, &full(local));
-        Self { name: name.into(), kind, coordinates: names.iter().enumerate().map(symbol).collect() }
+        Self {
+            name: name.into(),
+            kind,
+            coordinates: names.iter().enumerate().map(symbol).collect(),
+        }
     }
 
     fn expressions(&self) -> Vec<Expr> {
@@ -150,11 +156,13 @@ impl Factor {
     pub fn embed(&self, q: &[Expr]) -> Matrix {
         let (zero, one) = (Expr::zero, Expr::one);
         match self.kind {
-            Kind::Real(size) => Matrix::from_fn(size + 1, size + 1, |i, j| match (i == j, j == size) {
-                (true, _) => one(),
-                (false, true) => q[i].clone(),
-                _ => zero(),
-            }),
+            Kind::Real(size) => {
+                Matrix::from_fn(size + 1, size + 1, |i, j| match (i == j, j == size) {
+                    (true, _) => one(),
+                    (false, true) => q[i].clone(),
+                    _ => zero(),
+                })
+            }
             Kind::S1 => Matrix::from_fn(2, 2, |i, j| match (i, j) {
                 (0, 1) => -&q[1],
                 (1, 0) => q[1].clone(),
@@ -200,9 +208,11 @@ impl Factor {
     /// The inverse of a group element's square matrix, polynomial in its entries.
     pub fn inverse(&self, m: &Matrix) -> Option<Matrix> {
         match self.kind {
-            Kind::Real(size) => Some(Matrix::from_fn(size + 1, size + 1, |i, j| match j == size && i < size {
-                true => -m.at(i, j),
-                false => m.at(i, j).clone(),
+            Kind::Real(size) => Some(Matrix::from_fn(size + 1, size + 1, |i, j| {
+                match j == size && i < size {
+                    true => -m.at(i, j),
+                    false => m.at(i, j).clone(),
+                }
             })),
             Kind::S1 | Kind::So2 | Kind::So3 | Kind::S3 => Some(m.transpose()),
             Kind::Se2 => Some(inverse_motion(2, m)),
@@ -265,8 +275,20 @@ fn planar_rotation(r: &Matrix) -> Vec<Expr> {
 /// `RᵀR = I`, `RRᵀ = I` and `cof R = R`: together they generate all relations of SO(3).
 fn rotation(r: &Matrix) -> Vec<Expr> {
     let identity = Matrix::identity(3);
-    let products = [r.transpose().times(r).minus(&identity), r.times(&r.transpose()).minus(&identity)];
+    let products = [
+        r.transpose().times(r).minus(&identity),
+        r.times(&r.transpose()).minus(&identity),
+    ];
     let cofactors = r.adjugate(&Expr::clone).transpose().minus(r);
-    let upper = |m: &Matrix| (0..3).flat_map(|i| (i..3).map(move |j| (i, j))).map(|(i, j)| m.at(i, j).clone()).collect::<Vec<_>>();
-    products.iter().flat_map(upper).chain(cofactors.entries().iter().cloned()).collect()
+    let upper = |m: &Matrix| {
+        (0..3)
+            .flat_map(|i| (i..3).map(move |j| (i, j)))
+            .map(|(i, j)| m.at(i, j).clone())
+            .collect::<Vec<_>>()
+    };
+    products
+        .iter()
+        .flat_map(upper)
+        .chain(cofactors.entries().iter().cloned())
+        .collect()
 }

@@ -18,7 +18,9 @@ pub fn groebner_basis(relations: &[Expr]) -> Result<Vec<Expr>, NotMonic> {
         if budget::is_exhausted() {
             break;
         }
-        let Some(s) = s_polynomial(&basis[i], &basis[j]) else { continue };
+        let Some(s) = s_polynomial(&basis[i], &basis[j]) else {
+            continue;
+        };
         let remainder = reduce(&s, &basis);
         if !remainder.is_zero() {
             pairs.extend((0..basis.len()).map(|k| (k, basis.len())));
@@ -33,7 +35,13 @@ pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
     let mut rest = expression.clone();
     let mut normal = Expr::zero();
     while let Some((monomial, coefficient)) = rest.leading().map(|(m, c)| (m.clone(), c.clone())) {
-        let step = basis.iter().find_map(|g| Some((g, monomial.divided_by(g.leading()?.0)?)));
+        // Searching the basis costs more than the subtraction that follows.
+        if !budget::spend(1 + basis.len() as u64) {
+            return Expr::zero();
+        }
+        let step = basis
+            .iter()
+            .find_map(|g| Some((g, monomial.divided_by(g.leading()?.0)?)));
         match step {
             Some((g, quotient)) => rest.add_scaled(&-coefficient, &quotient, g),
             None => {
@@ -42,15 +50,14 @@ pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
                 normal += &term;
             }
         }
-        if budget::is_exhausted() {
-            return Expr::zero();
-        }
     }
     normal
 }
 
 fn pairs_up_to(count: usize) -> Vec<(usize, usize)> {
-    (0..count).flat_map(|j| (0..j).map(move |i| (i, j))).collect()
+    (0..count)
+        .flat_map(|j| (0..j).map(move |i| (i, j)))
+        .collect()
 }
 
 /// Buchberger's normal strategy: the pair with the smallest common multiple first.
@@ -78,9 +85,14 @@ fn s_polynomial(f: &Expr, g: &Expr) -> Option<Expr> {
 
 /// Scales so that the leading term has coefficient 1 and no parameters.
 fn monic(relation: Expr) -> Result<Expr, NotMonic> {
-    let Some((monomial, coefficient)) = relation.leading() else { return Ok(relation) };
+    let Some((monomial, coefficient)) = relation.leading() else {
+        return Ok(relation);
+    };
     let (main, units) = monomial.split();
-    let competing = relation.terms().filter(|(m, _)| m.split().0 == main).count();
+    let competing = relation
+        .terms()
+        .filter(|(m, _)| m.split().0 == main)
+        .count();
     match (competing, units.recip()) {
         (1, Some(inverse)) => Ok(relation.scaled(&coefficient.recip(), &inverse)),
         _ => Err(NotMonic { relation }),
@@ -89,7 +101,11 @@ fn monic(relation: Expr) -> Result<Expr, NotMonic> {
 
 /// Reduces every element by the others until none changes; drops zeros.
 fn interreduce(mut basis: Vec<Expr>) -> Result<Vec<Expr>, NotMonic> {
-    basis = basis.into_iter().filter(|g| !g.is_zero()).map(monic).collect::<Result<_, _>>()?;
+    basis = basis
+        .into_iter()
+        .filter(|g| !g.is_zero())
+        .map(monic)
+        .collect::<Result<_, _>>()?;
     loop {
         let mut changed = false;
         let mut position = 0;
@@ -111,5 +127,7 @@ fn interreduce(mut basis: Vec<Expr>) -> Result<Vec<Expr>, NotMonic> {
 
 /// Whether a leading monomial is one: the relations contradict each other.
 pub fn is_trivial(basis: &[Expr]) -> bool {
-    basis.iter().any(|g| g.leading().is_some_and(|(m, _)| m.main().is_empty()))
+    basis
+        .iter()
+        .any(|g| g.leading().is_some_and(|(m, _)| m.main().is_empty()))
 }

@@ -17,7 +17,10 @@ pub struct Ideal {
 impl Ideal {
     /// The ideal of the relations.
     pub fn new(relations: &[Expr]) -> Result<Self, NotMonic> {
-        Ok(Self { basis: groebner::groebner_basis(relations)?, extended: RefCell::default() })
+        Ok(Self {
+            basis: groebner::groebner_basis(relations)?,
+            extended: RefCell::default(),
+        })
     }
 
     /// The reduced Gröbner basis of the manifold's own relations.
@@ -72,7 +75,9 @@ impl Ideal {
     }
 
     fn extend(&self, functions: BTreeSet<Atom>) -> Vec<Expr> {
-        let relations = functions.iter().flat_map(|atom| Expr::atom(atom.clone()).atom_relations());
+        let relations = functions
+            .iter()
+            .flat_map(|atom| Expr::atom(atom.clone()).atom_relations());
         let mut all: Vec<Expr> = self.basis.clone();
         for relation in relations {
             if !all.contains(&relation) {
@@ -90,7 +95,12 @@ impl Ideal {
 fn weight(expression: &Expr) -> usize {
     expression
         .terms()
-        .map(|(monomial, _)| 1 + monomial.factors().map(|(_, power)| power.unsigned_abs() as usize).sum::<usize>())
+        .map(|(monomial, _)| {
+            1 + monomial
+                .factors()
+                .map(|(_, power)| power.unsigned_abs() as usize)
+                .sum::<usize>()
+        })
         .sum()
 }
 
@@ -98,7 +108,9 @@ fn weight(expression: &Expr) -> usize {
 fn related_functions(expression: &Expr) -> BTreeSet<Atom> {
     let mut found = BTreeSet::new();
     for atom in expression.atoms() {
-        let Atom::Apply(application) = &atom else { continue };
+        let Atom::Apply(application) = &atom else {
+            continue;
+        };
         match application.function {
             Function::Cos | Function::Sin => {
                 found.insert(atom);

@@ -24,7 +24,10 @@ impl Manifold {
     pub fn new(factors: &[(String, Kind)]) -> Result<Self, NotMonic> {
         let factors = Self::factors_of(factors, Role::Coordinate);
         let relations: Vec<Expr> = factors.iter().flat_map(Factor::relations).collect();
-        Ok(Self { factors, ideal: Ideal::new(&relations)? })
+        Ok(Self {
+            factors,
+            ideal: Ideal::new(&relations)?,
+        })
     }
 
     fn factors_of(factors: &[(String, Kind)], role: Role) -> Vec<Factor> {
@@ -47,7 +50,11 @@ impl Manifold {
             .zip(&self.factors)
             .map(|(mut copy, factor)| {
                 for (symbol, original) in copy.coordinates.iter_mut().zip(&factor.coordinates) {
-                    *symbol = Symbol::new(Role::Target, original.index.into(), &format!("{}_target", original.name));
+                    *symbol = Symbol::new(
+                        Role::Target,
+                        original.index.into(),
+                        &format!("{}_target", original.name),
+                    );
                 }
                 copy
             })
@@ -61,7 +68,10 @@ impl Manifold {
 
     /// All stored scalars, in storage order.
     pub fn coordinates(&self) -> Vec<Symbol> {
-        self.factors.iter().flat_map(|factor| factor.coordinates.clone()).collect()
+        self.factors
+            .iter()
+            .flat_map(|factor| factor.coordinates.clone())
+            .collect()
     }
 
     /// The relations as they are stated, not their Gröbner basis.
@@ -81,6 +91,9 @@ impl Manifold {
 
     /// Dimension of the manifold.
     pub fn dimension(&self) -> usize {
-        self.factors.iter().map(|factor| factor.kind.dimension()).sum()
+        self.factors
+            .iter()
+            .map(|factor| factor.kind.dimension())
+            .sum()
     }
 }

@@ -10,7 +10,10 @@ fn so3_has_twenty_quadrics() {
     let so3 = manifold(Kind::So3);
     let basis = so3.ideal().basis();
     assert_eq!(basis.len(), 20);
-    assert!(basis.iter().all(|g| g.leading().is_some_and(|(monomial, _)| monomial.degree() == 2)));
+    assert!(basis.iter().all(|g| {
+        g.leading()
+            .is_some_and(|(monomial, _)| monomial.degree() == 2)
+    }));
 }
 
 #[test]
@@ -33,22 +36,49 @@ fn normal_forms_separate_what_differs() {
 
 #[test]
 fn the_home_of_every_manifold_lies_on_it() {
-    for kind in [Kind::Real(3), Kind::S1, Kind::So2, Kind::Se2, Kind::S3, Kind::So3, Kind::Se3, Kind::S2] {
+    for kind in [
+        Kind::Real(3),
+        Kind::S1,
+        Kind::So2,
+        Kind::Se2,
+        Kind::S3,
+        Kind::So3,
+        Kind::Se3,
+        Kind::S2,
+    ] {
         let m = manifold(kind);
         let home = m.coordinates().into_iter().zip(m.home()).collect();
-        assert!(m.relations().iter().all(|g| g.substitute(&home).is_zero()), "{}", kind.name());
+        assert!(
+            m.relations().iter().all(|g| g.substitute(&home).is_zero()),
+            "{}",
+            kind.name()
+        );
         assert_eq!(Kind::parse(&kind.name()), Some(kind));
     }
 }
 
 #[test]
 fn inverses_are_inverses() {
-    for kind in [Kind::Real(2), Kind::S1, Kind::So2, Kind::Se2, Kind::S3, Kind::So3, Kind::Se3] {
+    for kind in [
+        Kind::Real(2),
+        Kind::S1,
+        Kind::So2,
+        Kind::Se2,
+        Kind::S3,
+        Kind::So3,
+        Kind::Se3,
+    ] {
         let m = manifold(kind);
         let q = m.factors()[0].matrix();
         let inverse = m.factors()[0].inverse(&q).expect("a group");
         let identity = crate::matrix::Matrix::identity(q.rows());
-        assert!(m.ideal().normal_forms(&q.times(&inverse).minus(&identity)).is_zero(), "{}", kind.name());
+        assert!(
+            m.ideal()
+                .normal_forms(&q.times(&inverse).minus(&identity))
+                .is_zero(),
+            "{}",
+            kind.name()
+        );
         assert_eq!(m.factors()[0].embed(&m.factors()[0].coordinates_of(&q)), q);
     }
 }
@@ -72,12 +102,23 @@ fn polynomials_without_common_zero_are_recognised() {
     let so3 = manifold(Kind::So3);
     let q = so3.factors()[0].matrix();
     // A row of a rotation is never zero; one entry can be.
-    assert!(so3.ideal().has_no_zero_with(&[q.at(0, 0).clone(), q.at(0, 1).clone(), q.at(0, 2).clone()]));
+    assert!(so3.ideal().has_no_zero_with(&[
+        q.at(0, 0).clone(),
+        q.at(0, 1).clone(),
+        q.at(0, 2).clone()
+    ]));
     assert!(!so3.ideal().has_no_zero_with(&[q.at(0, 0).clone()]));
 }
 
 #[test]
 fn factors_are_named_after_themselves_where_there_are_several() {
-    let named = |alone| Factor::new("R", Kind::So3, Role::Coordinate, 0, alone).coordinates[1].name.to_string();
-    assert_eq!((named(true).as_str(), named(false).as_str()), ("q12", "r_q12"));
+    let named = |alone| {
+        Factor::new("R", Kind::So3, Role::Coordinate, 0, alone).coordinates[1]
+            .name
+            .to_string()
+    };
+    assert_eq!(
+        (named(true).as_str(), named(false).as_str()),
+        ("q12", "r_q12")
+    );
 }

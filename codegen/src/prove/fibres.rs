@@ -9,16 +9,37 @@ use std::collections::{BTreeMap, BTreeSet};
 pub fn claim(spec: &JointSpec) -> Option<Claim> {
     let ideal = spec.manifold.value.ideal();
     let pose = &spec.pose.value;
-    let entries: Vec<Expr> = pose.rotation.entries().iter().chain(pose.translation.entries()).map(|e| ideal.normal_form(e)).collect();
+    let entries: Vec<Expr> = pose
+        .rotation
+        .entries()
+        .iter()
+        .chain(pose.translation.entries())
+        .map(|e| ideal.normal_form(e))
+        .collect();
     let coordinates = spec.manifold.value.coordinates();
     let read = recovered(spec, &entries, &coordinates);
-    let rest: Vec<&Symbol> = coordinates.iter().filter(|symbol| !read.contains(*symbol)).collect();
+    let rest: Vec<&Symbol> = coordinates
+        .iter()
+        .filter(|symbol| !read.contains(*symbol))
+        .collect();
     let statement = match rest.as_slice() {
-        [] => ("one pose has one Q".to_owned(), "every stored scalar can be read off H"),
-        _ if is_even(&entries, &rest, spec) => ("Q and −Q have one pose: a double cover".to_owned(), "H is even in them"),
+        [] => (
+            "one pose has one Q".to_owned(),
+            "every stored scalar can be read off H",
+        ),
+        _ if is_even(&entries, &rest, spec) => (
+            "Q and −Q have one pose: a double cover".to_owned(),
+            "H is even in them",
+        ),
         _ if rest.iter().all(|symbol| is_periodic(&entries, symbol)) => {
             let names: Vec<&str> = rest.iter().map(|symbol| &*symbol.name).collect();
-            (format!("one pose has one Q up to full turns of {}", names.join(", ")), "they enter H through sine and cosine alone")
+            (
+                format!(
+                    "one pose has one Q up to full turns of {}",
+                    names.join(", ")
+                ),
+                "they enter H through sine and cosine alone",
+            )
         }
         _ => return None,
     };
@@ -55,25 +76,40 @@ fn recovered(spec: &JointSpec, entries: &[Expr], coordinates: &[Symbol]) -> BTre
 
 fn gives(entry: &Expr, symbol: &Symbol, known: &BTreeSet<Symbol>) -> bool {
     let slope = entry.derivative(symbol);
-    let others = entry.symbols().into_iter().filter(|s| s.role == Role::Coordinate && s != symbol);
+    let others = entry
+        .symbols()
+        .into_iter()
+        .filter(|s| s.role == Role::Coordinate && s != symbol);
     crate::expand::rank::is_unit(&slope) && others.into_iter().all(|s| known.contains(&s))
 }
 
 fn is_even(entries: &[Expr], rest: &[&Symbol], spec: &JointSpec) -> bool {
-    let negated: BTreeMap<Symbol, Expr> = rest.iter().map(|&symbol| (symbol.clone(), -Expr::symbol(symbol))).collect();
+    let negated: BTreeMap<Symbol, Expr> = rest
+        .iter()
+        .map(|&symbol| (symbol.clone(), -Expr::symbol(symbol)))
+        .collect();
     let ideal = spec.manifold.value.ideal();
-    entries.iter().all(|entry| ideal.vanishes(&(&entry.substitute(&negated) - entry)))
+    entries
+        .iter()
+        .all(|entry| ideal.vanishes(&(&entry.substitute(&negated) - entry)))
 }
 
 /// Whether the symbol stands in the entries as the whole argument of sines and cosines, and nowhere else.
 fn is_periodic(entries: &[Expr], symbol: &Symbol) -> bool {
-    entries.iter().flat_map(Expr::atoms).all(|atom| match &atom {
-        Atom::Symbol(other) => other != symbol,
-        Atom::Apply(application) => {
-            let trigonometric = matches!(application.function, Function::Cos | Function::Sin);
-            let itself = application.arguments.first().and_then(Expr::as_symbol) == Some(symbol);
-            let absent = application.arguments.iter().all(|argument| !argument.symbols().contains(symbol));
-            absent || (trigonometric && itself)
-        }
-    })
+    entries
+        .iter()
+        .flat_map(Expr::atoms)
+        .all(|atom| match &atom {
+            Atom::Symbol(other) => other != symbol,
+            Atom::Apply(application) => {
+                let trigonometric = matches!(application.function, Function::Cos | Function::Sin);
+                let itself =
+                    application.arguments.first().and_then(Expr::as_symbol) == Some(symbol);
+                let absent = application
+                    .arguments
+                    .iter()
+                    .all(|argument| !argument.symbols().contains(symbol));
+                absent || (trigonometric && itself)
+            }
+        })
 }

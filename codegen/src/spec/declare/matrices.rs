@@ -205,10 +205,9 @@ fn speed_names(
     let of = |target| context.statements.target(target).is_none();
     let holonomic = of(Target::SpeedBasis) && of(Target::Constraint) && !context.file.partial;
     let message = match count {
-        Some(count) if count != list.len() => Some(format!(
-            "{} names for {count} speeds",
-            list.len()
-        )),
+        Some(count) if count != list.len() => {
+            Some(format!("{} names for {count} speeds", list.len()))
+        }
         None if holonomic => Some("names of speeds without A or S_bar".to_owned()),
         _ => None,
     };
