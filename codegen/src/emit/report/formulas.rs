@@ -96,11 +96,32 @@ fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option
         return None;
     }
     let statement = statement(&derived.spec, kind).unwrap_or_default();
+    let name = match cross_product(derived, kernel) {
+        Some(short) => format!("{name} = {short}"),
+        None => name.to_owned(),
+    };
     Some(Formula {
         title: title.into(),
-        text: text(notation, kernel, name),
+        text: text(notation, kernel, &name),
         statement,
     })
+}
+
+/// `p~` or `−v~`, where a Boltzmann–Hamel term is a cross product, as (32) makes it for a ball.
+fn cross_product(derived: &Derived, kernel: &Kernel) -> Option<String> {
+    let (symbols, letter) = match kernel.kind {
+        KernelKind::Gamma => (&derived.arguments.velocity, 'v'),
+        KernelKind::J22 => (&derived.arguments.momentum, 'p'),
+        _ => return None,
+    };
+    let vector: Vec<Expr> = symbols.iter().map(Expr::symbol).collect();
+    let (matrix, tilde) = (kernel.outputs.first()?, Matrix::tilde(vector.get(..3)?));
+    let negative = tilde.map(|entry| -entry);
+    match (vector.len(), *matrix == tilde, *matrix == negative) {
+        (3, true, _) => Some(format!("{letter}~")),
+        (3, _, true) => Some(format!("−{letter}~")),
+        _ => None,
+    }
 }
 
 fn heading(kind: KernelKind) -> Option<(&'static str, &'static str)> {

@@ -1,0 +1,147 @@
+//! The program as a user runs it: its machine-readable output, its pages, its errors.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn hamel(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hamel"));
+    command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
+    command
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+fn stdout(arguments: &[&str]) -> String {
+    let output = hamel(arguments);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).expect("text")
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    let mut keys: Vec<&str> = value
+        .as_object()
+        .expect("an object")
+        .keys()
+        .map(String::as_str)
+        .collect();
+    keys.sort_unstable();
+    keys
+}
+
+#[test]
+fn samples_as_json_have_their_stable_shape() {
+    let text = stdout(&[
+        "simulate",
+        "scenes/plate_cart_arm.toml",
+        "--at",
+        "0.1,0.2",
+        "--tol",
+        "1e-6",
+        "--json",
+    ]);
+    let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+    assert_eq!(
+        keys(&report),
+        ["form", "method", "samples", "scene", "statistics"]
+    );
+    assert_eq!(
+        keys(&report["statistics"]),
+        ["evaluations", "rejected", "run_time_s", "steps"]
+    );
+    let samples = report["samples"].as_array().expect("a list");
+    let times: Vec<f64> = samples
+        .iter()
+        .filter_map(|sample| sample["t"].as_f64())
+        .collect();
+    assert_eq!(times, [0.1, 0.2]);
+    let body = &samples[0]["bodies"][2];
+    let quantities = [
+        "angular_velocity_body",
+        "name",
+        "position_com",
+        "rotation_body_to_world_rowmajor",
+        "velocity_com_world",
+    ];
+    assert_eq!(keys(body), quantities);
+    assert_eq!(body["name"], "end_effector");
+    assert_eq!(
+        body["rotation_body_to_world_rowmajor"]
+            .as_array()
+            .map(Vec::len),
+        Some(9)
+    );
+}
+
+#[test]
+fn proofs_as_json_have_their_stable_shape() {
+    let report: Value =
+        serde_json::from_str(&stdout(&["joints", "check", "--json"])).expect("JSON");
+    let joints = report["joints"].as_array().expect("a list");
+    assert!(joints.len() >= 7);
+    for claim in joints
+        .iter()
+        .flat_map(|joint| joint["claims"].as_array().expect("a list"))
+    {
+        assert_eq!(
+            keys(claim),
+            ["bits", "claim", "points", "proof", "residual"]
+        );
+        assert!(
+            ["normal_form", "certificate", "numeric"]
+                .contains(&claim["proof"].as_str().expect("a name"))
+        );
+    }
+}
+
+#[test]
+fn the_page_of_the_ball_shows_what_the_paper_has() {
+    let page = stdout(&["joints", "explain", "ball"]);
+    for formula in ["S(Q, ϕ) = Q (I + ½ ϕ~)", "J22 = −p~"] {
+        assert!(page.contains(formula), "{formula}\n{page}");
+    }
+    assert!(stdout(&["joints", "explain", "planar"]).contains("I − ½ ad_ϕ"));
+    assert!(stdout(&["joints", "list"]).contains("planar_euclidean"));
+}
+
+#[test]
+fn a_new_spec_can_be_checked_at_once_and_is_never_overwritten() {
+    let folder = env!("CARGO_TARGET_TMPDIR");
+    let file = format!("{folder}/made_by_test.joint");
+    let _ = std::fs::remove_file(&file);
+    let make = ["joints", "new", "made_by_test", "--folder", folder];
+    stdout(&make);
+    assert!(stdout(&["joints", "check", &file]).contains("rank X = k"));
+    let again = hamel(&make);
+    assert_eq!(again.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("made_by_test.joint"));
+}
+
+#[test]
+fn mistakes_are_told_in_words() {
+    for (arguments, code, told) in [
+        (vec!["joints", "explain", "bal"], 2, "did you mean `ball`"),
+        (vec!["joints", "new", "Wrong Name"], 1, "error"),
+        (vec!["simulate", "scenes/none.toml"], 1, "scenes/none.toml"),
+        (
+            vec!["simulate", "scenes/free_body.toml", "--form", "newtonian"],
+            2,
+            "newtonian",
+        ),
+        (
+            vec!["simulate", "scenes/free_body.toml", "--dt", "-1"],
+            2,
+            "-1",
+        ),
+    ] {
+        let output = hamel(&arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+        assert!(stderr.contains(told), "{arguments:?}: {stderr}");
+    }
+}

@@ -1,0 +1,171 @@
+//! Claims about X and S: they span the velocities of H, to first order in ϕ, at every configuration.
+
+use super::{Attempt, Prover, certified, refuted};
+use crate::expand::{adjoint_inverse, rank, twist_map_in_frame};
+use crate::matrix::Matrix;
+use crate::model::VelocityFrame;
+use crate::spec::code;
+use std::ops::Range;
+
+impl Prover<'_> {
+    pub(super) fn twist_map_span(&self) -> Range<usize> {
+        let declared = self.spec.twist_map.as_ref();
+        declared.map_or(self.spec.pose.span.clone(), |x| x.span.clone())
+    }
+
+    /// X beside a frame of v is redundant: a claim.
+    pub(super) fn declared_twist_map(&self) -> Attempt {
+        let (Some(declared), frame) = (&self.spec.twist_map, self.spec.velocity.value) else {
+            return Ok(None);
+        };
+        let statement = match frame {
+            VelocityFrame::Child => "X maps velocities in child axes",
+            VelocityFrame::Parent => "X maps velocities in parent axes",
+            VelocityFrame::Rates => return Ok(None),
+        };
+        let to_child = adjoint_inverse(&self.spec.pose.value);
+        let Ok(expected) = twist_map_in_frame(self.spec, &self.x.jacobian, &to_child, self.ideal)
+        else {
+            return Ok(None);
+        };
+        self.identity(
+            "twist_map_in_frame",
+            statement,
+            &declared.value.minus(&expected),
+            |_| {
+                refuted(
+                    code::TWIST_MAP_FRAME,
+                    &declared.span,
+                    "X is not the velocity in the declared frame",
+                    "declared here",
+                )
+                .note(format!("with `velocity in …` as declared, X =\n{expected}"))
+                .help("drop `velocity` to read v as X says, or drop X")
+            },
+        )
+    }
+
+    pub(super) fn twists_agree(&self) -> Attempt {
+        let j = &self.x.jacobian.base;
+        let difference = self.x.twist_map.times(&self.x.velocity_map.base).minus(j);
+        self.identity(
+            "twist_map_matches_pose",
+            "X S₀ = J₀",
+            &difference,
+            |residual| {
+                refuted(
+                    code::TWIST_MAP,
+                    &self.twist_map_span(),
+                    "X does not span the velocities of H",
+                    "no S₀ solves X S₀ = J₀",
+                )
+                .note(format!("J₀, the twists of H along ϕ, is\n{j}"))
+                .note(format!("X S₀ − J₀ =\n{residual}"))
+            },
+        )
+    }
+
+    pub(super) fn slopes_agree(&self) -> Attempt {
+        let s = &self.x.velocity_map;
+        let k = self.x.shape.freedoms;
+        let residuals = (0..k).flat_map(|l| {
+            let left = self.x.twist_map.times(&s.slopes[l]);
+            let right = self
+                .x
+                .motion
+                .along_each(&self.x.twist_map, l)
+                .times(&s.base);
+            left.plus(&right)
+                .minus(&self.x.jacobian.slopes[l])
+                .entries()
+                .to_vec()
+        });
+        let residual = Matrix::column_vector(residuals.collect());
+        self.identity(
+            "velocity_map_first_order",
+            "X S = J to first order in ϕ, (23)",
+            &residual,
+            |_| {
+                refuted(
+                    code::TWIST_MAP_SLOPE,
+                    &self.twist_map_span(),
+                    "X does not span the velocities of H near Q",
+                    "no ∂S/∂ϕ solves X S = J",
+                )
+            },
+        )
+    }
+
+    pub(super) fn velocity_map_is_invertible(&self) -> Attempt {
+        let determinant = &self.x.determinant;
+        match rank::is_unit(determinant) {
+            true => Ok(Some(certified(
+                "velocity_map_invertible",
+                "S₀ is invertible",
+                &format!("det S₀ = {determinant}"),
+            ))),
+            false
+                if self
+                    .ideal
+                    .has_no_zero_with(std::slice::from_ref(determinant)) =>
+            {
+                Ok(Some(certified(
+                    "velocity_map_invertible",
+                    "S₀ is invertible",
+                    &format!("det S₀ = {determinant} and the manifold's relations generate 1"),
+                )))
+            }
+            false => Err(Box::new(
+                refuted(
+                    code::VELOCITY_MAP_LOCUS,
+                    &self.twist_map_span(),
+                    "S₀ is not invertible at every configuration",
+                    "here",
+                )
+                .note(format!("it is singular where {determinant} = 0")),
+            )),
+        }
+    }
+
+    pub(super) fn rank_claim(
+        &self,
+        m: &Matrix,
+        name: &'static str,
+        statement: &str,
+        code: &'static str,
+        span: Range<usize>,
+        what: &str,
+    ) -> Attempt {
+        match rank::full_column_rank(m, self.ideal) {
+            Ok(certificate) => Ok(Some(certified(name, statement, &certificate.to_string()))),
+            Err(gram) => Err(Box::new(
+                refuted(
+                    code,
+                    &span,
+                    &format!("{what} does not have full rank at every configuration"),
+                    "here",
+                )
+                .note(format!("its columns become dependent where {gram} = 0")),
+            )),
+        }
+    }
+
+    pub(super) fn twist_map_has_full_rank(&self) -> Attempt {
+        // Ad is invertible, so that X and X^c have the same rank: the simpler one is certified.
+        let (m, statement) = match self.x.twist_map_child.is_constant() {
+            true => (
+                &self.x.twist_map_child,
+                "rank X = k (shown for X^c = Ad_{H⁻¹} X)",
+            ),
+            false => (&self.x.twist_map, "rank X = k"),
+        };
+        self.rank_claim(
+            m,
+            "twist_map_rank",
+            statement,
+            code::TWIST_MAP_LOCUS,
+            self.twist_map_span(),
+            "X",
+        )
+    }
+}
