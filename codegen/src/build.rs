@@ -89,7 +89,8 @@ impl Build {
     /// When a spec is wrong (all errors of all specs at once), a file cannot be read or written, or, while checking, when the
     /// committed files are not what the specs say. The errors have then been reported to cargo too.
     pub fn compile(&self) -> Result<(), BuildError> {
-        let result = self.generate();
+        let checks = std::env::var_os(GENERATE_VARIABLE).is_some_and(|value| value == "check");
+        let result = self.generate(checks);
         if let Err(error) = &result {
             error
                 .lines()
@@ -99,15 +100,14 @@ impl Build {
         result
     }
 
-    fn generate(&self) -> Result<(), BuildError> {
+    /// Writes, or where `check` says so only compares a library with what is there.
+    fn generate(&self, check: bool) -> Result<(), BuildError> {
         watch(&self.specs);
         let joints = self.derive_all()?;
         match &self.target {
             Target::Single(folder) => self.write_single(&joints, folder.as_deref()),
             Target::Library { modules, pages } => {
                 println!("cargo::rerun-if-env-changed={GENERATE_VARIABLE}");
-                let check =
-                    std::env::var_os(GENERATE_VARIABLE).is_some_and(|value| value == "check");
                 library::generate(&joints, &self.label(), modules, pages, check)
             }
         }

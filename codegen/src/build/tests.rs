@@ -50,12 +50,17 @@ fn a_library_has_a_file_and_a_page_for_each_joint() {
     let build = Build::new()
         .specs(folder.join("joints"))
         .library(folder.join("modules"), folder.join("pages"));
-    build.compile().expect("the spec is right");
+    let error = build
+        .generate(true)
+        .expect_err("checking finds nothing there");
+    assert!(error.to_string().contains("missing"), "{error}");
+    build.generate(false).expect("the spec is right");
+    build.generate(true).expect("all is fresh now");
     for name in ["modules/slider.rs", "modules/mod.rs", "pages/slider.md"] {
         assert!(folder.join(name).exists(), "{name}");
     }
     fs::remove_file(folder.join("joints/slider.joint")).expect("can be removed");
-    build.compile().expect("no spec is no error");
+    build.generate(false).expect("no spec is no error");
     assert!(!folder.join("modules/slider.rs").exists() && !folder.join("pages/slider.md").exists());
     fs::remove_dir_all(folder).expect("can be removed");
 }
