@@ -171,6 +171,16 @@ pub fn exp_second_order(xi: &Matrix) -> Matrix {
         .plus(&xi.times(xi).scale(&Expr::fraction(1, 2)))
 }
 
+/// The rotation matrix of a unit quaternion `(w, x, y, z)`.
+pub fn rotation_of_quaternion(q: &[Expr]) -> Matrix {
+    let vector = Matrix::tilde(&q[1..4]);
+    let two = Expr::integer(2);
+    let once = vector.scale(&(&two * &q[0]));
+    Matrix::identity(3)
+        .plus(&once)
+        .plus(&vector.times(&vector).scale(&two))
+}
+
 #[cfg(test)]
 mod tests {
     use super::{exp, exp_second_order, hat, standard_basis, vee};

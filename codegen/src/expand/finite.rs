@@ -89,7 +89,7 @@ fn logarithm(kind: Kind, m: &Matrix, prefix: &str, steps: &mut Steps) -> Option<
         Kind::Real(size) => (0..size).map(|i| m.at(i, size).clone()).collect(),
         Kind::S1 | Kind::So2 => vec![steps.bind(&named("angle"), m.at(1, 0).atan2(m.at(0, 0)))],
         Kind::So3 => rotation_vector(m.clone(), prefix, steps),
-        Kind::S3 => rotation_vector(rotation_of_quaternion(&m.column(0)), prefix, steps),
+        Kind::S3 => rotation_vector(algebra::rotation_of_quaternion(&m.column(0)), prefix, steps),
         Kind::Se2 => {
             let angle = steps.bind(&named("angle"), m.at(1, 0).atan2(m.at(0, 0)));
             let t = steps.bind_matrix(&named("t"), &m.block(0, 2, 2, 1));
@@ -128,16 +128,6 @@ fn rotation_vector(rotation: Matrix, prefix: &str, steps: &mut Steps) -> Vec<Exp
         rotation,
         &names.each_ref().map(String::as_str),
     )
-}
-
-/// The rotation matrix of a unit quaternion `(w, x, y, z)`.
-pub fn rotation_of_quaternion(q: &[Expr]) -> Matrix {
-    let vector = Matrix::tilde(&q[1..4]);
-    let two = Expr::integer(2);
-    let once = vector.scale(&(&two * &q[0]));
-    Matrix::identity(3)
-        .plus(&once)
-        .plus(&vector.times(&vector).scale(&two))
 }
 
 /// `D⁻¹ u` with `D = Σ (−ad_ϕ)ⁿ/(n+1)!`: `u + ½ [ϕ, u] + G [ϕ, [ϕ, u]] + …`; `None` where no closed form fits.

@@ -12,11 +12,10 @@ pub(crate) mod rank;
 mod steps;
 mod velocity;
 
-pub use finite::rotation_of_quaternion;
 pub use kernels::kernels;
 pub use motion::{Motion, local_element};
 pub use nonholonomic::{Nonholonomic, speed_names};
-pub use velocity::{TwistJacobian, VelocityMap, adjoint, adjoint_inverse, bracket};
+pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
 
 use crate::algebra;
 use crate::derived::{Arguments, Shape};

@@ -7,13 +7,6 @@ use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::PoseExpr;
 
-/// `Ad_H = [R 0; p~R R]`.
-pub fn adjoint(pose: &PoseExpr) -> Matrix {
-    let (r, p) = (&pose.rotation, pose.translation.entries());
-    let zero = Matrix::zeros(3, 3);
-    r.beside(&zero).stack(&Matrix::tilde(p).times(r).beside(r))
-}
-
 /// `Ad_{H⁻¹} = [Rᵀ 0; −Rᵀp~ Rᵀ]`.
 pub fn adjoint_inverse(pose: &PoseExpr) -> Matrix {
     let (r, p) = (pose.rotation.transpose(), pose.translation.entries());

@@ -3,6 +3,7 @@
 use super::super::Fallible;
 use super::super::value::Value;
 use super::function::Call;
+use crate::algebra;
 use crate::expr::Expr;
 use crate::manifold::Kind;
 use crate::matrix::Matrix;
@@ -20,7 +21,9 @@ pub(super) fn rotation(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> 
         }
         (Some(axis), [Value::Element(Kind::S1 | Kind::So2, m)]) => Some(planar(axis, m)),
         (Some(2), [Value::Element(Kind::Se2, m)]) => Some(planar(2, m)),
-        (None, [Value::Element(Kind::S3, m)]) => Some(of_quaternion(&m.column(0))),
+        (None, [Value::Element(Kind::S3, m)]) => {
+            Some(algebra::rotation_of_quaternion(&m.column(0)))
+        }
         (None, [value]) => value.as_pose().map(|pose| pose.rotation),
         _ => None,
     };
@@ -56,22 +59,5 @@ fn embed(axis: usize, plane: &Matrix) -> Matrix {
         (2, 2) => Expr::one(),
         (2, _) | (_, 2) => Expr::zero(),
         (r, c) => plane.at(r, c).clone(),
-    })
-}
-
-/// The rotation matrix of a unit quaternion (w, x, y, z).
-fn of_quaternion(q: &[Expr]) -> Matrix {
-    let two = Expr::integer(2);
-    let vector = &q[1..];
-    let square: Expr = vector.iter().map(Expr::square).sum();
-    let tilde = Matrix::tilde(vector);
-    Matrix::from_fn(3, 3, |i, j| {
-        let outer = &vector[i] * &vector[j];
-        let diagonal = if i == j {
-            Expr::one() - &two * &square
-        } else {
-            Expr::zero()
-        };
-        &diagonal + &(&two * &(&outer + &(&q[0] * tilde.at(i, j))))
     })
 }
