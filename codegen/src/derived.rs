@@ -39,12 +39,22 @@ pub enum KernelKind {
     Retract,
     /// ϕ(Q, Q′).
     Local,
+    /// ∂Φ/∂ϕ at finite ϕ, of the stored scalars, N×K: only where Φ is no exponential.
+    RetractTangent,
+    /// Differential D of Φ at finite ϕ.
+    RetractDifferential,
     /// Inverse differential of Φ at finite ϕ.
     RetractDifferentialInverse,
+    /// The relations of the manifold, as a column: only where the spec declares some.
+    Relations,
+    /// Derivatives of [`KernelKind::Relations`] by the stored scalars: only where the spec declares some.
+    RelationGradient,
     /// Projection onto the manifold.
     Project,
     /// Residual of the manifold's relations.
     Residual,
+    /// The functions whose zeros the joint must stay away from, as a column.
+    Singularity,
     /// c = Ẋ̄^c v̄.
     BiasAcceleration,
     /// Ẋ̄^cᵀ h.
@@ -89,6 +99,17 @@ pub enum Step {
     },
 }
 
+/// How a kernel gets its value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// By its formulas.
+    Formula,
+    /// By a K×K solve of the runtime, with the kernels that define it.
+    Solve,
+    /// By Newton's method of the runtime, from the value of its formulas or from 0.
+    Newton,
+}
+
 /// One kernel.
 #[derive(Clone, Debug)]
 pub struct Kernel {
@@ -97,8 +118,11 @@ pub struct Kernel {
     /// Lines before the result, in order.
     pub steps: Vec<Step>,
     /// The result: one matrix; for [`KernelKind::Pose`] rotation and translation; for gradients one slice for each ϕ_k;
-    /// for [`KernelKind::Residual`] the column of relations, whose Euclidean norm is the kernel's value.
+    /// for [`KernelKind::Residual`] the column of relations, whose Euclidean norm is the kernel's value; for
+    /// [`KernelKind::Singularity`] the column of functions, whose least absolute value is.
     pub outputs: Vec<Matrix>,
+    /// How the value is found.
+    pub method: Method,
     /// What is known at compile time.
     pub structure: Structure,
 }

@@ -1,6 +1,6 @@
 //! What a spec declares, in symbols: the border between the spec language and the derivation.
 
-use crate::expr::{Expr, Symbol};
+use crate::expr::{Expr, Rational, Symbol};
 use crate::manifold::Manifold;
 use crate::matrix::Matrix;
 use std::ops::Range;
@@ -23,6 +23,46 @@ pub struct Parameter {
     pub unit: String,
     /// Doc comment.
     pub docs: String,
+    /// Values that it may take.
+    pub range: Interval,
+}
+
+/// An interval of values; `None` is unbounded.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Interval {
+    /// Lower end.
+    pub lower: Option<End>,
+    /// Upper end.
+    pub upper: Option<End>,
+}
+
+/// One end of an [`Interval`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct End {
+    /// Its value.
+    pub value: Rational,
+    /// Whether the value itself belongs to the interval.
+    pub included: bool,
+}
+
+/// A set that the joint's configuration must stay away from: the zeros of a function of Q.
+#[derive(Clone, Debug)]
+pub struct Locus {
+    /// The function.
+    pub function: Expr,
+    /// The function as the spec writes it.
+    pub text: String,
+    /// Doc comment: why the joint ends there.
+    pub docs: String,
+}
+
+/// A condition on the parameters: `value` is positive.
+#[derive(Clone, Debug)]
+pub struct Requirement {
+    /// A polynomial in the parameters.
+    pub value: Expr,
+    /// As the spec writes it, `outer > inner`.
+    pub text: String,
 }
 
 /// One direction of local motion: a local coordinate ϕ and a velocity v of the same name.
@@ -34,7 +74,8 @@ pub struct Freedom {
     pub local: Symbol,
     /// The factor that it moves.
     pub factor: usize,
-    /// Its generator: coordinates in the standard basis of that factor's algebra; rational or of parameters.
+    /// Its generator: coordinates in the standard basis of that factor's algebra; rational or of parameters. Empty for a
+    /// freedom of `local`, which only Φ gives a meaning.
     pub generator: Vec<Expr>,
 }
 
@@ -69,8 +110,14 @@ pub struct JointSpec {
     pub source: String,
     /// Parameters in order.
     pub parameters: Vec<Parameter>,
-    /// Where Q lives.
+    /// Conditions on the parameters.
+    pub requirements: Vec<Declared<Requirement>>,
+    /// Where Q lives; relations that the spec declares are part of it.
     pub manifold: Declared<Manifold>,
+    /// Where Q must not come: H, Φ, X, A or S̄ lose their meaning or their rank there.
+    pub loci: Vec<Declared<Locus>>,
+    /// The stored scalars of the home configuration, where declared.
+    pub home: Option<Declared<Vec<Expr>>>,
     /// Local coordinates, in order: those of a `basis`, else the coordinates of the real factors.
     pub freedoms: Declared<Vec<Freedom>>,
     /// Frame of v.

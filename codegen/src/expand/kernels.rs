@@ -1,7 +1,7 @@
 //! The kernels of THEORY §3 from an expansion, in the order in which they are emitted.
 
 use super::{Expansion, finite, hamel};
-use crate::derived::{Kernel, KernelKind, Step, Structure};
+use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
 use crate::expr::Role;
 use crate::manifold::Ideal;
@@ -182,6 +182,7 @@ fn plain(kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
         kind,
         steps: vec![],
         outputs,
+        method: Method::Formula,
         structure,
     }
 }
@@ -191,6 +192,7 @@ fn with(kind: KernelKind, steps: Vec<Step>, output: Matrix, structure: Structure
         kind,
         steps,
         outputs: vec![output],
+        method: Method::Formula,
         structure,
     }
 }

@@ -12,10 +12,11 @@ pub use ideal::Ideal;
 
 use crate::expr::{Expr, Role, Symbol};
 
-/// A product of known manifolds, with the ideal of its relations.
+/// A product of known manifolds, or the part of it where declared relations hold, with the ideal of all relations.
 #[derive(Clone, Debug)]
 pub struct Manifold {
     factors: Vec<Factor>,
+    declared: Vec<Expr>,
     ideal: Ideal,
 }
 
@@ -26,8 +27,25 @@ impl Manifold {
         let relations: Vec<Expr> = factors.iter().flat_map(Factor::relations).collect();
         Ok(Self {
             factors,
+            declared: vec![],
             ideal: Ideal::new(&relations)?,
         })
+    }
+
+    /// The part of this manifold where the polynomials in its stored scalars vanish.
+    pub fn constrained(self, declared: Vec<Expr>) -> Result<Self, NotMonic> {
+        let mut all = self.relations();
+        all.extend_from_slice(&declared);
+        Ok(Self {
+            ideal: Ideal::new(&all)?,
+            declared: [self.declared, declared].concat(),
+            factors: self.factors,
+        })
+    }
+
+    /// The relations that the spec declares.
+    pub fn declared(&self) -> &[Expr] {
+        &self.declared
     }
 
     fn factors_of(factors: &[(String, Kind)], role: Role) -> Vec<Factor> {
@@ -76,7 +94,8 @@ impl Manifold {
 
     /// The relations as they are stated, not their Gröbner basis.
     pub fn relations(&self) -> Vec<Expr> {
-        self.factors.iter().flat_map(Factor::relations).collect()
+        let known = self.factors.iter().flat_map(Factor::relations);
+        known.chain(self.declared.iter().cloned()).collect()
     }
 
     /// Equality on the manifold.
@@ -84,12 +103,12 @@ impl Manifold {
         &self.ideal
     }
 
-    /// The stored scalars of the home configuration.
+    /// The identity of each factor, as stored scalars.
     pub fn home(&self) -> Vec<Expr> {
         self.factors.iter().flat_map(Factor::home).collect()
     }
 
-    /// Dimension of the manifold.
+    /// Dimension of the product of the factors, declared relations apart.
     pub fn dimension(&self) -> usize {
         self.factors
             .iter()

@@ -193,12 +193,23 @@ fn meaning(kind: KernelKind) -> &'static str {
             "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
         }
         KernelKind::Local => "The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.",
+        KernelKind::RetractTangent => {
+            "∂Φ/∂ϕ at finite ϕ: ϕ̇ to the rates of the stored scalars of Φ(Q, ϕ)."
+        }
+        KernelKind::RetractDifferential => {
+            "D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D."
+        }
         KernelKind::RetractDifferentialInverse => {
             "ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π."
         }
         KernelKind::Project => "The configuration on the manifold that is nearest to `q`.",
         KernelKind::Residual => {
             "Root of the sum of squares of the manifold's relations: 0 on the manifold."
+        }
+        KernelKind::Relations => "The relations of the manifold: 0 on it.",
+        KernelKind::RelationGradient => "Derivatives of the relations by the stored scalars.",
+        KernelKind::Singularity => {
+            "Least absolute value of the functions whose zeros the joint must stay away from."
         }
         KernelKind::BiasAcceleration => {
             "c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame."

@@ -35,7 +35,7 @@ impl<'a> Method<'a> {
             .iter()
             .flat_map(Binding::names)
             .for_each(|symbol| names.adopt(symbol));
-        let signature = Signature::new(kernel.kind, derived.shape);
+        let signature = Signature::new(kernel, derived.shape);
         let used = program.symbols();
         Self {
             derived,

@@ -1,6 +1,6 @@
 //! The signatures of the trait's methods.
 
-use crate::derived::{Arguments, KernelKind, Shape};
+use crate::derived::{Arguments, Kernel, KernelKind, Shape};
 use crate::expr::Symbol;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -93,7 +93,7 @@ pub struct Signature {
 
 impl Signature {
     /// The signature of a kernel.
-    pub fn new(kind: KernelKind, shape: Shape) -> Self {
+    pub fn new(kernel: &Kernel, shape: Shape) -> Self {
         use Argument::{Configuration, Local, Momentum, Rate, Speeds, Target, Velocity, Wrench};
         use Output::{Matrix, Pose, Scalar, Slices, Vector};
         let (n, k, s, c) = (
@@ -103,7 +103,11 @@ impl Signature {
             shape.constraints,
         );
         let q = || vec![Configuration];
-        let (name, arguments, output) = match kind {
+        let relations = kernel
+            .outputs
+            .first()
+            .map_or(0, crate::matrix::Matrix::rows);
+        let (name, arguments, output) = match kernel.kind {
             KernelKind::Home => ("home", vec![], Vector(n)),
             KernelKind::Pose => ("pose", q(), Pose),
             KernelKind::TwistMap => ("twist_map", q(), Matrix(6, k)),
@@ -124,6 +128,14 @@ impl Signature {
             ),
             KernelKind::Retract => ("retract", vec![Configuration, Local], Vector(n)),
             KernelKind::Local => ("local", vec![Configuration, Target], Vector(k)),
+            KernelKind::RetractTangent => {
+                ("retract_tangent", vec![Configuration, Local], Matrix(n, k))
+            }
+            KernelKind::RetractDifferential => (
+                "retract_differential",
+                vec![Configuration, Local],
+                Matrix(k, k),
+            ),
             KernelKind::RetractDifferentialInverse => (
                 "retract_differential_inverse",
                 vec![Configuration, Local, Rate],
@@ -131,6 +143,9 @@ impl Signature {
             ),
             KernelKind::Project => ("project", q(), Vector(n)),
             KernelKind::Residual => ("residual", q(), Scalar),
+            KernelKind::Relations => ("relations", q(), Vector(relations)),
+            KernelKind::RelationGradient => ("relation_gradient", q(), Matrix(relations, n)),
+            KernelKind::Singularity => ("singularity", q(), Scalar),
             KernelKind::BiasAcceleration => {
                 ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
             }

@@ -74,6 +74,7 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
                 symbol,
                 unit: parameter.unit.text.clone(),
                 docs: parameter.docs.join("\n"),
+                range: model::Interval::default(),
             });
         }
         declared
