@@ -92,7 +92,7 @@ fn claims(report: &Report) -> Vec<String> {
 pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenStream {
     let mut lines = vec![meaning(kernel.kind).to_owned(), String::new()];
     let operations = method.counts();
-    let shape = shape_of(derived, kernel.kind);
+    let shape = shape_of(derived, kernel);
     lines.push(format!(
         "{shape}{} Operations: {operations}.",
         constancy(kernel.structure)
@@ -113,8 +113,8 @@ fn constancy(structure: Structure) -> &'static str {
 }
 
 /// Shape, frame and units.
-fn shape_of(derived: &Derived, kind: KernelKind) -> String {
-    let size = match Signature::new(kind, derived.shape).output {
+fn shape_of(derived: &Derived, kernel: &Kernel) -> String {
+    let size = match Signature::new(kernel, derived.shape).output {
         Output::Pose => "Rotation matrix and translation in m.".to_owned(),
         Output::Scalar => "A scalar.".to_owned(),
         Output::Vector(rows) => format!("{rows}-vector"),
@@ -123,7 +123,7 @@ fn shape_of(derived: &Derived, kind: KernelKind) -> String {
             format!("{} slices of {rows}×{columns}", derived.shape.freedoms)
         }
     };
-    let units = units_of(derived, kind);
+    let units = units_of(derived, kernel.kind);
     match (size.ends_with('.'), units.is_empty()) {
         (true, _) => size,
         (false, true) => format!("{size}."),
