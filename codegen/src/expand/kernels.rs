@@ -95,6 +95,12 @@ impl Maker<'_> {
             &arguments.velocity,
         )
         .ok_or_else(missing)?;
+        let (forward_steps, forward) =
+            finite::retract_differential(spec, &self.x.structure_constants).ok_or_else(missing)?;
+        let forward_structure = match forward.is_identity() {
+            true => Structure::Identity,
+            false => Structure::General,
+        };
         let (project_steps, project) = finite::project(spec);
         let identity =
             |value: &Matrix, symbols: &[crate::expr::Symbol]| *value == Matrix::symbols(symbols);
@@ -119,6 +125,12 @@ impl Maker<'_> {
             ),
             with(KernelKind::Local, local_steps, local, Structure::General),
             with(
+                KernelKind::RetractDifferential,
+                forward_steps,
+                forward,
+                forward_structure,
+            ),
+            with(
                 KernelKind::RetractDifferentialInverse,
                 differential_steps,
                 differential,
@@ -131,6 +143,15 @@ impl Maker<'_> {
                 project_structure,
             ),
             plain(KernelKind::Residual, vec![finite::residual(spec)]),
+            with(
+                KernelKind::Singularity,
+                vec![],
+                singular_functions(spec),
+                match spec.loci.is_empty() {
+                    true => Structure::Constant,
+                    false => Structure::General,
+                },
+            ),
         ])
     }
 
@@ -173,6 +194,12 @@ impl Maker<'_> {
             plain(KernelKind::BiasMomentum, vec![momentum]),
         ]
     }
+}
+
+/// The functions whose zeros the joint must stay away from: a column, empty for a joint that is global.
+fn singular_functions(spec: &JointSpec) -> Matrix {
+    let functions = spec.loci.iter().map(|locus| locus.value.function.clone());
+    Matrix::column_vector(functions.collect())
 }
 
 /// A kernel without intermediate lines.

@@ -30,6 +30,9 @@ pub enum StepFailure {
         /// The joint.
         joint: String,
     },
+    /// The state reached cannot be brought back to its manifold.
+    #[error(transparent)]
+    State(#[from] StateError),
     /// The equations of motion cannot be evaluated.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),

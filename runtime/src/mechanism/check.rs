@@ -1,6 +1,7 @@
 //! Checks of a state against its mechanism, and projection onto the joints' manifolds.
 
 use super::{Body, Mechanism, StateError};
+use crate::erased::FiniteMapError;
 use alloc::string::String;
 
 /// Largest residual of a joint's relations that is taken for rounding of the input.
@@ -28,6 +29,12 @@ pub(crate) fn check_size(
 }
 
 impl Body {
+    /// The joint's own failure, with its name in the mechanism.
+    pub(crate) fn finite_map(&self, cause: FiniteMapError) -> StateError {
+        let joint = self.joint_name().into();
+        StateError::FiniteMap { joint, cause }
+    }
+
     /// Whether every value is finite; `names` tells the entries in the message.
     pub(super) fn check_finite(
         &self,
@@ -99,12 +106,14 @@ impl Mechanism {
     /// Moves each joint's Q to the nearest point of its manifold.
     ///
     /// # Errors
-    /// When `q` has the wrong size.
+    /// When `q` has the wrong size; when a projection fails, with the name of the joint.
     pub fn project(&self, q: &mut [f64]) -> Result<(), StateError> {
         check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
         for body in &self.bodies {
+            let own = &mut q[body.ranges.configuration.clone()];
             body.joint()
-                .project(&mut q[body.ranges.configuration.clone()]);
+                .project(own)
+                .map_err(|cause| body.finite_map(cause))?;
         }
         Ok(())
     }

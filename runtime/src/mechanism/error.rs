@@ -1,5 +1,6 @@
 //! What a mechanism refuses, in its construction and in its state.
 
+use crate::erased::FiniteMapError;
 use crate::spatial::{MassError, PoseError};
 use alloc::string::String;
 
@@ -129,6 +130,14 @@ pub enum StateError {
         residual: f64,
         /// Largest residual allowed.
         limit: f64,
+    },
+    /// A finite map of the joint fails.
+    #[error("joint `{joint}`: {cause}")]
+    FiniteMap {
+        /// The joint.
+        joint: String,
+        /// Which map.
+        cause: FiniteMapError,
     },
     /// The pose given is no pose.
     #[error("joint `{joint}`: {cause}")]
