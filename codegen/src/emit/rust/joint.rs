@@ -3,6 +3,7 @@
 use super::docs;
 use super::kernel::Method;
 use super::limits;
+use super::numeric;
 use super::tokens::{ident, signed_literal};
 use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
@@ -28,10 +29,10 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let (own, methods): (Vec<&Kernel>, Vec<&Kernel>) = derived
         .kernels
         .iter()
-        .partition(|kernel| is_beside_the_trait(kernel.kind));
+        .partition(|kernel| numeric::is_beside_the_trait(kernel.kind));
     let (own, methods) = (own.into_iter().map(method), methods.into_iter().map(method));
     let own: Vec<TokenStream> = own.collect();
-    let own = (!own.is_empty()).then(|| quote! { impl #name { #(pub #own)* } });
+    let own = (!own.is_empty()).then(|| quote! { impl #name { #(#own)* } });
     quote! {
         #definition
         #own
@@ -41,14 +42,6 @@ pub fn tokens(derived: &Derived) -> TokenStream {
             #(#methods)*
         }
     }
-}
-
-/// Whether a kernel is a method of the joint's type alone: one that only Newton's method needs.
-fn is_beside_the_trait(kind: KernelKind) -> bool {
-    matches!(
-        kind,
-        KernelKind::RetractTangent | KernelKind::Relations | KernelKind::RelationGradient
-    )
 }
 
 /// N, K, S and C as literals.

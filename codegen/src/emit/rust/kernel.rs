@@ -90,7 +90,8 @@ impl<'a> Method<'a> {
         });
         let name = ident(self.signature.name);
         let output = self.signature.output_type(self.derived.shape);
-        quote! { #docs fn #name<T: Scalar>(&self, #(#arguments),*) -> #output { #body } }
+        let visibility = numeric::is_beside_the_trait(self.kernel.kind).then(|| quote! { pub });
+        quote! { #docs #visibility fn #name<T: Scalar>(&self, #(#arguments),*) -> #output { #body } }
     }
 
     /// The argument that is returned as it stands, if the kernel does just that.

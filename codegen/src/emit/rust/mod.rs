@@ -10,6 +10,8 @@ mod numeric;
 mod result;
 mod signature;
 mod spacing;
+#[cfg(test)]
+mod tests;
 mod tokens;
 
 pub use index::{Index, index};

@@ -49,6 +49,14 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
     })
 }
 
+/// Whether a kernel is a method of the joint's type alone: one that only these calls need.
+pub fn is_beside_the_trait(kind: KernelKind) -> bool {
+    matches!(
+        kind,
+        KernelKind::RetractTangent | KernelKind::Relations | KernelKind::RelationGradient
+    )
+}
+
 /// Rank of the derivatives of the relations on the manifold: N − K, without what known factors that no relation names
 /// contribute to it.
 fn codimension(derived: &Derived) -> usize {
