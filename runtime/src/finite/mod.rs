@@ -31,10 +31,10 @@ pub fn least_absolute<T: Scalar, const R: usize>(numbers: [T; R]) -> T {
         let size = absolute(number);
         T::select(size.less(least), size, least)
     });
-    // A comparison with NaN is false and would pass over it: x − x is 0 or NaN.
+    // A comparison with NaN is false and would pass over it: 0 · x is 0 or NaN.
     numbers
         .into_iter()
-        .fold(least, |least, number| least + (number - number))
+        .fold(least, |least, number| least + number * T::zero())
 }
 
 /// Euclidean norm, free of overflow and underflow: ϕ and residuals go down to 1e-300.

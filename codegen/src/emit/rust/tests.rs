@@ -78,7 +78,7 @@ fn numeric_ball() -> Derived {
         Matrix::from_columns(of.rows(), &columns)
     };
     let gradient = slopes(&relations, &ball.arguments.configuration);
-    let cross = Matrix::tilde(&Matrix::symbols(phi).entries().to_vec());
+    let cross = Matrix::tilde(Matrix::symbols(phi).entries());
     let turned = Matrix::from_fn(3, 3, |i, j| q.at(3 * i + j, 0).clone()).times(&cross);
     let tangent = slopes(&Matrix::column_vector(turned.entries().to_vec()), phi);
     patched(
