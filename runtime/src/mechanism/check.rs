@@ -1,6 +1,6 @@
 //! Checks of a state against its mechanism, and projection onto the joints' manifolds.
 
-use super::{Body, Mechanism, StateError};
+use super::{Body, Loci, Mechanism, StateError};
 use crate::erased::FiniteMapError;
 use alloc::string::String;
 
@@ -57,7 +57,7 @@ impl Body {
         }
     }
 
-    /// Whether `q`, this joint's Q alone, is finite and on the joint's manifold.
+    /// Whether `q`, this joint's Q alone, is finite, on the joint's manifold and not singular.
     pub(super) fn check_configuration(&self, q: &[f64]) -> Result<(), StateError> {
         let element = self.joint_name();
         check_size(
@@ -68,22 +68,31 @@ impl Body {
         )?;
         self.check_finite("configuration", self.joint().coordinates(), q)?;
         let residual = self.joint().residual(q);
-        if residual <= CONFIGURATION_TOLERANCE {
-            return Ok(());
+        // A comparison that NaN fails as well.
+        if !(residual <= CONFIGURATION_TOLERANCE) {
+            return Err(StateError::OffManifold {
+                joint: self.joint_name().into(),
+                residual,
+                limit: CONFIGURATION_TOLERANCE,
+            });
         }
-        Err(StateError::OffManifold {
-            joint: self.joint_name().into(),
-            residual,
-            limit: CONFIGURATION_TOLERANCE,
-        })
+        match self.singular_value(q) {
+            None => Ok(()),
+            Some(value) => Err(StateError::Singular {
+                joint: self.joint_name().into(),
+                loci: Loci(self.joint().singularities()),
+                value,
+            }),
+        }
     }
 }
 
 impl Mechanism {
-    /// Whether `q` has the right size, is finite, and lies on every joint's manifold to [`CONFIGURATION_TOLERANCE`].
+    /// Whether `q` has the right size, is finite, lies on every joint's manifold to [`CONFIGURATION_TOLERANCE`], and on none
+    /// of the sets where a joint is singular.
     ///
     /// # Errors
-    /// The first joint that is refused, with its residual and the limit.
+    /// The first joint that is refused, with its residual and the limit, or with the functions that vanish.
     pub fn check_configuration(&self, q: &[f64]) -> Result<(), StateError> {
         check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
         self.bodies
