@@ -6,10 +6,14 @@
 
 mod dual;
 mod float;
+#[cfg(feature = "wide")]
+mod lanes;
 mod rotation;
 mod series;
 
 pub use dual::Dual;
+#[cfg(feature = "wide")]
+pub use lanes::{F64x4, Mask4};
 
 use core::ops::Neg;
 use nalgebra::{
