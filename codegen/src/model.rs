@@ -50,7 +50,7 @@ pub struct End {
 pub struct Locus {
     /// The function.
     pub function: Expr,
-    /// The function as the spec writes it.
+    /// The equation as the spec writes it, `cos(b) = 0`.
     pub text: String,
     /// Doc comment: why the joint ends there.
     pub docs: String,

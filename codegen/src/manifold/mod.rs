@@ -6,7 +6,7 @@ mod ideal;
 #[cfg(test)]
 mod tests;
 
-pub use factor::{Factor, Kind, LARGEST_REAL};
+pub use factor::{Factor, Kind, LARGEST_CONSTRAINED_REAL, LARGEST_REAL};
 pub use groebner::NotMonic;
 pub use ideal::Ideal;
 

@@ -2,11 +2,17 @@
 
 mod basis;
 mod config;
+mod equation;
 mod freedoms;
+mod home;
+mod loci;
 mod matrices;
 mod once;
+mod parameter;
+mod relations;
 mod retract;
 mod scope;
+mod stored;
 mod unit;
 
 use self::freedoms::Freedoms;
@@ -83,11 +89,16 @@ fn declare(
     let parameters = scope.parameters(&file.parameters);
     scope.factors(statements.config, manifold.value.factors());
     scope.lets(&statements.lets);
+    let manifold = relations::constrained(statements, manifold, scope.evaluator);
     let context = Context {
         file,
         statements,
-        manifold,
+        manifold: &manifold,
     };
+    let home = home::home(&context, scope.evaluator);
+    let declared_home = home.as_ref().map(|home| home.value.as_slice());
+    let loci = loci::loci(&context, declared_home, source, scope.evaluator);
+    let requirements = parameter::requirements(statements, source, scope.evaluator);
     let freedoms = freedoms::freedoms(&context, &mut scope);
     let velocity = freedoms
         .as_ref()
@@ -113,10 +124,10 @@ fn declare(
         docs: file.docs.clone(),
         source: source.to_owned(),
         parameters,
-        requirements: vec![],
-        manifold: manifold.clone(),
-        loci: vec![],
-        home: None,
+        requirements,
+        manifold,
+        loci,
+        home,
         freedoms: freedoms.list,
         velocity: velocity?,
         pose: pose?,
