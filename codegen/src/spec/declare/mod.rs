@@ -2,6 +2,7 @@
 
 mod basis;
 mod config;
+mod division;
 mod equation;
 mod freedoms;
 mod home;
@@ -116,7 +117,7 @@ fn declare(
     };
     scope::report_unused(file, statements, evaluator);
     let (freedoms, matrices): (Freedoms, _) = (freedoms?, matrices?);
-    Some(JointSpec {
+    let spec = JointSpec {
         name: Declared {
             value: file.name.text.clone(),
             span: file.name.span.clone(),
@@ -136,7 +137,9 @@ fn declare(
         constraint: matrices.constraint,
         speed_basis: matrices.speed_basis,
         speed_names: matrices.speed_names,
-    })
+    };
+    evaluator.errors.extend(division::errors(&spec));
+    Some(spec)
 }
 
 fn pose(
