@@ -7,7 +7,9 @@ use crate::model::{JointSpec, Parameter};
 use std::ops::Range;
 
 /// An error for each statement and each parameter that may be zero and divides in it.
-pub(super) fn errors(spec: &JointSpec) -> Vec<Diagnostic> {
+/// `relations` are the bytes of the relations.
+pub(super) fn errors(spec: &JointSpec, relations: Option<Range<usize>>) -> Vec<Diagnostic> {
+    let relations = relations.unwrap_or_else(|| spec.manifold.span.clone());
     let suspects: Vec<&Parameter> = spec.parameters.iter().filter(|p| p.may_vanish()).collect();
     let divided = |(span, values): (&Range<usize>, Vec<&Expr>)| {
         let divides = |parameter: &&&Parameter| {
@@ -20,18 +22,21 @@ pub(super) fn errors(spec: &JointSpec) -> Vec<Diagnostic> {
             .map(|parameter| error(parameter, span))
             .collect::<Vec<_>>()
     };
-    values(spec).into_iter().flat_map(divided).collect()
+    values(spec, &relations)
+        .into_iter()
+        .flat_map(divided)
+        .collect()
 }
 
 /// What each statement declares; of relations, the basis of their ideal.
-fn values(spec: &JointSpec) -> Vec<(&Range<usize>, Vec<&Expr>)> {
-    let (manifold, pose) = (&spec.manifold, &spec.pose);
+fn values<'a>(
+    spec: &'a JointSpec,
+    relations: &'a Range<usize>,
+) -> Vec<(&'a Range<usize>, Vec<&'a Expr>)> {
+    let (manifold, pose) = (&spec.manifold.value, &spec.pose);
     let generators = spec.freedoms.value.iter();
     let mut values = vec![
-        (
-            &manifold.span,
-            manifold.value.ideal().basis().iter().collect(),
-        ),
+        (relations, manifold.ideal().basis().iter().collect()),
         (
             &spec.freedoms.span,
             generators.flat_map(|freedom| &freedom.generator).collect(),

@@ -138,7 +138,9 @@ fn declare(
         speed_basis: matrices.speed_basis,
         speed_names: matrices.speed_names,
     };
-    evaluator.errors.extend(division::errors(&spec));
+    evaluator
+        .errors
+        .extend(division::errors(&spec, statements.relations_span()));
     Some(spec)
 }
 

@@ -40,6 +40,12 @@ impl<'a> Once<'a> {
     pub fn target(&self, target: Target) -> Option<At<'a, [Node]>> {
         self.targets.get(&target).copied()
     }
+
+    /// From the first relation to the last.
+    pub fn relations_span(&self) -> Option<Range<usize>> {
+        let (first, last) = (self.relations.first()?, self.relations.last()?);
+        Some(first.span.start..last.span.end)
+    }
 }
 
 /// Sorts the statements; those that stand twice are errors.

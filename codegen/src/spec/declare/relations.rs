@@ -21,11 +21,8 @@ pub(super) fn constrained(
     for at in &statements.relations {
         relations.extend(relation(*at, manifold, evaluator).unwrap_or_default());
     }
-    let constrained = match (statements.relations.first(), statements.relations.last()) {
-        (Some(first), Some(last)) if !relations.is_empty() => {
-            let span = first.span.start..last.span.end;
-            basis(relations, &manifold.value, &span, evaluator)
-        }
+    let constrained = match statements.relations_span() {
+        Some(span) if !relations.is_empty() => basis(relations, &manifold.value, &span, evaluator),
         _ => None,
     };
     Declared {

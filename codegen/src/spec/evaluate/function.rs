@@ -166,6 +166,10 @@ fn unknown(name: &Name) -> Diagnostic {
         names::suggestion(&name.text, NAMES.iter().copied()),
     ) {
         ("ln", _) => error.help("the natural logarithm is log(x)"),
+        ("arcsin" | "arccos" | "arctan", _) => {
+            error.help(format!("write `{}`", name.text.replace("arc", "a")))
+        }
+        ("arctan2", _) => error.help("write `atan2(y, x)`"),
         ("abs" | "sign" | "min" | "max" | "floor" | "mod", _) => error.help(
             "it is not smooth; sqrt(x * x) is |x| where x does not vanish, which `except x = 0;` declares",
         ),

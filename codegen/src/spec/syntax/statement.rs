@@ -179,6 +179,10 @@ fn equation(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<Equation> {
         ));
     }
     tokens.expect('=', "an operator or `=` and the other side")?;
+    if tokens.peek('=') {
+        let error = tokens.expected("one `=` and the other side");
+        return Err(Box::new(error.help("an equation is written with one `=`")));
+    }
     let right = expression::expression(tokens)?;
     Ok(Equation { docs, left, right })
 }
