@@ -2,6 +2,7 @@
 
 mod check;
 mod explain;
+mod explain_error;
 mod list;
 mod new;
 mod source;
@@ -17,6 +18,8 @@ Examples:
       H, X, S, ∂S/∂ϕ, J22 as formulas, what was proved and how
   hamel joints check my_joint.joint
       derives and proves a spec of your own; errors are shown where they stand
+  hamel joints explain-error E0305
+      why a spec is refused, with a wrong and a right one
   hamel joints new cylindrical
       writes joint-specs/cylindrical.joint to start from
 
@@ -35,6 +38,7 @@ enum Command {
     List(list::Args),
     Check(check::Args),
     Explain(explain::Args),
+    ExplainError(explain_error::Args),
     New(new::Args),
 }
 
@@ -44,6 +48,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         Command::List(args) => list::run(args),
         Command::Check(args) => check::run(args),
         Command::Explain(args) => explain::run(args),
+        Command::ExplainError(args) => explain_error::run(args),
         Command::New(args) => new::run(args),
     }
 }
