@@ -28,7 +28,8 @@ pub fn derive(source: &str, file: &str) -> Result<Derived, Diagnostics> {
     }
 }
 
-fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+    expand::confine(&mut spec);
     let expansion = expand::expand(&spec)?;
     let claims = prove::prove(&spec, &expansion)?;
     let kernels = expand::kernels(&spec, &expansion)?;

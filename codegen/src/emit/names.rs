@@ -100,7 +100,7 @@ fn identifier(wish: &str) -> String {
 /// What is added to the name of a symbol whose own is taken.
 fn role_name(role: Role) -> &'static str {
     match role {
-        Role::Parameter => "parameter",
+        Role::Parameter | Role::Constant => "parameter",
         Role::Coordinate => "coordinate",
         Role::Target => "target",
         Role::Local => "local",
