@@ -9,7 +9,7 @@ use crate::model::JointSpec;
 use crate::{prove, spec};
 
 /// Bound on symbolic work for one joint, in products of two terms. The library's largest joint spends less than a tenth.
-pub const WORK_LIMIT: u64 = 1_000_000;
+pub const WORK_LIMIT: u64 = 2_000_000;
 
 /// Parses, expands and proves one spec. `file` is the name by which errors call it.
 pub fn derive(source: &str, file: &str) -> Result<Derived, Diagnostics> {

@@ -15,6 +15,7 @@ pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, V
         spec,
         x: expansion,
         ideal: spec.manifold.value.ideal(),
+        child_slopes: child_slopes(spec, expansion),
     };
     let mut kernels = maker.pose_and_velocity();
     kernels.extend(maker.nonholonomic());
@@ -28,6 +29,16 @@ struct Maker<'a> {
     spec: &'a JointSpec,
     x: &'a Expansion,
     ideal: &'a Ideal,
+    child_slopes: Vec<Matrix>,
+}
+
+/// ∂X^c/∂ϕ.
+fn child_slopes(spec: &JointSpec, x: &Expansion) -> Vec<Matrix> {
+    let slope = |k| x.motion.along_each(&x.twist_map_child, k);
+    let ideal = spec.manifold.value.ideal();
+    (0..x.shape.freedoms)
+        .map(|k| ideal.normal_forms(&slope(k)))
+        .collect()
 }
 
 impl Maker<'_> {
@@ -45,8 +56,6 @@ impl Maker<'_> {
         let velocity = Matrix::symbols(&self.x.arguments.velocity);
         let momentum = Matrix::symbols(&self.x.arguments.momentum);
         let inverse = &self.x.velocity_map_inverse;
-        let child_slopes = (0..self.x.shape.freedoms)
-            .map(|k| self.normal(&self.x.motion.along_each(&self.x.twist_map_child, k)));
         let home = self.spec.home.as_ref().map(|home| home.value.clone());
         let home = Matrix::column_vector(home.unwrap_or_else(|| self.spec.manifold.value.home()));
         vec![
@@ -60,7 +69,7 @@ impl Maker<'_> {
                 KernelKind::TwistMapChild,
                 vec![self.x.twist_map_child.clone()],
             ),
-            plain(KernelKind::TwistMapChildGradient, child_slopes.collect()),
+            plain(KernelKind::TwistMapChildGradient, self.child_slopes.clone()),
             plain(KernelKind::VelocityMap, vec![s.base.clone()]),
             plain(KernelKind::VelocityMapInverse, vec![inverse.clone()]),
             plain(KernelKind::VelocityMapGradient, s.slopes.clone()),
@@ -185,21 +194,19 @@ impl Maker<'_> {
         let basis = &self.x.nonholonomic.speed_basis;
         let speeds = Matrix::symbols(&self.x.arguments.speeds);
         let rates = self.normal(&self.x.velocity_map_inverse.times(basis).times(&speeds));
-        let reduced = self.normal(&self.x.twist_map_child.times(basis));
         let zero = Matrix::zeros(6, basis.columns());
-        let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| {
-            sum.plus(
-                &self
-                    .normal(&self.x.motion.along_each(&reduced, k))
-                    .scale(rates.at(k, 0)),
-            )
-        });
-        let acceleration = self.normal(&rate.times(&speeds));
-        let momentum = self.normal(
-            &rate
-                .transpose()
-                .times(&Matrix::symbols(&self.x.arguments.wrench)),
-        );
+        let slopes = self.child_slopes.iter().zip(&self.x.nonholonomic.slopes);
+        let rate = slopes
+            .enumerate()
+            .fold(zero, |sum, (k, (child, of_basis))| {
+                let moved = self.x.twist_map_child.times(of_basis);
+                sum.plus(&child.times(basis).plus(&moved).scale(rates.at(k, 0)))
+            });
+        let rate = self.short(&rate);
+        let acceleration = rate.times(&speeds);
+        let momentum = rate
+            .transpose()
+            .times(&Matrix::symbols(&self.x.arguments.wrench));
         vec![
             plain(KernelKind::BiasAcceleration, vec![acceleration]),
             plain(KernelKind::BiasMomentum, vec![momentum]),

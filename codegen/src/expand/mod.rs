@@ -77,8 +77,11 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
     let structure_constants = structure_constants(spec);
     let jacobian = TwistJacobian::new(&spec.pose.value, &motion, ideal);
     let to_child = adjoint_inverse(&spec.pose.value);
-    let twist_map = twist_map(spec, &jacobian, &to_child, ideal)?;
-    let twist_map_child = ideal.simplest_entries(&ideal.normal_forms(&to_child.times(&twist_map)));
+    let twist_map = twist_map(spec, &jacobian, ideal)?;
+    let twist_map_child = match twist_map == jacobian.base {
+        true => jacobian.child.clone(),
+        false => ideal.simplest_entries(&to_child.times(&twist_map)),
+    };
     let velocity_map = velocity::Solver {
         jacobian: &jacobian,
         twist_map: &twist_map,
@@ -98,7 +101,6 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
     let velocity_map_inverse =
         ideal.normal_forms(&velocity_map.base.adjugate(&simplify).scale(&inverse));
     let nonholonomic = Nonholonomic::new(spec, &motion, &domain)?;
-    let twists = ideal.normal_forms(&to_child.times(&jacobian.base));
     Ok(Expansion {
         shape: Shape {
             configuration: arguments.configuration.len(),
@@ -106,7 +108,7 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
             speeds: nonholonomic.speed_basis.columns(),
             constraints: nonholonomic.constraint.columns(),
         },
-        imperceptible: imperceptible::imperceptible(&twist_map_child, &twists, ideal),
+        imperceptible: imperceptible::imperceptible(&twist_map_child, &jacobian.child, ideal),
         arguments,
         exponential,
         motion,
@@ -192,12 +194,11 @@ fn structure_constants(spec: &JointSpec) -> Vec<Matrix> {
 fn twist_map(
     spec: &JointSpec,
     jacobian: &TwistJacobian,
-    to_child: &Matrix,
     ideal: &Ideal,
 ) -> Result<Matrix, Vec<Diagnostic>> {
     match &spec.twist_map {
         Some(declared) => Ok(declared.value.clone()),
-        None => twist_map_in_frame(spec, jacobian, to_child, ideal),
+        None => twist_map_in_frame(spec, jacobian, ideal),
     }
 }
 
@@ -205,14 +206,12 @@ fn twist_map(
 pub(crate) fn twist_map_in_frame(
     spec: &JointSpec,
     jacobian: &TwistJacobian,
-    to_child: &Matrix,
     ideal: &Ideal,
 ) -> Result<Matrix, Vec<Diagnostic>> {
-    let moving = ideal.simplest_entries(&jacobian.base);
     if spec.velocity.value != VelocityFrame::Parent {
-        return Ok(moving);
+        return Ok(jacobian.base.clone());
     }
-    let child = ideal.normal_forms(&to_child.times(&moving));
+    let child = ideal.normal_forms(&jacobian.child);
     match child.is_constant() {
         true => Ok(child),
         false => Err(vec![

@@ -27,6 +27,8 @@ pub fn bracket(twist: &[Expr]) -> Matrix {
 pub struct TwistJacobian {
     /// J₀, 6×k.
     pub base: Matrix,
+    /// J₀ in the child frame.
+    pub child: Matrix,
     /// J_l = ∂J/∂ϕ_l.
     pub slopes: Vec<Matrix>,
 }
@@ -45,8 +47,15 @@ impl TwistJacobian {
             .collect();
         let omegas: Vec<Vec<Expr>> = rotations
             .iter()
-            .map(|dr| vee(&ideal.normal_forms(&dr.times(&r_t))))
+            .map(|dr| vee(&ideal.simplest_entries(&dr.times(&r_t))))
             .collect();
+        let child_column = |i: usize| {
+            let omega = vee(&ideal.simplest_entries(&r_t.times(&rotations[i])));
+            join(
+                &omega,
+                &ideal.simplest_entries(&r_t.times(&translations[i])),
+            )
+        };
         let column = |i: usize| {
             let linear = translations[i].minus(&cross(&omegas[i], p));
             join(&omegas[i], &ideal.simplest_entries(&linear))
@@ -56,18 +65,19 @@ impl TwistJacobian {
             let omega_slope = curved
                 .times(&r_t)
                 .plus(&rotations[i].times(&rotations[l].transpose()));
-            let omega_slope = vee(&ideal.normal_forms(&omega_slope));
+            let omega_slope = vee(&ideal.simplest_entries(&omega_slope));
             let linear = pose.translation.map(|entry| motion.along_both(entry, i, l));
             let linear = linear
                 .minus(&cross(&omega_slope, p))
                 .minus(&cross(&omegas[i], translations[l].entries()));
-            join(&omega_slope, &ideal.normal_forms(&linear))
+            join(&omega_slope, &ideal.simplest_entries(&linear))
         };
         let slope = |l: usize| {
             Matrix::from_columns(6, &(0..k).map(|i| slope_column(i, l)).collect::<Vec<_>>())
         };
         Self {
             base: Matrix::from_columns(6, &(0..k).map(column).collect::<Vec<_>>()),
+            child: Matrix::from_columns(6, &(0..k).map(child_column).collect::<Vec<_>>()),
             slopes: (0..k).map(slope).collect(),
         }
     }
@@ -132,23 +142,26 @@ impl Solver<'_, '_> {
         }
         // v = ϕ̇ at ϕ = 0, so that S₀ = I.
         let base = Matrix::identity(self.motion.freedoms());
-        let rests = self.rests(&base);
         let slopes = match self.structure_constants {
-            _ if rests.iter().all(Matrix::is_zero) => vec![base.minus(&base); rests.len()],
             // S = I − ½ ad_ϕ.
             Some(constants) => constants
                 .iter()
                 .map(|ad| ad.scale(&Expr::fraction(-1, 2)))
                 .collect(),
-            None => {
-                let inverse = self.left_inverse()?;
-                rests
-                    .iter()
-                    .map(|rest| ideal.normal_forms(&inverse.times(rest)))
-                    .collect()
-            }
+            None => self.slopes_of_rates(&base)?,
         };
         Some(VelocityMap { base, slopes })
+    }
+
+    /// ∂S/∂ϕ where S₀ = I.
+    fn slopes_of_rates(&self, base: &Matrix) -> Option<Vec<Matrix>> {
+        let rests = self.rests(base);
+        if rests.iter().all(Matrix::is_zero) {
+            return Some(vec![base.minus(base); rests.len()]);
+        }
+        let inverse = self.left_inverse()?;
+        let solved = |rest: &Matrix| self.domain.ideal().normal_forms(&inverse.times(rest));
+        Some(rests.iter().map(solved).collect())
     }
 
     /// `J_l − X_l S₀`.

@@ -6,6 +6,9 @@ use crate::matrix::Matrix;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Most term operations that the search for a shorter form of one expression may take.
+const SIMPLIFICATION_LIMIT: u64 = 10_000;
+
 /// The ideal of a manifold's relations, with its Gröbner basis.
 #[derive(Clone, Debug, Default)]
 pub struct Ideal {
@@ -96,10 +99,10 @@ impl Ideal {
 
     /// The shorter of an expression and its normal form; the expression as it stands where they are alike.
     pub fn simplest(&self, expression: &Expr) -> Expr {
-        let normal = self.normal_form(expression);
-        match weight(&normal) < weight(expression) {
-            true => normal,
-            false => expression.clone(),
+        let normal = budget::scope(SIMPLIFICATION_LIMIT, || self.normal_form(expression));
+        match normal {
+            Ok(normal) if weight(&normal) < weight(expression) => normal,
+            _ => expression.clone(),
         }
     }
 
@@ -182,17 +185,24 @@ fn cleared(expression: &Expr, quotient: &Atom, denominator: &Expr) -> Expr {
     expression.terms().map(term).sum()
 }
 
-/// Number of operations to write the expression as it stands.
+/// Number of operations to write the expression as it stands, each function of it once.
 fn weight(expression: &Expr) -> usize {
-    expression
-        .terms()
-        .map(|(monomial, _)| {
-            1 + monomial
-                .factors()
-                .map(|(_, power)| power.unsigned_abs() as usize)
-                .sum::<usize>()
-        })
-        .sum()
+    let of_term = |(monomial, _): (&Monomial, &Rational)| {
+        let powers = monomial
+            .factors()
+            .map(|(_, power)| power.unsigned_abs() as usize);
+        1 + powers.sum::<usize>()
+    };
+    let functions = expression
+        .atoms()
+        .into_iter()
+        .filter_map(|atom| match atom {
+            Atom::Apply(application) => {
+                Some(application.arguments.iter().map(weight).sum::<usize>())
+            }
+            Atom::Symbol(_) => None,
+        });
+    expression.terms().map(of_term).sum::<usize>() + functions.sum::<usize>()
 }
 
 /// The functions with relations that occur in the expression, those inside arguments of roots and quotients included.

@@ -1,7 +1,7 @@
 //! Claims about X and S: they span the velocities of H, to first order in ϕ, at every configuration.
 
 use super::{Attempt, Prover, certified, refuted};
-use crate::expand::{adjoint_inverse, rank, twist_map_in_frame};
+use crate::expand::{rank, twist_map_in_frame};
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
@@ -23,9 +23,7 @@ impl Prover<'_> {
             VelocityFrame::Parent => "X maps velocities in parent axes",
             VelocityFrame::Rates => return Ok(None),
         };
-        let to_child = adjoint_inverse(&self.spec.pose.value);
-        let Ok(expected) = twist_map_in_frame(self.spec, &self.x.jacobian, &to_child, self.ideal)
-        else {
+        let Ok(expected) = twist_map_in_frame(self.spec, &self.x.jacobian, self.ideal) else {
             return Ok(None);
         };
         self.identity(
