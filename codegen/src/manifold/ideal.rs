@@ -31,6 +31,11 @@ impl Ideal {
         self.own.basis()
     }
 
+    /// Whether no configuration satisfies the relations.
+    pub fn is_contradictory(&self) -> bool {
+        self.own.is_trivial()
+    }
+
     /// The normal form: zero exactly for the expressions that vanish modulo the relations.
     pub fn normal_form(&self, expression: &Expr) -> Expr {
         let functions = related_functions(expression);

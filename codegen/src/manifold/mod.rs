@@ -7,7 +7,7 @@ mod reduction;
 #[cfg(test)]
 mod tests;
 
-pub use factor::{Factor, Kind, LARGEST_REAL};
+pub use factor::{Factor, Kind, LARGEST_CONSTRAINED_REAL, LARGEST_REAL};
 pub use ideal::Ideal;
 
 use crate::expr::{Expr, Role, Symbol};
