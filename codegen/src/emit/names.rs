@@ -27,6 +27,10 @@ const RESERVED: &[&str] = &[
     "sum",
     "rotation",
     "nearest_rotation",
+    "start",
+    "moved",
+    "tangent",
+    "tangent_there",
     "from_rows",
     "self",
     "core",
@@ -41,6 +45,7 @@ const RESERVED_TYPES: &[&str] = &[
     "AnyJoint",
     "Joint",
     "JointEntry",
+    "Limit",
     "Pose",
     "ParameterError",
     "ParameterInfo",
@@ -150,6 +155,21 @@ impl Names {
         parameters
             .chain(others.into_iter().flatten())
             .for_each(|symbol| names.claim(symbol));
+        names
+    }
+
+    /// Names of the parameters alone, as the fields of the joint's type have them.
+    pub fn of_fields(derived: &Derived) -> Self {
+        let mut names = Self {
+            by_symbol: BTreeMap::new(),
+            taken: NameSet::default(),
+        };
+        names.taken.taken.extend(number_words());
+        for parameter in &derived.spec.parameters {
+            let name = parameter.symbol.name.to_string();
+            names.taken.taken.insert(name.clone());
+            names.by_symbol.insert(parameter.symbol.clone(), name);
+        }
         names
     }
 

@@ -112,6 +112,11 @@ impl Maker<'_> {
         let (inverse_steps, inverse) =
             finite::retract_differential_inverse(spec, constants, &arguments.velocity)?;
         let structure = same_or_general(&inverse, &arguments.velocity);
+        let (forward_steps, forward) = finite::retract_differential(spec, constants)?;
+        let forward_structure = match forward.is_identity() {
+            true => Structure::Identity,
+            false => Structure::General,
+        };
         Some(vec![
             with(
                 KernelKind::Retract,
@@ -120,6 +125,12 @@ impl Maker<'_> {
                 Structure::General,
             ),
             with(KernelKind::Local, local_steps, local, Structure::General),
+            with(
+                KernelKind::RetractDifferential,
+                forward_steps,
+                forward,
+                forward_structure,
+            ),
             with(
                 KernelKind::RetractDifferentialInverse,
                 inverse_steps,
@@ -166,13 +177,23 @@ impl Maker<'_> {
             vec![self.configuration_rate()],
         );
         let residual = plain(KernelKind::Residual, vec![finite::residual(spec)]);
+        let singular = match spec.loci.is_empty() {
+            true => Structure::Constant,
+            false => Structure::General,
+        };
+        let singular = with(
+            KernelKind::Singularity,
+            vec![],
+            singular_functions(spec),
+            singular,
+        );
         let Some((values, gradient)) = relations else {
-            return vec![rate, project, residual];
+            return vec![rate, project, residual, singular];
         };
         project.method = Method::Newton;
         let values = plain(KernelKind::Relations, vec![values]);
         let gradient = plain(KernelKind::RelationGradient, vec![gradient]);
-        vec![rate, project, residual, values, gradient]
+        vec![rate, project, residual, singular, values, gradient]
     }
 
     /// `Q̇ = Σ_k δ_k (S₀⁻¹ v)_k`, (31).
@@ -212,6 +233,12 @@ impl Maker<'_> {
             plain(KernelKind::BiasMomentum, vec![momentum]),
         ]
     }
+}
+
+/// The functions whose zeros the joint must stay away from: a column, empty for a joint that is global.
+fn singular_functions(spec: &JointSpec) -> Matrix {
+    let functions = spec.loci.iter().map(|locus| locus.value.function.clone());
+    Matrix::column_vector(functions.collect())
 }
 
 /// A kernel without intermediate lines.

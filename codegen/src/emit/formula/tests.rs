@@ -123,6 +123,7 @@ fn program(steps: Vec<Step>, entries: Vec<Expr>) -> Program {
         kind: KernelKind::Retract,
         steps,
         outputs,
+        method: crate::derived::Method::Formula,
         structure: Structure::General,
     };
     let mut taken = NameSet::default();
@@ -227,6 +228,7 @@ fn a_shared_name_gives_way_to_a_name_that_is_taken() {
             &(&a + &b) * &c,
             &(&a + &b) * &a,
         ])],
+        method: crate::derived::Method::Formula,
         structure: Structure::General,
     };
     let mut taken = NameSet::default();
