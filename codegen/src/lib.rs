@@ -17,6 +17,7 @@ pub mod manifold;
 pub mod matrix;
 pub mod model;
 mod pipeline;
+pub mod precise;
 pub mod prove;
 pub mod spec;
 
