@@ -63,6 +63,11 @@ impl Counts {
         }
     }
 
+    /// Work to choose between two ways to write a value, in multiplications: the throughput of common processors, roughly.
+    pub fn work(&self) -> usize {
+        self.additions + self.multiplications + 4 * self.divisions + 16 * self.calls
+    }
+
     /// All operations together.
     pub fn total(&self) -> usize {
         self.additions + self.multiplications + self.divisions + self.calls

@@ -4,6 +4,7 @@
 //! both written from nodes, so that what is counted is what is emitted and what is shown.
 
 mod count;
+mod divisor;
 mod factor;
 mod pairs;
 mod share;
@@ -11,7 +12,7 @@ mod share;
 mod tests;
 
 pub use count::Counts;
-pub use factor::{factored, factored_entries};
+pub use factor::factored;
 pub use share::{Binding, Program};
 
 use crate::expr::{Function, Rational, Symbol};
@@ -190,6 +191,18 @@ impl Node {
         visit(self);
         for part in self.parts() {
             part.visit(visit);
+        }
+    }
+
+    /// The same value without sums as terms of sums.
+    #[must_use]
+    pub fn opened(&self) -> Self {
+        match self.map_parts(&mut Self::opened) {
+            Self::Sum(terms) => Self::sum(terms.into_iter().map(|(minus, term)| match minus {
+                true => term.negated(),
+                false => term,
+            })),
+            other => other,
         }
     }
 
