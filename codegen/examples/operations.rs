@@ -62,6 +62,6 @@ fn joint(file: &Path, by_kernel: bool) -> io::Result<Counts> {
 fn row(name: &str, counts: &Counts) {
     println!(
         "| {name} | {} | {} | {} | {} | {} |",
-        counts.additions, counts.multiplications, 0, counts.divisions, counts.calls
+        counts.additions, counts.multiplications, counts.fused, counts.divisions, counts.calls
     );
 }

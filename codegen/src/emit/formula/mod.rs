@@ -6,13 +6,16 @@
 mod count;
 mod divisor;
 mod factor;
+mod fused;
 mod pairs;
+mod reciprocal;
 mod share;
 #[cfg(test)]
 mod tests;
 
 pub use count::Counts;
 pub use factor::factored;
+pub use fused::Chain;
 pub use share::{Binding, Program};
 
 use crate::expr::{Function, Rational, Symbol};
@@ -194,7 +197,7 @@ impl Node {
         }
     }
 
-    /// The same value without sums as terms of sums.
+    /// The same value without sums as terms of sums, nor products and quotients as factors.
     #[must_use]
     pub fn opened(&self) -> Self {
         match self.map_parts(&mut Self::opened) {
@@ -202,6 +205,7 @@ impl Node {
                 true => term.negated(),
                 false => term,
             })),
+            Self::Product(factors) => Self::product(factors),
             other => other,
         }
     }

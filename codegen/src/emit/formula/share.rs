@@ -2,6 +2,7 @@
 
 use super::divisor::shared_sums;
 use super::pairs::extract_pairs;
+use super::reciprocal::share_reciprocals;
 use super::{Counts, Node, factored};
 use crate::derived::{Kernel, Primitive, Step};
 use crate::emit::names::{NameSet, describe};
@@ -88,6 +89,7 @@ impl Program {
     }
 
     fn of_formulas(kernel: &Kernel, mut formulas: Vec<Node>, taken: &NameSet) -> Self {
+        share_reciprocals(&mut formulas);
         extract_pairs(&mut formulas);
         let mut sharing = Sharing::new(&formulas, taken.clone());
         let mut remaining = formulas.iter();

@@ -5,20 +5,14 @@ use super::numbers::Numbers;
 use super::pool::Pool;
 use std::collections::HashMap;
 
-/// Most pairs of terms looked at in one kernel: a bound on the work. Sums that would exceed it are left alone.
-const MOST_PAIRS: usize = 4_000_000;
+/// Most pairs of terms looked at in one kernel: a bound on the work, half a second. Sums that would exceed it are left alone.
+const MOST_PAIRS: usize = 150_000;
 
-/// Most shared sums pulled out of one kernel.
+/// Most shared sums pulled out of one kernel: a bound on the work, far above what joints need.
 const MOST_DIVISORS: usize = 4000;
 
 /// Pulls shared sums out of all sums of the pool, while that saves operations.
 pub fn extract(pool: &mut Pool) {
-    if std::env::var("STAT").is_ok() {
-        eprintln!(
-            "sums {:?}",
-            pool.sums.iter().map(Vec::len).collect::<Vec<_>>()
-        );
-    }
     let mut search = Search::new(pool);
     for _ in 0..MOST_DIVISORS {
         let Some(best) = search.best() else { break };

@@ -73,28 +73,17 @@ impl Pool {
         (negative, self.sums.len() - 1)
     }
 
-    /// The terms; of a long sum, collected by their factors other than parameters and coordinates.
+    /// The terms; those of a long sum collected by their functions and arguments.
     fn collected(&mut self, sum: &Expr) -> Vec<Term> {
-        let mut groups: BTreeMap<Monomial, Expr> = BTreeMap::new();
-        for (monomial, coefficient) in sum.terms() {
-            let (outside, inside) = match sum.terms().len() > LONG {
-                true => split(monomial),
-                false => (monomial.clone(), Monomial::one()),
-            };
-            *groups.entry(outside).or_default() += &Expr::term(coefficient.clone(), inside);
+        let is_long = sum.terms().len() > LONG;
+        let mut groups = groups(sum, |atom| !is_long || is_function_or_argument(atom));
+        if groups.len() == 1 {
+            groups = self::groups(sum, |_| true);
         }
-        if let (1, Some((outside, _))) = (groups.len(), groups.first_key_value())
-            && outside.is_one()
-        {
-            return sum
-                .terms()
-                .map(|(monomial, coefficient)| self.term(coefficient, monomial))
-                .collect();
-        }
-        let terms = groups
-            .iter()
-            .map(|(outside, inside)| self.group(outside, inside));
-        terms.collect()
+        let terms = groups.iter();
+        terms
+            .map(|(outside, inside)| self.group(outside, inside))
+            .collect()
     }
 
     fn term(&mut self, coefficient: &Rational, monomial: &Monomial) -> Term {
@@ -281,22 +270,27 @@ fn closed_sum(mut terms: Vec<(bool, Node)>) -> Node {
     if flip { sum.negated() } else { sum }
 }
 
-/// A monomial as the product of its functions and arguments, and of its parameters and coordinates.
-fn split(monomial: &Monomial) -> (Monomial, Monomial) {
-    let mut parts = (Monomial::one(), Monomial::one());
-    for (atom, power) in monomial.factors() {
-        let is_inside = match atom {
-            Atom::Symbol(symbol) => [Role::Parameter, Role::Coordinate].contains(&symbol.role),
-            Atom::Apply(application) => application.function == Function::Pi,
-        };
-        let part = if is_inside {
-            &mut parts.1
-        } else {
-            &mut parts.0
-        };
-        *part = part.times(&powered(atom, power));
+/// The sum by the part of each monomial that `outside` chooses: for each the sum of the rests.
+fn groups(sum: &Expr, outside: impl Fn(&Atom) -> bool) -> BTreeMap<Monomial, Expr> {
+    let mut groups: BTreeMap<Monomial, Expr> = BTreeMap::new();
+    for (monomial, coefficient) in sum.terms() {
+        let mut parts = [Monomial::one(), Monomial::one()];
+        for (atom, power) in monomial.factors() {
+            let part = &mut parts[usize::from(!outside(atom))];
+            *part = part.times(&powered(atom, power));
+        }
+        let [key, rest] = parts;
+        *groups.entry(key).or_default() += &Expr::term(coefficient.clone(), rest);
     }
-    parts
+    groups
+}
+
+/// Whether this is neither a coordinate nor a constant.
+fn is_function_or_argument(atom: &Atom) -> bool {
+    match atom {
+        Atom::Symbol(symbol) => ![Role::Parameter, Role::Coordinate].contains(&symbol.role),
+        Atom::Apply(application) => application.function != Function::Pi,
+    }
 }
 
 /// A power of an atom, negative only for those that may be divided by.
