@@ -82,7 +82,10 @@ impl Program {
         let together = shared_sums(&expressions);
         let [alone, together] =
             [alone, together].map(|formulas| Self::of_formulas(kernel, formulas, taken));
-        match Counts::of_program(&together).work() < Counts::of_program(&alone).work() {
+        let [work_alone, work_together] =
+            [&alone, &together].map(|program| Counts::of_program(program).work());
+        // Entries one by one show the matrix as it is: they give way to a gain of a twentieth, not to a tie.
+        match 20 * work_together < 19 * work_alone {
             true => together,
             false => alone,
         }

@@ -137,7 +137,7 @@ impl<'a> Writer<'a> {
                 }
             };
             let last = match minus {
-                true => self.formula(&(*last).clone().negated()),
+                true => self.formula(&(*last).clone().negated().polished()),
                 false => self.formula(last),
             };
             quote! { #receiver.mul_add(#last, #rest) }
