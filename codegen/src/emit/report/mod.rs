@@ -6,6 +6,7 @@ pub mod notation;
 mod provenance;
 mod series;
 mod tables;
+pub mod typeset;
 pub mod units;
 
 pub use formulas::{Formula, main_formulas};
