@@ -95,7 +95,9 @@ fn velocity_map(derived: &Derived, notation: &Notation) -> Formula {
     let parts = parts.map(|(name, matrix)| notation.equation(name.clone(), matrix));
     Formula::new(
         "ϕ̇ to v, to first order in ϕ, (32)",
-        std::iter::once(Equation { left, right }).chain(parts).collect(),
+        std::iter::once(Equation { left, right })
+            .chain(parts)
+            .collect(),
         String::new(),
     )
 }
@@ -157,7 +159,9 @@ fn heading(kind: KernelKind) -> Option<(Math, &'static str)> {
         }
         KernelKind::VelocityMapGradient => (partial(letter('S')), "Derivatives of S at ϕ = 0"),
         KernelKind::Gamma => (
-            summed(Math::product(['γ', 'v'].map(|c| letter(c).sub(letter('k'))))),
+            summed(Math::product(
+                ['γ', 'v'].map(|c| letter(c).sub(letter('k'))),
+            )),
             "Boltzmann–Hamel term of the Lagrangian form, (17)",
         ),
         KernelKind::J22 => (
@@ -235,7 +239,10 @@ fn gradient(
         let each = each.map(|(k, slice)| notation.equation(along(Math::integer(k + 1)), slice));
         return each.collect();
     }
-    let (k, first) = (Math::Letter('k'), Matrix::zeros(slices[0].rows(), slices[0].columns()));
+    let (k, first) = (
+        Math::Letter('k'),
+        Matrix::zeros(slices[0].rows(), slices[0].columns()),
+    );
     let terms = slices.iter().zip(&derived.arguments.local);
     let sum = terms.fold(first, |sum, (slice, local)| {
         sum.plus(&slice.scale(&Expr::symbol(local)))

@@ -10,6 +10,7 @@ mod signature;
 mod spacing;
 mod tokens;
 
+pub use docs::meaning;
 pub use index::{Index, index};
 pub use kernel::Method;
 

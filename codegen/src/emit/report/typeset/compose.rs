@@ -109,13 +109,18 @@ fn call(
     exponent: usize,
     symbol: &impl Fn(&Symbol) -> Math,
 ) -> Math {
-    let inner: Vec<Math> = arguments.iter().map(|node| composed(node, symbol)).collect();
+    let inner: Vec<Math> = arguments
+        .iter()
+        .map(|node| composed(node, symbol))
+        .collect();
     let one = || Math::integer(1);
     let first = || Box::new(inner.first().cloned().unwrap_or_else(one));
     let name = match function {
         Function::Pi => return raised(Math::Letter('π'), exponent),
         Function::Sqrt => return raised(Math::Root(first()), exponent),
-        Function::Recip => return raised(Math::Fraction(Box::new(one()), first()).grouped(), exponent),
+        Function::Recip => {
+            return raised(Math::Fraction(Box::new(one()), first()).grouped(), exponent);
+        }
         Function::Cos => Math::Word("cos".into()),
         Function::Sin => Math::Word("sin".into()),
         Function::Exp => Math::Word("exp".into()),
@@ -130,7 +135,10 @@ fn call(
     };
     let bare = matches!(
         (function, arguments),
-        (Function::Cos | Function::Sin | Function::Ln, [Node::Symbol(_)])
+        (
+            Function::Cos | Function::Sin | Function::Ln,
+            [Node::Symbol(_)]
+        )
     );
     let name = raised(name, exponent);
     match bare {

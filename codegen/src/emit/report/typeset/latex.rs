@@ -21,7 +21,12 @@ pub(super) fn written(math: &Math) -> String {
                     .map(|part| format!("{sign}{{{}}}", written(part)))
                     .unwrap_or_default()
             };
-            format!("{{{}}}{}{}", written(base), script('_', below), script('^', above))
+            format!(
+                "{{{}}}{}{}",
+                written(base),
+                script('_', below),
+                script('^', above)
+            )
         }
         Math::Part(base, part) => format!("{{{}}}_{{{part}}}", written(base)),
         Math::Fraction(above, below) => fraction(&written(above), &written(below)),

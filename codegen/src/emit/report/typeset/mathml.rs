@@ -89,5 +89,7 @@ fn matrix(columns: usize, entries: &[Math]) -> String {
 
 /// Text inside an element.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }
