@@ -42,7 +42,7 @@ pub enum Certificate {
 impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Constant(value) => write!(f, "= {value}, a constant"),
+            Self::Constant(value) => write!(f, "= {value}"),
             Self::Positive(value) => write!(f, "= {value}, which is of one sign"),
             Self::NoCommonZero { functions, except } => {
                 let what = match functions {
