@@ -10,7 +10,7 @@ use crate::{prove, spec};
 use std::path::Path;
 
 /// Bound on symbolic work for one joint, in products of two terms. The library's largest joint spends less than a tenth.
-pub const WORK_LIMIT: u64 = 1_000_000;
+pub const WORK_LIMIT: u64 = 2_000_000;
 
 /// Parses, expands and proves one spec. `file` is the name by which errors call it; where it ends in `.joint`, its stem is
 /// the name of the joint.
@@ -55,7 +55,8 @@ fn misnamed(spec: &JointSpec, file: &str) -> Option<Diagnostic> {
     })
 }
 
-fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+    expand::confine(&mut spec);
     let expansion = expand::expand(&spec)?;
     let claims = prove::prove(&spec, &expansion)?;
     let kernels = expand::kernels(&spec, &expansion)?;

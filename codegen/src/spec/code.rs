@@ -63,10 +63,9 @@ codes! {
     FILE_NAME "E0321" "The file is not named after its joint."
     MAY_VANISH "E0322" "Division by a parameter that may be zero."
 
-    DIMENSION "E0401" "The basis does not span the algebra of its factor."
+    DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."
     NO_CLOSED_FORM "E0403" "exp of the basis has no known closed form."
-    NOT_EXPONENTIAL "E0404" "Phi is neither Q * exp(phi) nor q + phi."
     NO_COMPLEMENT "E0405" "A or S_bar cannot be derived from the other by one formula."
     SINGULAR_VELOCITY_MAP "E0406" "S₀ is singular everywhere."
     DEPENDENT_TWISTS "E0407" "X has dependent columns everywhere."
@@ -82,6 +81,7 @@ codes! {
     CONSTRAINT_LOCUS "E0417" "A loses rank somewhere."
     WORK "E0418" "The derivation takes more work than the bound allows."
     TWIST_MAP_FRAME "E0419" "X is not the velocity in the declared frame."
+    NOT_DEFINED "E0420" "A quotient, root or logarithm that is not defined everywhere."
 }
 
 /// What a code means: a title, why that is an error, a wrong and a right spec. `e305` and `305` are other spellings.

@@ -67,15 +67,8 @@ pub(super) fn manifold(
         )));
         return None;
     }
-    let manifold = Manifold::new(&factors).ok();
-    let value = manifold.or_else(|| {
-        errors.push(refuse(
-            "the relations of this configuration have no normal form".into(),
-        ));
-        None
-    })?;
     Some(Declared {
-        value,
+        value: Manifold::new(&factors),
         span: config.span.clone(),
     })
 }

@@ -6,7 +6,7 @@ use super::super::{code, limits};
 use super::equation;
 use super::once::{At, Once};
 use crate::diagnostic::Diagnostic;
-use crate::expr::{Expr, Function};
+use crate::expr::{Expr, Function, Role};
 use crate::manifold::Manifold;
 use crate::model::Declared;
 use std::ops::Range;
@@ -115,19 +115,22 @@ fn basis(
     let found = evaluator.bounded_by(limits::RELATIONS_BUDGET, "relation", span, |_| {
         Some(manifold.constrained(relations))
     })?;
-    let error = |message: &str| Diagnostic::new(code::RELATIONS, span.clone(), message);
-    let error = match found {
-        Ok(manifold) if manifold.ideal().basis().iter().all(equation::of_configuration) => {
-            return Some(manifold);
-        }
-        Ok(_) => error("these relations contradict each other")
-            .label("no configuration satisfies them")
-            .note("1 is a combination of the relations"),
-        Err(not_monic) => error("these relations have no normal form")
-            .label("they lead to the one below")
-            .note(format!("{} = 0", not_monic.relation))
-            .help("its leading coefficient is a sum of parameters: divide the relation by it, and name the quotients by parameters of their own"),
+    let constrains_parameters = |e: &Expr| {
+        e.symbols()
+            .iter()
+            .all(|symbol| symbol.role == Role::Parameter)
     };
+    if !found.ideal().is_contradictory() && !found.ideal().basis().iter().any(constrains_parameters)
+    {
+        return Some(found);
+    }
+    let error = Diagnostic::new(
+        code::RELATIONS,
+        span.clone(),
+        "these relations contradict each other",
+    )
+    .label("no configuration satisfies them")
+    .note("1 is a combination of the relations");
     evaluator.report(error);
     None
 }
