@@ -102,7 +102,7 @@ fn proofs_as_json_have_their_stable_shape() {
 #[test]
 fn the_page_of_the_ball_shows_what_the_paper_has() {
     let page = stdout(&["joints", "explain", "ball"]);
-    for formula in ["S(Q, ϕ) = Q (I + ½ ϕ~)", "J22 = −p~"] {
+    for formula in ["S(Q, ϕ) = Q (I + ½ ϕ~)", "J₂₂ = −p~"] {
         assert!(page.contains(formula), "{formula}\n{page}");
     }
     assert!(stdout(&["joints", "explain", "planar"]).contains("I − ½ ad_ϕ"));
@@ -144,4 +144,17 @@ fn mistakes_are_told_in_words() {
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
         assert!(stderr.contains(told), "{arguments:?}: {stderr}");
     }
+}
+
+#[test]
+fn error_codes_are_explained() {
+    let page = stdout(&["joints", "explain-error", "E0305"]);
+    assert!(page.starts_with("E0305: "), "{page}");
+    assert!(page.contains("Wrong:\n```joint\n"), "{page}");
+    let list = stdout(&["joints", "explain-error"]);
+    assert!(list.contains("E0305  A basis that does not close under the bracket.\n"));
+    let unknown = hamel(&["joints", "explain-error", "E0350"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
+    assert!(message.contains("did you mean `E0305`?"), "{message}");
 }

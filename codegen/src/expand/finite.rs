@@ -1,4 +1,4 @@
-//! Finite maps of a joint whose Φ is `Q exp(ϕ)` on every factor: Φ, its inverse and differential, projection, residual.
+//! Finite maps of a joint whose Φ is `Q exp(ϕ)` on every factor: Φ, its inverse and differential; projection and residual of any joint.
 
 use super::motion::local_element;
 use super::steps::Steps;
@@ -72,8 +72,18 @@ fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Option<Vec<Expr>> {
         .map(|freedom| freedom.generator.clone())
         .collect();
     let basis = Matrix::from_columns(standard.len(), &columns);
-    let inverse = basis.determinant(&Expr::clone).recip()?;
-    let inverse = basis.adjugate(&Expr::clone).scale(&inverse);
+    // A basis of a subalgebra has fewer columns than rows; within its orbit any left inverse gives the same.
+    let gram = basis.transpose().times(&basis);
+    let inverse = gram.determinant(&Expr::clone).recip()?;
+    let inverse = match basis.rows() == basis.columns() {
+        true => basis
+            .adjugate(&Expr::clone)
+            .scale(&basis.determinant(&Expr::clone).recip()?),
+        false => gram
+            .adjugate(&Expr::clone)
+            .times(&basis.transpose())
+            .scale(&inverse),
+    };
     Some(
         inverse
             .times(&Matrix::column_vector(standard.to_vec()))
@@ -354,6 +364,7 @@ pub fn residual(spec: &JointSpec) -> Matrix {
             .factors()
             .iter()
             .flat_map(residual_of_factor)
+            .chain(spec.manifold.value.declared().iter().cloned())
             .collect(),
     )
 }

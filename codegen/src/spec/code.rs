@@ -1,10 +1,15 @@
 //! The stable codes of errors in a spec. A code keeps its meaning for ever; a new error takes a new number.
+//!
+//! Each code has a page `codes/E….md`: why that is an error, the smallest spec that has it, and one that has not.
 
 macro_rules! codes {
     ($($name:ident $code:literal $meaning:literal)*) => {
         $(#[doc = $meaning] pub const $name: &str = $code;)*
         /// Every code with its meaning, ascending.
         pub const ALL: &[(&str, &str)] = &[$(($code, $meaning)),*];
+
+        /// The pages of all codes, in the same order.
+        const PAGES: &[&str] = &[$(include_str!(concat!("codes/", $code, ".md"))),*];
     };
 }
 
@@ -49,11 +54,18 @@ codes! {
     CONSTRAINT "E0312" "A and S_bar that do not fit each other."
     SPEEDS "E0313" "Names of speeds that do not fit S_bar."
     POSE "E0314" "A 4×4 matrix that is no pose."
+    RELATION "E0315" "A relation that is not a polynomial in the stored scalars of Q."
+    RELATIONS "E0316" "Relations that contradict each other, say nothing, or have no normal form."
+    HOME "E0317" "A home that is not constant or not on the manifold."
+    LOCUS "E0318" "An exception that holds everywhere, nowhere or at home."
+    RANGE "E0319" "A range without values, or whose ends are not numbers."
+    REQUIREMENT "E0320" "A requirement that is not about parameters, or always or never true."
+    FILE_NAME "E0321" "The file is not named after its joint."
+    MAY_VANISH "E0322" "Division by a parameter that may be zero."
 
-    DIMENSION "E0401" "The basis does not span the algebra of its factor."
+    DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."
     NO_CLOSED_FORM "E0403" "exp of the basis has no known closed form."
-    NOT_EXPONENTIAL "E0404" "Phi is neither Q * exp(phi) nor q + phi."
     NO_COMPLEMENT "E0405" "A or S_bar cannot be derived from the other by one formula."
     SINGULAR_VELOCITY_MAP "E0406" "S₀ is singular everywhere."
     DEPENDENT_TWISTS "E0407" "X has dependent columns everywhere."
@@ -69,4 +81,27 @@ codes! {
     CONSTRAINT_LOCUS "E0417" "A loses rank somewhere."
     WORK "E0418" "The derivation takes more work than the bound allows."
     TWIST_MAP_FRAME "E0419" "X is not the velocity in the declared frame."
+    NOT_DEFINED "E0420" "A quotient, root or logarithm that is not defined everywhere."
+}
+
+/// What a code means: a title, why that is an error, a wrong and a right spec. `e305` and `305` are other spellings.
+///
+/// # Errors
+/// The known code that is most like an unknown one.
+pub fn explain(code: &str) -> Result<String, &'static str> {
+    let digits = code.trim_start_matches(['E', 'e']);
+    let padded = format!("E{digits:0>4}");
+    let position = ALL.iter().position(|(known, _)| *known == padded);
+    match position {
+        Some(n) => Ok(format!("{}: {}\n\n{}", ALL[n].0, ALL[n].1, PAGES[n])),
+        None => Err(nearest(&padded)),
+    }
+}
+
+fn nearest(code: &str) -> &'static str {
+    let distance = |known: &str| strsim::damerau_levenshtein(known, code);
+    let codes = ALL.iter().map(|(known, _)| *known);
+    codes
+        .min_by_key(|known| distance(known))
+        .unwrap_or_default()
 }

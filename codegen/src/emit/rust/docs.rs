@@ -170,7 +170,8 @@ fn listed(units: &[String]) -> String {
     }
 }
 
-fn meaning(kind: KernelKind) -> &'static str {
+/// What a kernel maps to what.
+pub fn meaning(kind: KernelKind) -> &'static str {
     match kind {
         KernelKind::Home => "The home configuration.",
         KernelKind::Pose => "H(Q): child coordinates to parent coordinates.",

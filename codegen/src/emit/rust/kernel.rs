@@ -61,6 +61,7 @@ impl<'a> Method<'a> {
             counts += Counts {
                 additions: relations,
                 multiplications: relations,
+                fused: relations,
                 divisions: 0,
                 calls: 1,
             };

@@ -14,6 +14,7 @@ mod spacing;
 mod tests;
 mod tokens;
 
+pub use docs::meaning;
 pub use index::{Index, index};
 pub use kernel::Method;
 

@@ -75,7 +75,7 @@ fn norm(writer: &Writer<'_>, relations: &[Node]) -> TokenStream {
     let relations = relations.iter().map(|relation| writer.formula(relation));
     quote! {
         let relations = [#(#relations),*];
-        let sum = relations.into_iter().fold(T::zero(), |sum, relation| sum + relation * relation);
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 }

@@ -5,7 +5,7 @@
 use super::{Index, file, index};
 use crate::derive;
 use crate::derived::{Derived, Kernel, KernelKind, Method, Structure};
-use crate::emit::{Report, explain_text, page};
+use crate::emit::{Accuracy, Report, explain_text, page};
 use crate::expr::{Expr, Rational};
 use crate::matrix::Matrix;
 use crate::model::{Declared, End, Interval, Locus, Requirement};
@@ -168,8 +168,8 @@ fn pages_and_the_index_take_kernels_without_formulas() {
             .iter()
             .all(|formula| !formula.text.trim().is_empty())
     );
-    explain_text(&ball).expect("the template holds");
-    page(&ball, "joint-specs/test.joint").expect("the template holds");
+    explain_text(&ball, &Accuracy::default()).expect("the template holds");
+    page(&ball, "joint-specs/test.joint", &Accuracy::default()).expect("the template holds");
     index(&[ball], "joint-specs", Index::Nested).expect("the emitted tokens are Rust");
 }
 
