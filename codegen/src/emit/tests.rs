@@ -26,6 +26,15 @@ joint pose(v: m, h: m) {
     H = rot_z(p) * trans_z(half) * trans_x(q) * trans_x(v / h);
 }";
 
+/// A blade on a plane: its pose and its speeds have functions.
+const BLADE: &str = "hamel = 1;
+joint blade {
+    config a: R1, x: R1, y: R1;
+    H = pose(rot_z(a), [x, y, 0]);
+    A = [0; -sin(a); cos(a)];
+    S_bar = [1, 0; 0, cos(a); 0, sin(a)];
+}";
+
 fn derived(source: &str) -> Derived {
     derive(source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"))
 }
@@ -80,12 +89,36 @@ fn emitted_code_is_formatted_apart_from_blank_lines() {
     let parsed = syn::parse_file(&text).expect("the emitted text is Rust");
     let dense = |text: &str| {
         text.lines()
-            .filter(|line| !line.trim().is_empty())
+            .filter(|line| !line.trim().is_empty() && !line.trim_start().starts_with("// "))
             .map(str::to_owned)
             .collect::<Vec<_>>()
     };
-    // The parser drops the header, an ordinary comment.
-    assert_eq!(dense(&prettyplease::unparse(&parsed)), dense(&text)[1..]);
+    // The parser drops ordinary comments.
+    assert_eq!(dense(&prettyplease::unparse(&parsed)), dense(&text));
+}
+
+#[test]
+fn kernels_name_the_lines_they_come_from() {
+    let text = emitted(BALL);
+    let all = "    /// From line 5 `basis`, line 6 `velocity`, line 7 `Phi`, line 8 `H`, line 9 `X`.\n    fn gamma";
+    assert!(text.contains(all), "{text}");
+    let one = "    /// From line 8 `H = pose(Q, [0, 0, 0]);`.\n    fn pose";
+    assert!(text.contains(one), "{text}");
+}
+
+#[test]
+fn functions_in_bodies_name_the_line_that_holds_them() {
+    let text = emitted(BLADE);
+    let comment = "        // line 4 `H`: sin_a, cos_a\n        let (sin_a, cos_a) = a.sin_cos();";
+    assert!(text.contains(comment), "{text}");
+}
+
+#[test]
+fn modules_in_one_file_keep_blank_lines_and_the_text_of_their_spec() {
+    let joints = [derived(BALL), derived(BLADE)];
+    let text = index(&joints, "joints", Index::Nested).expect("the emitted tokens are Rust");
+    assert!(text.contains("        }\n\n        /// X(Q)"), "{text}");
+    assert!(text.contains(&format!("r#\"{BALL}\"#")), "{text}");
 }
 
 #[test]

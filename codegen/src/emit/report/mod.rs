@@ -9,7 +9,7 @@ mod tables;
 pub mod units;
 
 pub use formulas::{Formula, main_formulas};
-pub use provenance::statement;
+pub use provenance::{Statement, sources, statement};
 pub use series::{Series, series};
 pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow};
 

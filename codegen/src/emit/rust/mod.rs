@@ -1,10 +1,12 @@
 //! Rust source of a joint: one module with its type, its kernels and its registry entry.
 
+mod comment;
 mod docs;
 mod entry;
 mod index;
 mod joint;
 mod kernel;
+mod origin;
 mod result;
 mod signature;
 mod spacing;
@@ -124,7 +126,8 @@ fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, Malform
         joint: joint.to_owned(),
         reason: error.to_string(),
     })?;
-    Ok(format!("// {header}\n{}", spacing::spaced(&file)))
+    let text = comment::with_comments(&spacing::spaced(&file));
+    Ok(format!("// {header}\n{text}"))
 }
 
 /// Emitted tokens that are no Rust.
