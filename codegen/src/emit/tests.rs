@@ -26,13 +26,12 @@ joint pose(v: m, h: m) {
     H = rot_z(p) * trans_z(half) * trans_x(q) * trans_x(v / h);
 }";
 
-/// A blade on a plane: its pose and its speeds have functions.
-const BLADE: &str = "hamel = 1;
-joint blade {
-    config a: R1, x: R1, y: R1;
-    H = pose(rot_z(a), [x, y, 0]);
-    A = [0; -sin(a); cos(a)];
-    S_bar = [1, 0; 0, cos(a); 0, sin(a)];
+/// Two turns about axes that cross: H and X are declared, both with functions.
+const ELBOW: &str = "hamel = 1;
+joint elbow {
+    config a: R1, b: R1;
+    H = rot_z(a) * rot_x(b);
+    X = [0, cos(a); 0, sin(a); 1, 0; O(3, 2)];
 }";
 
 fn derived(source: &str) -> Derived {
@@ -108,14 +107,14 @@ fn kernels_name_the_lines_they_come_from() {
 
 #[test]
 fn functions_in_bodies_name_the_line_that_holds_them() {
-    let text = emitted(BLADE);
-    let comment = "        // line 4 `H`: sin_a, cos_a\n        let (sin_a, cos_a) = a.sin_cos();";
+    let text = emitted(ELBOW);
+    let comment = "        // line 4 `H`: sin_b, cos_b\n        let (sin_b, cos_b) = b.sin_cos();";
     assert!(text.contains(comment), "{text}");
 }
 
 #[test]
 fn modules_in_one_file_keep_blank_lines_and_the_text_of_their_spec() {
-    let joints = [derived(BALL), derived(BLADE)];
+    let joints = [derived(BALL), derived(ELBOW)];
     let text = index(&joints, "joints", Index::Nested).expect("the emitted tokens are Rust");
     assert!(text.contains("        }\n\n        /// X(Q)"), "{text}");
     assert!(text.contains(&format!("r#\"{BALL}\"#")), "{text}");
