@@ -15,6 +15,8 @@ const FEW: usize = 100;
 /// Points of the sweep, and how many of them make a batch with a seed of its own.
 const SWEEP: usize = 100_000;
 const BATCH: usize = 250;
+/// Points between lines of progress.
+const PROGRESS: usize = 10_000;
 
 /// The worst errors at `count` points.
 fn sweep<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
@@ -34,6 +36,10 @@ where
             seed,
             BATCH.min(count),
         ));
+        let done = (seed as usize + 1) * BATCH;
+        if done.is_multiple_of(PROGRESS) {
+            eprintln!("{} {}: {done} of {count} points", J::NAME, T::NAME);
+        }
         worst
     })
 }
