@@ -48,12 +48,20 @@ pub fn run(
     figures
 }
 
+/// The time that this thread has computed: other programs on the machine do not count. Where the system does not tell, the clock.
+fn now(start: Instant) -> Duration {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let nanoseconds = text.split(' ').next().and_then(|field| field.parse().ok());
+    nanoseconds.map_or_else(|| start.elapsed(), Duration::from_nanos)
+}
+
 /// The outcome and its time: the least of three where that is a record.
 fn timed(text: &str, target: &impl Fn(&str) -> Outcome, record: Duration) -> (Outcome, Duration) {
     let once = || {
-        let start = Instant::now();
+        let clock = Instant::now();
+        let start = now(clock);
         let outcome = target(text);
-        (outcome, start.elapsed())
+        (outcome, now(clock).saturating_sub(start))
     };
     let (outcome, mut time) = once();
     for _ in 0..2 {
