@@ -1,4 +1,4 @@
-//! Keeps `src/joints` and `pages` what the specs in `joint-specs` say, in this workspace alone.
+//! Keeps `src/joints`, `pages` and `JOINTS.md` what the specs in `joint-specs` say, in this workspace alone.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ fn main() -> Result<(), hamel_codegen::BuildError> {
     }
     hamel_codegen::Build::new()
         .specs("../joint-specs")
+        .accuracy("../tests/data/kernel_accuracy.csv")
         .library("src/joints", "pages")
         .compile()
 }

@@ -102,7 +102,7 @@ fn proofs_as_json_have_their_stable_shape() {
 #[test]
 fn the_page_of_the_ball_shows_what_the_paper_has() {
     let page = stdout(&["joints", "explain", "ball"]);
-    for formula in ["S(Q, ϕ) = Q (I + ½ ϕ~)", "J22 = −p~"] {
+    for formula in ["S(Q, ϕ) = Q (I + ½ ϕ~)", "J₂₂ = −p~"] {
         assert!(page.contains(formula), "{formula}\n{page}");
     }
     assert!(stdout(&["joints", "explain", "planar"]).contains("I − ½ ad_ϕ"));

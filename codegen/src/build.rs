@@ -20,9 +20,11 @@ pub use error::BuildError;
 use crate::derive;
 use crate::derived::Derived;
 use crate::emit::files::Files;
+use crate::emit::report::Accuracy;
 use crate::emit::rust::{Index, index};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The variable that makes a build check the committed files instead of writing them: `HAMEL_GENERATE=check`.
@@ -32,6 +34,7 @@ pub const GENERATE_VARIABLE: &str = "HAMEL_GENERATE";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Build {
     specs: PathBuf,
+    accuracy: Option<PathBuf>,
     target: Target,
 }
 
@@ -54,6 +57,7 @@ impl Build {
     pub fn new() -> Self {
         Self {
             specs: "joints".into(),
+            accuracy: None,
             target: Target::Single(None),
         }
     }
@@ -72,8 +76,16 @@ impl Build {
         self
     }
 
-    /// Writes one file a joint and an index into `modules`, and one page a joint into `pages`: for sources that are
-    /// committed. With `HAMEL_GENERATE=check` it writes nothing, and stale, missing and surplus files are an error.
+    /// A table of measured errors for the pages of [`Build::library`], relative to the crate's manifest: comma-separated
+    /// `joint,kernel,type,worst_ulp,points`, with this header. Where the file is absent, pages do without.
+    #[must_use]
+    pub fn accuracy(mut self, file: impl Into<PathBuf>) -> Self {
+        self.accuracy = Some(file.into());
+        self
+    }
+
+    /// Writes one file a joint and an index into `modules`, one page and one drawing a joint into `pages`, and an overview
+    /// `JOINTS.md` beside the folder of pages: for sources that are committed. With `HAMEL_GENERATE=check` it writes nothing, and stale, missing and surplus files are an error.
     #[must_use]
     pub fn library(mut self, modules: impl Into<PathBuf>, pages: impl Into<PathBuf>) -> Self {
         self.target = Target::Library {
@@ -108,8 +120,26 @@ impl Build {
             Target::Single(folder) => self.write_single(&joints, folder.as_deref()),
             Target::Library { modules, pages } => {
                 println!("cargo::rerun-if-env-changed={GENERATE_VARIABLE}");
-                library::generate(&joints, &self.label(), modules, pages, check)
+                let accuracy = self.read_accuracy()?;
+                library::generate(&joints, &self.label(), (modules, pages), &accuracy, check)
             }
+        }
+    }
+
+    fn read_accuracy(&self) -> Result<Accuracy, BuildError> {
+        let Some(path) = &self.accuracy else {
+            return Ok(Accuracy::default());
+        };
+        // A file that does not exist would make cargo build again each time: its folder is watched until it does.
+        let existing = path.ancestors().find(|path| path.exists());
+        existing.into_iter().for_each(watch);
+        match std::fs::read_to_string(path) {
+            Ok(text) => Accuracy::parse(&text).map_err(|error| BuildError::Accuracy {
+                path: path.clone(),
+                error,
+            }),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Accuracy::default()),
+            Err(error) => Err(BuildError::read(path, error)),
         }
     }
 

@@ -9,6 +9,7 @@ pub mod algebra;
 mod build;
 pub mod derived;
 pub mod diagnostic;
+pub mod domain;
 pub mod emit;
 pub mod expand;
 pub mod expr;

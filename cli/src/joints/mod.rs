@@ -15,6 +15,8 @@ Examples:
       the joints of the library
   hamel joints explain ball
       H, X, S, ∂S/∂ϕ, J22 as formulas, what was proved and how
+  hamel joints explain ball --html -o ball.html
+      the same as a page for a browser, with drawings
   hamel joints check my_joint.joint
       derives and proves a spec of your own; errors are shown where they stand
   hamel joints new cylindrical

@@ -4,9 +4,14 @@ use crate::output::Failure;
 use hamel_codegen::derived::Derived;
 use std::path::Path;
 
+/// Whether this is the path of a spec, not the name of a joint of the library.
+pub fn is_file(name: &str) -> bool {
+    name.contains(['/', '\\']) || name.ends_with(".joint")
+}
+
 /// The spec of `name`: its file name as errors show it, and its text.
 pub fn find(name: &str) -> Result<(String, String), Failure> {
-    if name.contains(['/', '\\']) || name.ends_with(".joint") {
+    if is_file(name) {
         return read(Path::new(name));
     }
     match hamel_joints::specs().find(|(known, _)| *known == name) {

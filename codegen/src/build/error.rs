@@ -2,9 +2,10 @@
 
 use crate::diagnostic::Diagnostics;
 use crate::emit::files::FileError;
+use crate::emit::report::AccuracyError;
 use crate::emit::rust::Malformed;
 use std::fmt::{Debug, Display, Formatter};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Why generation failed. `Debug` prints the same text as `Display`, because that is what a failing `main` shows.
 pub enum BuildError {
@@ -27,6 +28,13 @@ pub enum BuildError {
     Malformed(Malformed),
     /// A page could not be made.
     Page(tera::Error),
+    /// The table of measured errors is none.
+    Accuracy {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: AccuracyError,
+    },
     /// There is no `OUT_DIR`: not called from a build script, and no folder was given.
     NoOutDir,
 }
@@ -92,6 +100,7 @@ impl Display for BuildError {
             }
             Self::Malformed(error) => write!(f, "{error}"),
             Self::Page(error) => write!(f, "cannot make a page: {error}"),
+            Self::Accuracy { path, error } => write!(f, "{}: {error}", path.display()),
             Self::NoOutDir => f.write_str(
                 "OUT_DIR is not set: call this from a build script, or give a folder with out_dir",
             ),

@@ -7,8 +7,8 @@ pub mod page;
 pub mod report;
 pub mod rust;
 
-pub use page::{explain_text, page};
-pub use report::Report;
+pub use page::{drawing_file, explain_text, html_page, overview, page};
+pub use report::{Accuracy, Report};
 
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use super::names::{number_name, type_name};
 use super::rust::{Index, file, index};
-use super::{Report, explain_text, page};
+use super::{Accuracy, Report, explain_text, page};
 use crate::derive;
 use crate::derived::Derived;
 use crate::expr::Rational;
@@ -27,7 +27,7 @@ joint pose(v: m, h: m) {
 }";
 
 fn derived(source: &str) -> Derived {
-    derive(source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"))
+    derive(source, "test").unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn emitted(source: &str) -> String {
@@ -37,8 +37,14 @@ fn emitted(source: &str) -> String {
 #[test]
 fn output_is_the_same_each_time() {
     assert_eq!(emitted(BALL), emitted(BALL));
-    let page_of =
-        |source| page(&derived(source), "joint-specs/test.joint").expect("the template holds");
+    let page_of = |source| {
+        page(
+            &derived(source),
+            "joint-specs/test.joint",
+            &Accuracy::default(),
+        )
+        .expect("the template holds")
+    };
     assert_eq!(page_of(BALL), page_of(BALL));
 }
 
@@ -49,7 +55,12 @@ fn every_file_says_where_it_comes_from() {
         emitted(BALL).lines().next(),
         Some(format!("// {expected}").as_str())
     );
-    let page = page(&derived(BALL), "joint-specs/test.joint").expect("the template holds");
+    let page = page(
+        &derived(BALL),
+        "joint-specs/test.joint",
+        &Accuracy::default(),
+    )
+    .expect("the template holds");
     assert_eq!(
         page.lines().next(),
         Some(format!("<!-- {expected} -->").as_str())
@@ -134,10 +145,10 @@ fn the_series_of_the_ball_joint_is_that_of_the_paper() {
 
 #[test]
 fn a_joint_explains_itself() {
-    let text = explain_text(&derived(BALL)).expect("the template holds");
+    let text = explain_text(&derived(BALL), &Accuracy::default()).expect("the template holds");
     for part in [
         "ball\n\n  Ball joint.",
-        "J22 = ",
+        "J₂₂ = −p~ = ",
         "pose_in_se3",
         "18 multiplications",
         "Inertias that the joint cannot feel",

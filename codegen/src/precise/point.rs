@@ -155,5 +155,6 @@ fn role_number(role: Role) -> u8 {
         Role::Wrench => 7,
         Role::Inertia => 8,
         Role::Intermediate => 9,
+        Role::Constant => 10,
     }
 }

@@ -1,11 +1,63 @@
 //! A report as the templates see it: lists of named texts.
 
-use crate::emit::report::Report;
+use super::text::{cell, html, paragraphs};
 use crate::emit::report::layout::{left_aligned, width};
+use crate::emit::report::{Formula, Report};
 use std::collections::BTreeMap;
 use tera::Context;
 
 type Row = BTreeMap<&'static str, String>;
+
+/// Cells that hold identifiers, in which nothing needs escaping.
+const IDENTIFIERS: &[&str] = &["name", "kernel", "kind"];
+
+/// What a template is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Medium {
+    /// A terminal: the columns of tables are aligned.
+    Terminal,
+    /// Markdown: formulas are LaTeX.
+    Markdown,
+    /// HTML: formulas are MathML.
+    Html,
+}
+
+impl Medium {
+    /// Text of a spec or proof in a table.
+    fn text(self, text: &str) -> String {
+        match self {
+            Self::Terminal => text.to_owned(),
+            Self::Markdown => cell(text),
+            Self::Html => html(text),
+        }
+    }
+
+    fn table(self, mut rows: Vec<Row>) -> Vec<Row> {
+        let cells = rows.iter_mut().flatten();
+        for (_, text) in cells.filter(|(key, _)| !IDENTIFIERS.contains(key)) {
+            *text = self.text(text);
+        }
+        match self {
+            Self::Terminal => aligned(rows),
+            _ => rows,
+        }
+    }
+
+    /// The equations of a formula.
+    fn equations(self, formula: &Formula) -> String {
+        let equations = formula.equations.iter();
+        match self {
+            Self::Terminal => formula.text.clone(),
+            Self::Markdown => equations
+                .map(|equation| format!("```math\n{}\n```\n", equation.latex()))
+                .collect::<Vec<_>>()
+                .join("\n"),
+            Self::Html => equations
+                .map(|equation| format!("<div class=\"equation\">{}</div>\n", equation.mathml()))
+                .collect(),
+        }
+    }
+}
 
 fn row<const C: usize>(cells: [(&'static str, &str); C]) -> Row {
     cells
@@ -34,34 +86,59 @@ fn aligned(mut rows: Vec<Row>) -> Vec<Row> {
     rows
 }
 
-/// The report for a template; `plain` aligns the columns of tables.
-pub fn context(report: &Report, plain: bool) -> Context {
-    let table = |rows: Vec<Row>| if plain { aligned(rows) } else { rows };
+/// The report for a template.
+pub fn context(report: &Report, medium: Medium) -> Context {
     let mut context = Context::new();
+    let list = |texts: &[String]| -> Vec<String> { texts.iter().map(|t| medium.text(t)).collect() };
     context.insert("name", &report.name);
     context.insert("type_name", &report.type_name);
-    context.insert("summary", &report.summary);
+    context.insert("summary", &medium.text(&report.summary));
     context.insert("docs", &report.docs);
+    context.insert("paragraphs", &list(&paragraphs(&report.docs)));
+    context.insert("freedom_count", &report.shape.freedoms);
+    context.insert("scalar_count", &report.shape.configuration);
+    context.insert("constraint_count", &report.shape.constraints);
+    context.insert("requirements", &list(&report.requirements));
     context.insert("manifold", &report.manifold);
     context.insert("coordinates", &report.coordinates);
+    context.insert("home", &report.home);
     context.insert("velocity_frame", report.velocity_frame.as_str());
     context.insert("speeds", &report.speeds);
     context.insert("imperceptible", &report.imperceptible);
     context.insert("spec", report.spec.trim());
-    context.insert("parameters", &table(parameters(report)));
-    context.insert("freedoms", &table(freedoms(report)));
-    context.insert("formulas", &formulas(report));
-    context.insert("claims", &table(claims(report)));
-    context.insert("counts", &table(counts(report)));
+    tables(&mut context, report, medium);
     context
+}
+
+fn tables(context: &mut Context, report: &Report, medium: Medium) {
+    context.insert("parameters", &medium.table(parameters(report)));
+    context.insert("freedoms", &medium.table(freedoms(report)));
+    context.insert("formulas", &formulas(report, medium));
+    context.insert("singularities", &singularities(report, medium));
+    context.insert("claims", &medium.table(claims(report)));
+    context.insert("finite", &medium.table(finite(report)));
+    context.insert("counts", &medium.table(counts(report)));
+    context.insert("accuracy", &medium.table(accuracy(report)));
+    let fibres = report.fibres().map(|claim| {
+        row([
+            ("statement", &medium.text(&claim.statement)),
+            ("detail", &medium.text(&claim.detail)),
+        ])
+    });
+    context.insert("fibres", &fibres.unwrap_or_default());
 }
 
 fn parameters(report: &Report) -> Vec<Row> {
     let rows = report.parameters.iter();
     rows.map(|p| {
+        let range = match p.range.as_str() {
+            "" => "any",
+            range => range,
+        };
         row([
             ("name", &p.name),
             ("unit", &p.unit),
+            ("range", range),
             ("description", &p.description),
         ])
     })
@@ -82,16 +159,32 @@ fn freedoms(report: &Report) -> Vec<Row> {
     rows.collect()
 }
 
-fn formulas(report: &Report) -> Vec<Row> {
+fn formulas(report: &Report, medium: Medium) -> Vec<Row> {
     let rows = report.formulas.iter();
     rows.map(|f| {
         row([
             ("title", &f.title),
-            ("text", &f.text),
+            ("equations", &medium.equations(f)),
             ("statement", &f.statement),
         ])
     })
     .collect()
+}
+
+fn singularities(report: &Report, medium: Medium) -> Vec<Row> {
+    let rows = report.singularities.iter().map(|locus| {
+        let function = match medium {
+            Medium::Terminal => locus.function.text(),
+            Medium::Markdown => format!("$`{}`$", locus.function.latex()),
+            Medium::Html => format!("<math>{}</math>", locus.function.mathml()),
+        };
+        row([
+            ("function", &function),
+            ("text", &locus.text),
+            ("cause", &medium.text(&locus.cause)),
+        ])
+    });
+    rows.collect()
 }
 
 fn claims(report: &Report) -> Vec<Row> {
@@ -100,6 +193,7 @@ fn claims(report: &Report) -> Vec<Row> {
         row([
             ("name", &c.name),
             ("statement", &c.statement),
+            ("kind", c.kind),
             ("proof", &c.proof),
             ("detail", &c.detail),
         ])
@@ -107,13 +201,36 @@ fn claims(report: &Report) -> Vec<Row> {
     rows.collect()
 }
 
+fn finite(report: &Report) -> Vec<Row> {
+    let rows = report.finite.iter().map(|map| {
+        row([
+            ("kernel", &map.kernel),
+            ("meaning", &map.meaning),
+            ("method", &map.method),
+        ])
+    });
+    rows.collect()
+}
+
 fn counts(report: &Report) -> Vec<Row> {
     let rows = report.counts.iter().map(|c| {
-        let operations = c.operations.to_string();
         row([
             ("kernel", &c.kernel),
             ("structure", &c.structure),
-            ("operations", &operations),
+            ("operations", &c.operations),
+        ])
+    });
+    rows.collect()
+}
+
+fn accuracy(report: &Report) -> Vec<Row> {
+    let rows = report.accuracy.iter().map(|a| {
+        let (worst, points) = (format!("{:.2}", a.worst_ulp), a.points.to_string());
+        row([
+            ("kernel", &a.kernel),
+            ("scalar", &a.scalar),
+            ("worst", &worst),
+            ("points", &points),
         ])
     });
     rows.collect()

@@ -1,22 +1,39 @@
 //! The formulas of a report: names, matrices, and what they mean.
 
-use super::layout;
-use super::notation::{Notation, subscript};
+use super::notation::Notation;
 use super::series::series;
 use super::statement;
+use super::typeset::{Equation, Mark, Math};
 use crate::derived::{Derived, Kernel, KernelKind};
 use crate::expr::Expr;
 use crate::matrix::Matrix;
+
+/// Up to so many derivatives along ϕ_k are shown one by one; more are summed up in one matrix.
+const FEW: usize = 3;
 
 /// A formula on lines of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Formula {
     /// What it is.
     pub title: String,
-    /// The formula, aligned, over several lines.
+    /// The equations.
+    pub equations: Vec<Equation>,
+    /// The equations as text, aligned, over several lines.
     pub text: String,
     /// The statement that declares it, where one does.
     pub statement: String,
+}
+
+impl Formula {
+    fn new(title: &str, equations: Vec<Equation>, statement: String) -> Self {
+        let text: Vec<String> = equations.iter().map(Equation::text).collect();
+        Self {
+            title: title.into(),
+            text: text.join("\n\n"),
+            equations,
+            statement,
+        }
+    }
 }
 
 /// H, X and S: what the documentation of a module shows.
@@ -47,6 +64,7 @@ pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
         KernelKind::SpeedBasis,
         KernelKind::SpeedBasisGradient,
         KernelKind::ConfigurationRate,
+        KernelKind::Relations,
         KernelKind::BiasAcceleration,
         KernelKind::BiasMomentum,
     ];
@@ -62,53 +80,54 @@ pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
 
 fn velocity_map(derived: &Derived, notation: &Notation) -> Formula {
     let series = series(derived, notation);
-    let higher = if derived
-        .kernel(KernelKind::VelocityMapGradient)
-        .is_some_and(all_zero)
-    {
-        ""
-    } else {
-        " + O(ϕ²)"
+    let gradient = derived.kernel(KernelKind::VelocityMapGradient);
+    let arguments = vec![Math::Letter('Q'), Math::Sign(','), Math::Letter('ϕ')];
+    let left = Math::Row(vec![Math::Letter('S'), Math::Row(arguments).grouped()]);
+    let right = match gradient.is_some_and(all_zero) {
+        true => series.product,
+        false => {
+            let square = Math::Letter('ϕ').sup(Math::integer(2)).grouped();
+            let higher = Math::Row(vec![Math::Letter('O'), square]);
+            Math::Row(vec![series.product, Math::Sign('+'), higher])
+        }
     };
-    let mut text = format!("S(Q, ϕ) = {}{higher}", series.product);
-    for (name, matrix) in &series.parts {
-        text += "\n\n";
-        text += &shown(notation, name, matrix);
-    }
-    Formula {
-        title: "ϕ̇ to v, to first order in ϕ, (32)".into(),
-        text,
-        statement: String::new(),
-    }
+    let parts = series.parts.iter();
+    let parts = parts.map(|(name, matrix)| notation.equation(name.clone(), matrix));
+    Formula::new(
+        "ϕ̇ to v, to first order in ϕ, (32)",
+        std::iter::once(Equation { left, right })
+            .chain(parts)
+            .collect(),
+        String::new(),
+    )
 }
 
-/// The formula of a kernel; nothing for parts of nonholonomic joints where there are none.
+/// The formula of a kernel; nothing for parts of nonholonomic joints where there are none, and for kernels without formulas.
 fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option<Formula> {
-    let kernel = derived.kernel(kind)?;
+    // What the runtime solves for has no formula.
+    let kernel = derived
+        .kernel(kind)
+        .filter(|kernel| !kernel.outputs.is_empty())?;
     let (name, title) = heading(kind)?;
-    let holonomic = derived.shape.constraints == 0;
     let only_nonholonomic = [
         KernelKind::Constraint,
         KernelKind::SpeedBasis,
         KernelKind::SpeedBasisGradient,
     ];
-    if holonomic && only_nonholonomic.contains(&kind) {
+    if derived.shape.constraints == 0 && only_nonholonomic.contains(&kind) {
         return None;
     }
-    let statement = statement(&derived.spec, kind).unwrap_or_default();
     let name = match cross_product(derived, kernel) {
-        Some(short) => format!("{name} = {short}"),
-        None => name.to_owned(),
+        Some(short) => name.equals(short),
+        None => name,
     };
-    Some(Formula {
-        title: title.into(),
-        text: text(notation, kernel, &name),
-        statement,
-    })
+    let equations = equations(derived, notation, kernel, &name);
+    let statement = statement(&derived.spec, kind).unwrap_or_default();
+    (!equations.is_empty()).then(|| Formula::new(title, equations, statement))
 }
 
 /// `p~` or `−v~`, where a Boltzmann–Hamel term is a cross product, as (32) makes it for a ball.
-fn cross_product(derived: &Derived, kernel: &Kernel) -> Option<String> {
+fn cross_product(derived: &Derived, kernel: &Kernel) -> Option<Math> {
     let (symbols, letter) = match kernel.kind {
         KernelKind::Gamma => (&derived.arguments.velocity, 'v'),
         KernelKind::J22 => (&derived.arguments.momentum, 'p'),
@@ -117,64 +136,122 @@ fn cross_product(derived: &Derived, kernel: &Kernel) -> Option<String> {
     let vector: Vec<Expr> = symbols.iter().map(Expr::symbol).collect();
     let (matrix, tilde) = (kernel.outputs.first()?, Matrix::tilde(vector.get(..3)?));
     let negative = tilde.map(|entry| -entry);
+    let name = Math::Letter(letter).marked(Mark::Tilde);
     match (vector.len(), *matrix == tilde, *matrix == negative) {
-        (3, true, _) => Some(format!("{letter}~")),
-        (3, _, true) => Some(format!("−{letter}~")),
+        (3, true, _) => Some(name),
+        (3, _, true) => Some(name.negative()),
         _ => None,
     }
 }
 
-fn heading(kind: KernelKind) -> Option<(&'static str, &'static str)> {
+fn heading(kind: KernelKind) -> Option<(Math, &'static str)> {
+    let letter = Math::Letter;
+    let partial = |of: Math| Math::Partial(Box::new(of), Box::new(letter('ϕ')));
+    let basis = || letter('S').marked(Mark::Bar);
     Some(match kind {
-        KernelKind::Pose => ("H", "Pose: child coordinates to parent coordinates"),
-        KernelKind::TwistMap => ("X", "v to twist, in the parent frame"),
-        KernelKind::TwistMapChild => ("Ad_H⁻¹ X", "v to twist, in the child frame"),
-        KernelKind::VelocityMapInverse => ("S₀⁻¹", "v to ϕ̇ at ϕ = 0"),
-        KernelKind::VelocityMapGradient => ("∂S/∂ϕ", "Derivatives of S at ϕ = 0"),
+        KernelKind::Pose => (letter('H'), "Pose: child coordinates to parent coordinates"),
+        KernelKind::TwistMap => (letter('X'), "v to twist, in the parent frame"),
+        KernelKind::TwistMapChild => {
+            let adjoint = Math::Word("Ad".into()).sub(letter('H').inverse());
+            let product = Math::product([adjoint, letter('X')]);
+            (product, "v to twist, in the child frame")
+        }
+        KernelKind::VelocityMapInverse => {
+            let inverse = letter('S').sub(Math::integer(0)).inverse();
+            (inverse, "v to ϕ̇ at ϕ = 0")
+        }
+        KernelKind::VelocityMapGradient => (partial(letter('S')), "Derivatives of S at ϕ = 0"),
         KernelKind::Gamma => (
-            "Σ γₖ vₖ",
+            summed(Math::product(
+                ['γ', 'v'].map(|c| letter(c).sub(letter('k'))),
+            )),
             "Boltzmann–Hamel term of the Lagrangian form, (17)",
         ),
-        KernelKind::J22 => ("J22", "Gyroscopic matrix of the Hamiltonian form, (28)"),
-        KernelKind::Constraint => ("A", "Constraint: Aᵀ v = 0"),
-        KernelKind::SpeedBasis => ("S\u{304}", "Speeds to v"),
+        KernelKind::J22 => (
+            letter('J').sub(Math::integer(22)),
+            "Gyroscopic matrix of the Hamiltonian form, (28)",
+        ),
+        KernelKind::Constraint => (letter('A'), "Constraint: Aᵀ v = 0"),
+        KernelKind::SpeedBasis => (basis(), "Speeds to v"),
         KernelKind::SpeedBasisGradient => (
-            "∂S\u{304}/∂ϕ",
+            partial(basis()),
             "Derivatives of the basis of speeds at ϕ = 0",
         ),
-        KernelKind::ConfigurationRate => ("Q\u{307}", "Rate of the stored scalars, (31)"),
+        KernelKind::ConfigurationRate => (
+            letter('Q').marked(Mark::Dot),
+            "Rate of the stored scalars, (31)",
+        ),
+        KernelKind::Relations => (letter('r'), "Relations that Q meets: r = 0"),
         KernelKind::BiasAcceleration => (
-            "c",
+            letter('c'),
             "Velocity product term of the recursive forms, in the child frame",
         ),
         KernelKind::BiasMomentum => (
-            "X\u{307}\u{304}ᵀ h",
+            Math::product([
+                letter('X').marked(Mark::Bar).marked(Mark::Dot).transposed(),
+                letter('h'),
+            ]),
             "Its dual, for a momentum h in the child frame",
         ),
         _ => return None,
     })
 }
 
-fn text(notation: &Notation, kernel: &Kernel, name: &str) -> String {
+fn summed(term: Math) -> Math {
+    Math::product([Math::Letter('Σ'), term])
+}
+
+fn equations(
+    derived: &Derived,
+    notation: &Notation,
+    kernel: &Kernel,
+    name: &Math,
+) -> Vec<Equation> {
     match (kernel.kind, kernel.outputs.as_slice()) {
+        (_, []) => vec![],
         (KernelKind::Pose, [rotation, translation]) => {
-            shown(notation, name, &homogeneous(rotation, translation))
+            vec![notation.equation(name.clone(), &homogeneous(rotation, translation))]
         }
         (KernelKind::VelocityMapGradient | KernelKind::SpeedBasisGradient, slices) => {
-            match all_zero(kernel) {
-                true => format!("{name} = 0"),
-                false => {
-                    let each = slices.iter().enumerate();
-                    let each = each.map(|(k, slice)| {
-                        shown(notation, &format!("{name}{}", subscript(k + 1)), slice)
-                    });
-                    each.collect::<Vec<_>>().join("\n\n")
-                }
-            }
+            gradient(derived, notation, name, slices)
         }
-        (_, [only]) => shown(notation, name, only),
-        _ => String::new(),
+        (_, [only]) => vec![notation.equation(name.clone(), only)],
+        _ => vec![],
     }
+}
+
+/// Slice by slice where they are few; else one matrix linear in ϕ, the coefficients of which are the slices.
+fn gradient(
+    derived: &Derived,
+    notation: &Notation,
+    name: &Math,
+    slices: &[Matrix],
+) -> Vec<Equation> {
+    let zero = Matrix::zeros(1, 1);
+    if slices.iter().all(Matrix::is_zero) {
+        return vec![notation.equation(name.clone(), &zero)];
+    }
+    let along = |index: Math| match name {
+        Math::Partial(above, below) => {
+            Math::Partial(above.clone(), Box::new(below.as_ref().clone().sub(index)))
+        }
+        other => other.clone(),
+    };
+    if slices.len() <= FEW {
+        let each = slices.iter().enumerate();
+        let each = each.map(|(k, slice)| notation.equation(along(Math::integer(k + 1)), slice));
+        return each.collect();
+    }
+    let (k, first) = (
+        Math::Letter('k'),
+        Matrix::zeros(slices[0].rows(), slices[0].columns()),
+    );
+    let terms = slices.iter().zip(&derived.arguments.local);
+    let sum = terms.fold(first, |sum, (slice, local)| {
+        sum.plus(&slice.scale(&Expr::symbol(local)))
+    });
+    let term = Math::product([Math::Letter('ϕ').sub(k.clone()), along(k)]);
+    vec![notation.equation(summed(term), &sum)]
 }
 
 fn homogeneous(rotation: &Matrix, translation: &Matrix) -> Matrix {
@@ -184,24 +261,4 @@ fn homogeneous(rotation: &Matrix, translation: &Matrix) -> Matrix {
 
 fn all_zero(kernel: &Kernel) -> bool {
     kernel.outputs.iter().all(Matrix::is_zero)
-}
-
-/// `name = matrix`, short where the matrix is 0 or I.
-fn shown(notation: &Notation, name: &str, matrix: &Matrix) -> String {
-    if matrix.is_zero() {
-        return format!("{name} = 0");
-    }
-    if matrix.rows() == matrix.columns() && matrix.rows() > 1 && matrix.is_identity() {
-        return format!("{name} = I");
-    }
-    let entries: Vec<String> = matrix
-        .entries()
-        .iter()
-        .map(|entry| notation.expression(entry))
-        .collect();
-    let lines = match entries.as_slice() {
-        [only] => vec![only.clone()],
-        _ => layout::matrix(&entries, matrix.columns()),
-    };
-    layout::equation(name, &lines)
 }

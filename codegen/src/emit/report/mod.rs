@@ -1,22 +1,29 @@
 //! What is known of a joint, as text: the one data model behind pages, terminal output and the docs of emitted code.
 
+mod accuracy;
+mod finite;
 mod formulas;
 pub mod layout;
 pub mod notation;
 mod provenance;
+mod ranges;
 mod series;
 mod tables;
+pub mod typeset;
 pub mod units;
 
+pub use accuracy::{Accuracy, AccuracyError, AccuracyRow};
+pub use finite::FiniteRow;
 pub use formulas::{Formula, main_formulas};
 pub use provenance::statement;
 pub use series::{Series, series};
 pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow};
 
 use super::names::type_name;
-use crate::derived::Derived;
-use crate::model::{JointSpec, VelocityFrame};
+use crate::derived::{Derived, Shape};
+use crate::model::{Declared, JointSpec, Locus, VelocityFrame};
 use notation::Notation;
+use typeset::Math;
 
 /// All that a page shows.
 #[derive(Clone, Debug)]
@@ -29,12 +36,18 @@ pub struct Report {
     pub summary: String,
     /// The doc comment, line by line.
     pub docs: Vec<String>,
+    /// Sizes.
+    pub shape: Shape,
     /// Parameters.
     pub parameters: Vec<ParameterRow>,
+    /// Conditions on several parameters, as the spec writes them.
+    pub requirements: Vec<String>,
     /// The manifold: `Q ∈ SO3`.
     pub manifold: String,
     /// Stored scalars in order.
     pub coordinates: Vec<String>,
+    /// The stored scalars at home, where the spec declares them.
+    pub home: Vec<String>,
     /// Freedoms in order.
     pub freedoms: Vec<FreedomRow>,
     /// Speeds in order.
@@ -43,10 +56,16 @@ pub struct Report {
     pub velocity_frame: String,
     /// The formulas.
     pub formulas: Vec<Formula>,
+    /// Where the joint ends, and why.
+    pub singularities: Vec<LocusRow>,
     /// The claims.
     pub claims: Vec<ClaimRow>,
+    /// How the maps at finite ϕ and onto the manifold are found.
+    pub finite: Vec<FiniteRow>,
     /// Structure and operations of each emitted kernel.
     pub counts: Vec<CountRow>,
+    /// Measured errors of the kernels, where figures were given.
+    pub accuracy: Vec<AccuracyRow>,
     /// The inertias that the joint cannot feel: `Ixx + Iyy`.
     pub imperceptible: Vec<String>,
     /// Text of the spec.
@@ -68,22 +87,77 @@ impl Report {
                 .iter()
                 .map(|line| line.trim().to_owned())
                 .collect(),
+            shape: derived.shape,
             parameters: tables::parameters(derived),
+            requirements: requirements(spec),
             manifold: manifold(derived),
             coordinates: coordinates
                 .iter()
                 .map(|symbol| notation.symbol(symbol))
                 .collect(),
+            home: home(spec, &notation),
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
             velocity_frame: velocity_frame(spec).to_owned(),
             formulas: formulas::formulas(derived, &notation),
+            singularities: singularities(spec, &notation),
             claims: tables::claims(derived),
+            finite: finite::rows(derived),
+            accuracy: vec![],
             counts: tables::counts(derived),
             imperceptible: tables::imperceptible(derived),
             spec: spec.source.clone(),
         }
     }
+
+    /// With what was measured of this joint.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: &Accuracy) -> Self {
+        self.accuracy = accuracy.of_joint(&self.name);
+        self
+    }
+
+    /// What is known of the configurations that share a pose: the statement and its reason.
+    pub fn fibres(&self) -> Option<&ClaimRow> {
+        self.claims.iter().find(|claim| claim.name == "fibres")
+    }
+}
+
+/// A place where the joint ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LocusRow {
+    /// The function whose zeros it is.
+    pub function: Math,
+    /// The function as the spec writes it.
+    pub text: String,
+    /// Why the joint ends there.
+    pub cause: String,
+}
+
+fn singularities(spec: &JointSpec, notation: &Notation) -> Vec<LocusRow> {
+    let row = |locus: &Declared<Locus>| LocusRow {
+        function: notation.set(&locus.value.function),
+        text: locus.value.text.clone(),
+        cause: locus
+            .value
+            .docs
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" "),
+    };
+    spec.loci.iter().map(row).collect()
+}
+
+fn requirements(spec: &JointSpec) -> Vec<String> {
+    let conditions = spec.requirements.iter();
+    conditions
+        .map(|condition| condition.value.text.clone())
+        .collect()
+}
+
+fn home(spec: &JointSpec, notation: &Notation) -> Vec<String> {
+    let declared = spec.home.iter().flat_map(|home| &home.value);
+    declared.map(|value| notation.set(value).text()).collect()
 }
 
 /// The first sentence of a doc comment.

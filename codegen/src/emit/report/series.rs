@@ -1,67 +1,57 @@
 //! S to first order in ϕ as the paper writes it, (32): `Q (I + ½ ϕ~)`.
 
 use super::notation::Notation;
+use super::typeset::{Mark, Math, named};
 use crate::algebra;
 use crate::derived::Derived;
 use crate::expr::{Expr, Rational};
 use crate::matrix::Matrix;
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 
 /// A product of factors known by name, and those of them that have to be shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Series {
     /// The product: `Q (I + ½ ϕ~)`.
-    pub product: String,
+    pub product: Math,
     /// Names in it, with the matrices that they stand for.
-    pub parts: Vec<(String, Matrix)>,
+    pub parts: Vec<(Math, Matrix)>,
 }
 
 /// The series of a joint.
 pub fn series(derived: &Derived, notation: &Notation) -> Series {
     let (left, right) = &derived.velocity_map_series;
     let mut parts = vec![];
-    let left_name = if left.is_identity() {
-        None
-    } else {
-        Some(known_matrix(derived, left))
-    };
-    let left_text = left_name.map(|name| {
-        name.unwrap_or_else(|| {
-            parts.push(("S₀".to_owned(), left.clone()));
-            "S₀".to_owned()
-        })
-    });
-    let right_text = if right.is_identity() {
-        None
-    } else {
-        Some(linear_factor(derived, notation, right, &mut parts))
-    };
-    let product = match (left_text, right_text) {
-        (None, None) => "I".to_owned(),
-        (Some(left), None) => left,
-        (None, Some(right)) => right,
-        (Some(left), Some(right)) => format!("{left} ({right})"),
+    let mut factors = vec![];
+    if !left.is_identity() {
+        factors.push(known_matrix(derived, left).unwrap_or_else(|| {
+            let name = Math::Letter('S').sub(Math::integer(0));
+            parts.push((name.clone(), left.clone()));
+            name
+        }));
+    }
+    if !right.is_identity() {
+        let linear = linear_factor(derived, notation, right, &mut parts);
+        let alone = factors.is_empty();
+        factors.push(if alone { linear } else { linear.grouped() });
+    }
+    let product = match factors.is_empty() {
+        true => Math::Letter('I'),
+        false => Math::product(factors),
     };
     Series { product, parts }
 }
 
 /// The name of a matrix of coordinates: a factor itself, or its transpose.
-fn known_matrix(derived: &Derived, matrix: &Matrix) -> Option<String> {
-    derived
-        .spec
-        .manifold
-        .value
-        .factors()
-        .iter()
-        .find_map(|factor| {
-            let itself = factor.matrix();
-            let name = &factor.name;
-            match (*matrix == itself, *matrix == itself.transpose()) {
-                (true, _) => Some(name.clone()),
-                (_, true) => Some(format!("{name}ᵀ")),
-                _ => None,
-            }
-        })
+fn known_matrix(derived: &Derived, matrix: &Matrix) -> Option<Math> {
+    let mut factors = derived.spec.manifold.value.factors().iter();
+    factors.find_map(|factor| {
+        let (itself, name) = (factor.matrix(), named(&factor.name));
+        match (*matrix == itself, *matrix == itself.transpose()) {
+            (true, _) => Some(name),
+            (_, true) => Some(name.transposed()),
+            _ => None,
+        }
+    })
 }
 
 /// `I + ½ ϕ~`, `I − ½ ad_ϕ`, or `I + L` with L shown.
@@ -69,23 +59,34 @@ fn linear_factor(
     derived: &Derived,
     notation: &Notation,
     right: &Matrix,
-    parts: &mut Vec<(String, Matrix)>,
-) -> String {
+    parts: &mut Vec<(Math, Matrix)>,
+) -> Math {
     let linear = right.minus(&Matrix::identity(right.rows()));
     let local: Vec<Expr> = derived.arguments.local.iter().map(Expr::symbol).collect();
-    if let Some(ratio) = (local.len() == 3)
-        .then(|| multiple_of(&linear, &Matrix::tilde(&local)))
-        .flatten()
-    {
-        return format!("I {} ϕ~", signed(&ratio, notation));
+    let tilde = (local.len() == 3).then(|| Matrix::tilde(&local));
+    if let Some(ratio) = tilde.and_then(|tilde| multiple_of(&linear, &tilde)) {
+        return identity_plus(&ratio, notation, Math::Letter('ϕ').marked(Mark::Tilde));
     }
     let ad = adjoint(derived, &local);
     if let Some((ratio, ad)) = ad.and_then(|ad| Some((multiple_of(&linear, &ad)?, ad))) {
-        parts.push(("ad_ϕ".to_owned(), ad));
-        return format!("I {} ad_ϕ", signed(&ratio, notation));
+        let name = Math::Word("ad".into()).sub(Math::Letter('ϕ'));
+        parts.push((name.clone(), ad));
+        return identity_plus(&ratio, notation, name);
     }
-    parts.push(("L(ϕ)".to_owned(), linear));
-    "I + L(ϕ)".to_owned()
+    let name = Math::Row(vec![Math::Letter('L'), Math::Letter('ϕ').grouped()]);
+    parts.push((name.clone(), linear));
+    Math::Row(vec![Math::Letter('I'), Math::Sign('+'), name])
+}
+
+/// `I + ratio · matrix`.
+fn identity_plus(ratio: &Rational, notation: &Notation, matrix: Math) -> Math {
+    let sign = if ratio.is_negative() { '−' } else { '+' };
+    let size = ratio.abs();
+    let term = match size.is_one() {
+        true => matrix,
+        false => Math::product([notation.set(&Expr::rational(size)), matrix]),
+    };
+    Math::Row(vec![Math::Letter('I'), Math::Sign(sign), term])
 }
 
 /// The rational r with `a = r b`.
@@ -100,23 +101,6 @@ fn multiple_of(a: &Matrix, b: &Matrix) -> Option<Rational> {
     let ratio = dividend / divisor;
     let rest = a.minus(&b.scale(&Expr::rational(ratio.clone())));
     (rest.is_zero() && !ratio.is_zero()).then_some(ratio)
-}
-
-fn signed(ratio: &Rational, notation: &Notation) -> String {
-    let size = if ratio < &Rational::zero() {
-        -ratio
-    } else {
-        ratio.clone()
-    };
-    let sign = if ratio < &Rational::zero() {
-        "−"
-    } else {
-        "+"
-    };
-    match size.is_one() {
-        true => sign.to_owned(),
-        false => format!("{sign} {}", notation.expression(&Expr::rational(size))),
-    }
 }
 
 /// `ad_ϕ` in the declared basis, where one factor alone moves.

@@ -1,8 +1,9 @@
 //! The rows of a report's tables.
 
 use super::notation::Notation;
+use super::ranges;
 use super::units;
-use crate::derived::{Claim, Derived, Kernel, Structure};
+use crate::derived::{Claim, Derived, Kernel, Method as FoundBy, Structure};
 use crate::emit::formula::Counts;
 use crate::emit::names::Names;
 use crate::emit::rust::Method;
@@ -19,6 +20,8 @@ pub struct ParameterRow {
     pub unit: String,
     /// What it means.
     pub description: String,
+    /// Values that it may take: `> 0`.
+    pub range: String,
 }
 
 /// A freedom.
@@ -43,6 +46,8 @@ pub struct ClaimRow {
     pub name: String,
     /// The claim.
     pub statement: String,
+    /// How it was proved: `normal_form`, `certificate`, `numeric`.
+    pub kind: &'static str,
     /// How it was proved, in words.
     pub proof: String,
     /// The certificate, or what was evaluated.
@@ -56,15 +61,20 @@ pub struct CountRow {
     pub kernel: String,
     /// What is known at compile time.
     pub structure: String,
-    /// Its operations.
-    pub operations: Counts,
+    /// Its operations: those of its formulas, and what the runtime does besides.
+    pub operations: String,
 }
 
 pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
     let row = |parameter: &Parameter| ParameterRow {
         name: parameter.symbol.name.to_string(),
         unit: parameter.unit.clone(),
-        description: parameter.docs.trim().to_owned(),
+        description: parameter
+            .docs
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" "),
+        range: ranges::in_words(&parameter.range),
     };
     derived.spec.parameters.iter().map(row).collect()
 }
@@ -92,6 +102,7 @@ pub(super) fn claims(derived: &Derived) -> Vec<ClaimRow> {
     let row = |claim: &Claim| ClaimRow {
         name: claim.name.to_owned(),
         statement: claim.statement.clone(),
+        kind: claim.proof.name(),
         proof: proof_in_words(claim),
         detail: claim.detail.clone(),
     };
@@ -117,10 +128,22 @@ pub(super) fn counts(derived: &Derived) -> Vec<CountRow> {
         CountRow {
             kernel: method.name().to_owned(),
             structure: structure_in_words(kernel.structure).to_owned(),
-            operations: method.counts(),
+            operations: operations(kernel.method, &method.counts()),
         }
     };
     derived.kernels.iter().map(row).collect()
+}
+
+fn operations(found: FoundBy, counts: &Counts) -> String {
+    let besides = match found {
+        FoundBy::Formula => return counts.to_string(),
+        FoundBy::Solve => "a K×K solve",
+        FoundBy::Newton => "Newton's method",
+    };
+    match counts.total() {
+        0 => besides.to_owned(),
+        _ => format!("{counts}, and {besides}"),
+    }
 }
 
 fn structure_in_words(structure: Structure) -> &'static str {

@@ -1,0 +1,158 @@
+//! What a panel shows: the parent frame, the child at home and at the ends of its sweep, and the path of a point of it.
+
+use super::pen::{ALLOWED, AXES, BODY, FORBIDDEN, INK, Look, Pen};
+use super::sampler::Frame;
+use super::sweep::Sweep;
+use super::view::faces_viewer;
+
+/// Half the sides of the block that stands for the child, m; all different, so that every turn of it shows.
+const BLOCK: [f64; 3] = [0.42, 0.26, 0.13];
+/// Length of the child's axes, m.
+const AXIS: f64 = 0.66;
+/// Length of the parent's axes, m.
+const PARENT_AXIS: f64 = 1.0;
+
+/// Points that must fit into the picture.
+pub fn extent(sweep: &Sweep) -> Vec<[f64; 3]> {
+    let parent = (0..3).map(|axis| unit(axis, PARENT_AXIS)).chain([[0.0; 3]]);
+    let ends = [
+        sweep.frames.first(),
+        sweep.frames.get(sweep.home),
+        sweep.frames.last(),
+    ];
+    let of_child = |frame: &Frame| {
+        let frame = *frame;
+        corners()
+            .into_iter()
+            .map(move |corner| frame.point(corner))
+            .collect::<Vec<_>>()
+    };
+    let at_home = sweep.frames.get(sweep.home).into_iter();
+    let tips = at_home.flat_map(|frame| (0..3).map(|axis| frame.point(unit(axis, AXIS))));
+    let marker = marker(sweep);
+    let path = sweep.frames.iter().map(|frame| frame.point(marker));
+    parent
+        .chain(ends.into_iter().flatten().flat_map(of_child))
+        .chain(tips)
+        .chain(path)
+        .collect()
+}
+
+/// Draws a panel, the farthest first.
+pub fn draw(pen: &mut Pen, sweep: &Sweep, forbidden: bool) {
+    let colour = if forbidden { FORBIDDEN } else { ALLOWED };
+    for ghost in ghosts(sweep) {
+        block(pen, ghost, Look::surface(colour, 0.1, 0.35));
+    }
+    parent(pen);
+    if let Some(home) = sweep.frames.get(sweep.home) {
+        let stem = Look {
+            dashed: true,
+            ..Look::line(INK, 0.8)
+        };
+        pen.path(&[[0.0; 3], home.origin], false, stem);
+        block(pen, home, Look::surface(BODY, 0.45, 0.9));
+        axes(pen, home);
+    }
+    path(pen, sweep, forbidden, colour);
+}
+
+/// The ends of the sweep, and half the way to them.
+fn ghosts(sweep: &Sweep) -> impl Iterator<Item = &Frame> {
+    let last = sweep.frames.len().saturating_sub(1);
+    let behind = sweep.home / 2;
+    let ahead = sweep.home + (last - sweep.home) / 2;
+    [0, last, behind, ahead]
+        .into_iter()
+        .filter(|at| *at != sweep.home)
+        .filter_map(|at| sweep.frames.get(at))
+}
+
+fn parent(pen: &mut Pen) {
+    for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
+        let tip = unit(axis, PARENT_AXIS);
+        pen.arrow(&[[0.0; 3], tip], Look::line(INK, 1.0));
+        pen.label([0.0; 3], tip, name, INK);
+    }
+}
+
+fn axes(pen: &mut Pen, frame: &Frame) {
+    for (axis, colour) in AXES.into_iter().enumerate() {
+        let tip = frame.point(unit(axis, AXIS));
+        pen.arrow(&[frame.origin, tip], Look::line(colour, 1.8));
+    }
+}
+
+/// The path of a point of the child; the line of a forbidden one is broken.
+fn path(pen: &mut Pen, sweep: &Sweep, forbidden: bool, colour: &'static str) {
+    let marker = marker(sweep);
+    let points: Vec<[f64; 3]> = sweep
+        .frames
+        .iter()
+        .map(|frame| frame.point(marker))
+        .collect();
+    let look = Look {
+        dashed: forbidden,
+        ..Look::line(colour, 2.2)
+    };
+    pen.arrow(&points, look);
+}
+
+/// The point whose path is shown: the origin, unless the tip of an axis goes clearly farther.
+fn marker(sweep: &Sweep) -> [f64; 3] {
+    let (Some(home), Some(last)) = (sweep.frames.get(sweep.home), sweep.frames.last()) else {
+        return [0.0; 3];
+    };
+    let travel = |local: [f64; 3]| {
+        let (a, b) = (home.point(local), last.point(local));
+        (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+    };
+    let mut best = ([0.0; 3], 1.02 * travel([0.0; 3]));
+    for tip in (0..3).map(|axis| unit(axis, AXIS)) {
+        // A tenth more, so that rounding does not decide between two tips that go equally far.
+        if travel(tip) > 1.1 * best.1 + 1e-6 {
+            best = (tip, travel(tip));
+        }
+    }
+    best.0
+}
+
+/// The faces of the block that the viewer sees.
+fn block(pen: &mut Pen, frame: &Frame, look: Look) {
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let normal = frame.point(unit(axis, side));
+            let normal = std::array::from_fn(|i| normal[i] - frame.origin[i]);
+            if faces_viewer(normal) {
+                pen.path(
+                    &face(axis, side).map(|corner| frame.point(corner)),
+                    true,
+                    look,
+                );
+            }
+        }
+    }
+}
+
+/// The corners of a face, around it.
+fn face(axis: usize, side: f64) -> [[f64; 3]; 4] {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| {
+        let mut corner = [0.0; 3];
+        corner[axis] = side * BLOCK[axis];
+        corner[u] = a * BLOCK[u];
+        corner[v] = b * BLOCK[v];
+        corner
+    })
+}
+
+fn corners() -> Vec<[f64; 3]> {
+    [-1.0, 1.0]
+        .into_iter()
+        .flat_map(|side| face(2, side))
+        .collect()
+}
+
+fn unit(axis: usize, length: f64) -> [f64; 3] {
+    std::array::from_fn(|i| if i == axis { length } else { 0.0 })
+}

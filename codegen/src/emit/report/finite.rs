@@ -1,0 +1,48 @@
+//! How the maps that move the state are found: those at finite ϕ, and those onto the manifold.
+
+use crate::derived::{Derived, Kernel, KernelKind, Method};
+use crate::emit::names::Names;
+use crate::emit::rust::{self, meaning};
+
+/// A finite map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FiniteRow {
+    /// Name of the method.
+    pub kernel: String,
+    /// What it maps to what.
+    pub meaning: String,
+    /// How its value is found.
+    pub method: String,
+}
+
+const FINITE: [KernelKind; 9] = [
+    KernelKind::Retract,
+    KernelKind::Local,
+    KernelKind::RetractTangent,
+    KernelKind::RetractDifferential,
+    KernelKind::RetractDifferentialInverse,
+    KernelKind::Relations,
+    KernelKind::Project,
+    KernelKind::Residual,
+    KernelKind::Singularity,
+];
+
+pub(super) fn rows(derived: &Derived) -> Vec<FiniteRow> {
+    let names = Names::new(derived);
+    let row = |kernel: &Kernel| FiniteRow {
+        kernel: rust::Method::new(derived, kernel, &names).name().to_owned(),
+        meaning: meaning(kernel.kind).to_owned(),
+        method: in_words(kernel.method).to_owned(),
+    };
+    let kernels = derived.kernels.iter();
+    let finite = kernels.filter(|kernel| FINITE.contains(&kernel.kind));
+    finite.map(row).collect()
+}
+
+fn in_words(method: Method) -> &'static str {
+    match method {
+        Method::Formula => "closed form",
+        Method::Solve => "K×K solve in the runtime",
+        Method::Newton => "Newton's method in the runtime",
+    }
+}

@@ -1,0 +1,42 @@
+//! Intervals in words.
+
+use crate::model::{End, Interval};
+
+/// `> 0`, `0 ≤ · < 1`, or nothing where every value is allowed.
+pub fn in_words(range: &Interval) -> String {
+    let below = |end: &End| if end.included { "≤" } else { "<" };
+    let above = |end: &End| if end.included { "≥" } else { ">" };
+    match (&range.lower, &range.upper) {
+        (None, None) => String::new(),
+        (Some(lower), None) => format!("{} {}", above(lower), lower.value),
+        (None, Some(upper)) => format!("{} {}", below(upper), upper.value),
+        (Some(lower), Some(upper)) => format!(
+            "{} {} · {} {}",
+            lower.value,
+            below(lower),
+            below(upper),
+            upper.value
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_words;
+    use crate::expr::Rational;
+    use crate::model::{End, Interval};
+
+    #[test]
+    fn every_kind_of_interval_has_words() {
+        let end = |value: i64, included| {
+            let value = Rational::from_integer(value.into());
+            Some(End { value, included })
+        };
+        let words = |lower, upper| in_words(&Interval { lower, upper });
+        assert_eq!(words(None, None), "");
+        assert_eq!(words(end(0, false), None), "> 0");
+        assert_eq!(words(end(0, true), None), "≥ 0");
+        assert_eq!(words(None, end(2, false)), "< 2");
+        assert_eq!(words(end(0, true), end(2, false)), "0 ≤ · < 2");
+    }
+}
