@@ -4,7 +4,7 @@ use super::definition::Definition;
 use super::jet::ONCE;
 use super::tracked::larger;
 use super::{Grid, Jet, Tracked};
-use hamel_codegen::expr::Number;
+use hamel_codegen::expr::{Expr, Number};
 use hamel_codegen::precise::Precise;
 
 /// Φ(Q, ϕ) with its derivatives.
@@ -121,8 +121,20 @@ impl Definition {
         point.into_iter().enumerate().map(scaled).collect()
     }
 
+    /// The least size of a function of a locus at Q; nothing where there is none.
+    pub fn singularity(&self, q: &[f64]) -> Option<Tracked> {
+        let loci = &self.spec.loci;
+        let functions: Vec<Expr> = loci.iter().map(|l| l.value.function.clone()).collect();
+        let values = self.evaluate(&functions, q).into_iter();
+        let sizes = values.map(|x| Tracked::computed(x.value.abs(), x.scale));
+        sizes.reduce(|a, b| match a.value.compare(&b.value) {
+            Some(std::cmp::Ordering::Greater) => b,
+            _ => a,
+        })
+    }
+
     /// The root of the sum of squares of the relations at Q, with the scale of the largest summand of a relation.
-    pub fn residual(&self, relations: &[hamel_codegen::expr::Expr], q: &[f64]) -> Tracked {
+    pub fn residual(&self, relations: &[Expr], q: &[f64]) -> Tracked {
         let values = self.evaluate(relations, q);
         let zero = Tracked::input(0.0);
         let sum = values

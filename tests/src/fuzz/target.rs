@@ -31,7 +31,7 @@ pub fn pipeline(text: &str) -> Outcome {
             Err(errors) => return refused(text, &errors),
         };
         let written = emit::rust::file(&joint, "input.joint").map(|_| ());
-        let page = emit::page(&joint, "input.joint").map(|_| ());
+        let page = emit::page(&joint, "input.joint", &emit::Accuracy::default()).map(|_| ());
         match (written, page) {
             (Ok(()), Ok(())) => Outcome::Accepted,
             (Err(error), _) => Outcome::Broken(format!("no Rust: {error}")),
