@@ -9,6 +9,7 @@ pub mod algebra;
 mod build;
 pub mod derived;
 pub mod diagnostic;
+pub mod domain;
 pub mod emit;
 pub mod expand;
 pub mod expr;
@@ -16,6 +17,7 @@ pub mod manifold;
 pub mod matrix;
 pub mod model;
 mod pipeline;
+pub mod precise;
 pub mod prove;
 pub mod spec;
 

@@ -23,8 +23,15 @@ pub struct Parameter {
     pub unit: String,
     /// Doc comment.
     pub docs: String,
-    /// Values that it may take.
+    /// Values that it may take: without bounds, every number but zero.
     pub range: Interval,
+}
+
+impl Parameter {
+    /// Whether its range says that it may be zero; a parameter without a range is not.
+    pub fn may_vanish(&self) -> bool {
+        self.range != Interval::default() && self.range.contains(&Rational::default())
+    }
 }
 
 /// An interval of values; `None` is unbounded.
@@ -34,6 +41,15 @@ pub struct Interval {
     pub lower: Option<End>,
     /// Upper end.
     pub upper: Option<End>,
+}
+
+impl Interval {
+    /// Whether the value lies in it.
+    pub fn contains(&self, value: &Rational) -> bool {
+        let above = |end: &End| *value > end.value || end.included && *value == end.value;
+        let below = |end: &End| *value < end.value || end.included && *value == end.value;
+        self.lower.as_ref().is_none_or(above) && self.upper.as_ref().is_none_or(below)
+    }
 }
 
 /// One end of an [`Interval`].
@@ -50,7 +66,7 @@ pub struct End {
 pub struct Locus {
     /// The function.
     pub function: Expr,
-    /// The function as the spec writes it.
+    /// The equation as the spec writes it, `cos(b) = 0`.
     pub text: String,
     /// Doc comment: why the joint ends there.
     pub docs: String,

@@ -7,11 +7,16 @@ use crate::expr::{Expr, budget};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use crate::{prove, spec};
+use std::path::Path;
 
 /// Bound on symbolic work for one joint, in products of two terms. The library's largest joint spends less than a tenth.
-pub const WORK_LIMIT: u64 = 1_000_000;
+pub const WORK_LIMIT: u64 = 2_000_000;
 
-/// Parses, expands and proves one spec. `file` is the name by which errors call it.
+/// Parses, expands and proves one spec. `file` is the name by which errors call it; where it ends in `.joint`, its stem is
+/// the name of the joint.
+///
+/// # Errors
+/// All errors of the text at once; if there are none, those of the derivation and its proofs.
 pub fn derive(source: &str, file: &str) -> Result<Derived, Diagnostics> {
     let spec = spec::parse(source, file)?;
     let failed = |mut errors: Vec<Diagnostic>| {
@@ -23,12 +28,35 @@ pub fn derive(source: &str, file: &str) -> Result<Derived, Diagnostics> {
         }
     };
     match budget::scope(WORK_LIMIT, || derive_spec(spec.clone())) {
-        Ok(result) => result.map_err(failed),
+        Ok(Ok(derived)) => match misnamed(&derived.spec, file) {
+            None => Ok(derived),
+            Some(error) => Err(failed(vec![error])),
+        },
+        Ok(Err(errors)) => Err(failed(errors)),
         Err(exhausted) => Err(failed(vec![too_much_work(&spec, exhausted.limit)])),
     }
 }
 
-fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+/// The error that the file is called otherwise than its joint: a scene finds a joint, and a reader its spec, by that name.
+fn misnamed(spec: &JointSpec, file: &str) -> Option<Diagnostic> {
+    let path = Path::new(file);
+    let stem = path.file_stem()?.to_str()?;
+    let name = spec.name.value.as_str();
+    let is_spec = path
+        .extension()
+        .is_some_and(|extension| extension == "joint");
+    (is_spec && stem != name).then(|| {
+        let message = format!("joint `{name}` in a file that is called `{stem}.joint`");
+        Diagnostic::new(spec::code::FILE_NAME, spec.name.span.clone(), message)
+            .label("the file is not named after it")
+            .help(format!(
+                "name the file `{name}.joint`, or the joint `{stem}`"
+            ))
+    })
+}
+
+fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+    expand::confine(&mut spec);
     let expansion = expand::expand(&spec)?;
     let claims = prove::prove(&spec, &expansion)?;
     let kernels = expand::kernels(&spec, &expansion)?;

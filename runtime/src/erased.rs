@@ -43,6 +43,8 @@ pub trait AnyJoint: Debug + Send + Sync {
     fn speeds(&self) -> &'static [&'static str];
     /// Basis of the inertias that the joint cannot feel, [`Joint::IMPERCEPTIBLE`].
     fn imperceptible(&self) -> &'static [[f64; 10]];
+    /// The functions whose zeros the joint must stay away from, [`Joint::SINGULARITIES`].
+    fn singularities(&self) -> &'static [&'static str];
     /// Hands each parameter's name and value to `visit`.
     fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64));
 
@@ -77,17 +79,51 @@ pub trait AnyJoint: Debug + Send + Sync {
     /// [`Joint::retract`] into `out` (N).
     fn retract(&self, q: &[f64], phi: &[f64], out: &mut [f64]);
     /// [`Joint::local`] into `phi` (K).
-    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]);
+    ///
+    /// # Errors
+    /// When ϕ is not finite: Newton's method did not converge, or a configuration is not finite.
+    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]) -> Result<(), FiniteMapError>;
+    /// [`Joint::retract_differential`] into `out` (K×K).
+    fn retract_differential(&self, q: &[f64], phi: &[f64], out: &mut [f64]);
     /// [`Joint::retract_differential_inverse`] into `out` (K).
     fn retract_differential_inverse(&self, q: &[f64], phi: &[f64], rate: &[f64], out: &mut [f64]);
     /// [`Joint::project`] in place.
-    fn project(&self, q: &mut [f64]);
+    ///
+    /// # Errors
+    /// When the result is not finite, as for [`AnyJoint::local`].
+    fn project(&self, q: &mut [f64]) -> Result<(), FiniteMapError>;
     /// [`Joint::residual`].
     fn residual(&self, q: &[f64]) -> f64;
+    /// [`Joint::singularity`].
+    fn singularity(&self, q: &[f64]) -> f64;
     /// [`Joint::bias_acceleration`].
     fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64>;
     /// [`Joint::bias_momentum`] into `out` (S).
     fn bias_momentum(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
+}
+
+/// A finite map of a joint has no value: a Newton iteration does not converge, or its arguments are not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the {map} of joint type `{joint}` cannot be found: Newton's method does not converge here, or the configuration is not \
+     finite"
+)]
+pub struct FiniteMapError {
+    /// Joint type.
+    pub joint: &'static str,
+    /// `local coordinates` or `projection`.
+    pub map: &'static str,
+}
+
+fn check_finite(
+    joint: &'static str,
+    map: &'static str,
+    values: &[f64],
+) -> Result<(), FiniteMapError> {
+    match values.iter().all(|value| value.is_finite()) {
+        true => Ok(()),
+        false => Err(FiniteMapError { joint, map }),
+    }
 }
 
 /// Puts a joint behind [`AnyJoint`].
@@ -165,6 +201,10 @@ where
         J::IMPERCEPTIBLE
     }
 
+    fn singularities(&self) -> &'static [&'static str] {
+        J::SINGULARITIES
+    }
+
     fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64)) {
         for (name, value) in self.0.parameters() {
             visit(name, value);
@@ -231,8 +271,13 @@ where
         store(&self.0.retract(&vector(q), &vector(phi)), out);
     }
 
-    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]) {
+    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]) -> Result<(), FiniteMapError> {
         store(&self.0.local(&vector(q), &vector(target)), phi);
+        check_finite(J::NAME, "local coordinates", phi)
+    }
+
+    fn retract_differential(&self, q: &[f64], phi: &[f64], out: &mut [f64]) {
+        store(&self.0.retract_differential(&vector(q), &vector(phi)), out);
     }
 
     fn retract_differential_inverse(&self, q: &[f64], phi: &[f64], rate: &[f64], out: &mut [f64]) {
@@ -242,12 +287,17 @@ where
         store(&result, out);
     }
 
-    fn project(&self, q: &mut [f64]) {
+    fn project(&self, q: &mut [f64]) -> Result<(), FiniteMapError> {
         store(&self.0.project(&vector(q)), q);
+        check_finite(J::NAME, "projection", q)
     }
 
     fn residual(&self, q: &[f64]) -> f64 {
         self.0.residual(&vector(q))
+    }
+
+    fn singularity(&self, q: &[f64]) -> f64 {
+        self.0.singularity(&vector(q))
     }
 
     fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64> {

@@ -11,11 +11,11 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Version of the [`Joint`] trait. Generated code asserts it at compile time.
-pub const KERNEL_INTERFACE: u32 = 1;
+pub const KERNEL_INTERFACE: u32 = 2;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(1);`.
+/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(2);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,
@@ -115,6 +115,10 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`, inertia about the frame origin.
     const IMPERCEPTIBLE: &'static [[f64; 10]];
 
+    /// The functions of Q that [`Joint::singularity`] takes the least absolute value of, as the spec writes them: H, X, Φ, A
+    /// or S̄ lose their meaning or their rank where one of them is 0. Empty for a joint that is global.
+    const SINGULARITIES: &'static [&'static str];
+
     /// Names and values of the joint's parameters.
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)>;
 
@@ -164,12 +168,24 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     fn retract<T: Scalar>(&self, q: &SVector<T, N>, phi: &SVector<T, K>) -> SVector<T, N>;
 
     /// The ϕ with Φ(Q, ϕ) = `target`: the inverse of [`Joint::retract`], principal branch.
+    ///
+    /// Where Φ has no inverse in closed form, it is found by [`finite::local`](crate::finite::local): NaN in every entry where
+    /// that does not converge.
     fn local<T: Scalar>(&self, q: &SVector<T, N>, target: &SVector<T, N>) -> SVector<T, K>;
+
+    /// D at finite ϕ, K×K: `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)` at Q′ = Φ(Q, ϕ), so that `S(Q, ϕ) = S₀(Q′) D`.
+    ///
+    /// For Φ = Q exp(ϕ) it is dexp in child axes, `Σ (−ad_ϕ)ⁿ / (n + 1)!`.
+    fn retract_differential<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        phi: &SVector<T, K>,
+    ) -> SMatrix<T, K, K>;
 
     /// ϕ̇ at finite ϕ from `rate`, the value S₀(Q′)⁻¹ v at the moved configuration Q′ = Φ(Q, ϕ).
     ///
-    /// With D defined by `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)` this is `D⁻¹ rate`, and `S(Q, ϕ) = S₀(Q′) D`. For
-    /// Φ = Q exp(ϕ) it is `rate + ½ [ϕ, rate] + …`, the inverse of dexp. Coefficients hold for |ϕ| < 2π.
+    /// With the D of [`Joint::retract_differential`] this is `D⁻¹ rate`. For Φ = Q exp(ϕ) it is `rate + ½ [ϕ, rate] + …`, the
+    /// inverse of dexp; its coefficients hold for |ϕ| < 2π.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         q: &SVector<T, N>,
@@ -178,10 +194,16 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     ) -> SVector<T, K>;
 
     /// The configuration on the manifold that is nearest to `q`, for `q` off it by rounding or input error.
+    ///
+    /// Where the manifold is one of declared relations, it is found by [`finite::project`](crate::finite::project): NaN in
+    /// every entry where that does not converge.
     fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N>;
 
     /// Root of the sum of squares of the manifold's relations at `q`; 0 on the manifold.
     fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T;
+
+    /// Least absolute value of the functions that [`Joint::SINGULARITIES`] names; +∞ where there are none.
+    fn singularity<T: Scalar>(&self, q: &SVector<T, N>) -> T;
 
     /// c(Q, v̄) = Ẋ̄^c v̄ with X̄ = X S̄: velocity product term of the recursive forms, a twist rate in the child frame.
     fn bias_acceleration<T: Scalar>(

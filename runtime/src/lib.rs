@@ -12,6 +12,7 @@ pub use nalgebra;
 
 pub mod dynamics;
 pub mod erased;
+pub mod finite;
 pub mod integrate;
 pub mod joint;
 pub mod mechanism;

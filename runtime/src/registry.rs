@@ -2,13 +2,25 @@
 
 use crate::erased::AnyJoint;
 use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::String;
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 
 /// Builds a joint from the values of its parameters, in the order of [`JointEntry::parameters`].
 pub type BuildJoint = fn(&[f64]) -> Result<Arc<dyn AnyJoint>, ParameterError>;
 
+/// One end of the values that a parameter may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// Its value.
+    pub value: f64,
+    /// Whether the value itself is allowed.
+    pub included: bool,
+}
+
 /// A parameter of a joint type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterInfo {
     /// Its name in the spec.
     pub name: &'static str,
@@ -16,6 +28,45 @@ pub struct ParameterInfo {
     pub unit: &'static str,
     /// What it means, in a sentence.
     pub description: &'static str,
+    /// Least value; `None` where there is none.
+    pub lower: Option<Limit>,
+    /// Greatest value; `None` where there is none.
+    pub upper: Option<Limit>,
+}
+
+impl ParameterInfo {
+    /// The limit that `value` breaks, and how a value must stand to it.
+    fn broken_limit(&self, value: f64) -> Option<(&'static str, f64)> {
+        let below = self.lower.filter(|limit| match limit.included {
+            true => value < limit.value,
+            false => value <= limit.value,
+        });
+        let above = self.upper.filter(|limit| match limit.included {
+            true => value > limit.value,
+            false => value >= limit.value,
+        });
+        let lower = |limit: Limit| {
+            (
+                if limit.included {
+                    "at least"
+                } else {
+                    "greater than"
+                },
+                limit.value,
+            )
+        };
+        let upper = |limit: Limit| {
+            (
+                if limit.included {
+                    "at most"
+                } else {
+                    "less than"
+                },
+                limit.value,
+            )
+        };
+        below.map(lower).or(above.map(upper))
+    }
 }
 
 /// A joint type that can be asked for by name.
@@ -54,7 +105,37 @@ pub enum ParameterError {
         /// Its value.
         value: f64,
     },
-    /// A value lies outside what the spec allows.
+    /// A value lies outside the range that the spec declares.
+    #[error(
+        "parameter `{parameter}` of joint type `{joint}` is {value}: it must be {relation} {limit}"
+    )]
+    Limit {
+        /// Joint type.
+        joint: &'static str,
+        /// Parameter.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+        /// `at least`, `greater than`, `at most` or `less than`.
+        relation: &'static str,
+        /// The end of the range.
+        limit: f64,
+    },
+    /// The values together break a requirement of the spec.
+    #[error(
+        "joint type `{joint}` requires `{requirement}`: with {values} the two sides differ by {margin}"
+    )]
+    Requirement {
+        /// Joint type.
+        joint: &'static str,
+        /// As the spec writes it, such as `outer > inner`.
+        requirement: &'static str,
+        /// Names and values of the parameters.
+        values: String,
+        /// What must be positive: the greater side minus the less.
+        margin: f64,
+    },
+    /// A value lies outside what the formulas allow.
     #[error("parameter `{parameter}` of joint type `{joint}` is {value}: it must be {requirement}")]
     OutOfRange {
         /// Joint type.
@@ -76,10 +157,10 @@ pub struct DuplicateJoint {
     pub name: &'static str,
 }
 
-/// The parameters as an array, when there are `P` of them and all are finite: how generated `build` functions begin.
+/// The parameters as an array, when there are `P` of them, all finite and in range: how generated `build` functions begin.
 ///
 /// # Errors
-/// A wrong number of values, or one that is NaN or infinite.
+/// A wrong number of values, or the first that is NaN, infinite or out of range.
 pub fn check_parameters<const P: usize>(
     joint: &'static str,
     parameters: &[ParameterInfo; P],
@@ -90,18 +171,52 @@ pub fn check_parameters<const P: usize>(
         expected: P,
         found: values.len(),
     })?;
-    match parameters
-        .iter()
-        .zip(array)
-        .find(|(_, value)| !value.is_finite())
-    {
-        Some((info, value)) => Err(ParameterError::NotFinite {
-            joint,
-            parameter: info.name,
-            value,
-        }),
-        None => Ok(array),
+    for (info, value) in parameters.iter().zip(array) {
+        let parameter = info.name;
+        if !value.is_finite() {
+            return Err(ParameterError::NotFinite {
+                joint,
+                parameter,
+                value,
+            });
+        }
+        if let Some((relation, limit)) = info.broken_limit(value) {
+            return Err(ParameterError::Limit {
+                joint,
+                parameter,
+                value,
+                relation,
+                limit,
+            });
+        }
     }
+    Ok(array)
+}
+
+/// Whether `margin`, which the spec's `requirement` says is positive, is so.
+///
+/// # Errors
+/// When it is not, with the parameters' names and values.
+pub fn check_requirement(
+    joint: &'static str,
+    requirement: &'static str,
+    margin: f64,
+    parameters: &[ParameterInfo],
+    values: &[f64],
+) -> Result<(), ParameterError> {
+    if margin > 0.0 {
+        return Ok(());
+    }
+    let named = parameters.iter().zip(values);
+    let named: Vec<String> = named
+        .map(|(info, value)| format!("{} = {value}", info.name))
+        .collect();
+    Err(ParameterError::Requirement {
+        joint,
+        requirement,
+        values: named.join(", "),
+        margin,
+    })
 }
 
 /// Joint types by name, in alphabetical order.

@@ -6,7 +6,8 @@ use common::joints;
 use hamel::erased::AnyJoint;
 use hamel::joint::{KERNEL_INTERFACE, assert_kernel_interface};
 use hamel::registry::{
-    DuplicateJoint, JointEntry, JointRegistry, ParameterError, ParameterInfo, check_parameters,
+    DuplicateJoint, JointEntry, JointRegistry, Limit, ParameterError, ParameterInfo,
+    check_parameters, check_requirement,
 };
 use std::sync::Arc;
 
@@ -16,6 +17,14 @@ const PARAMETERS: [ParameterInfo; 1] = [ParameterInfo {
     name: "lead",
     unit: "m",
     description: "advance of one turn",
+    lower: Some(Limit {
+        value: -1.0,
+        included: true,
+    }),
+    upper: Some(Limit {
+        value: 2.0,
+        included: false,
+    }),
 }];
 
 fn build(values: &[f64]) -> Result<Arc<dyn AnyJoint>, ParameterError> {
@@ -73,6 +82,30 @@ fn parameters_are_checked() {
         message(&[0.0]),
         "parameter `lead` of joint type `screw` is 0: it must be other than 0"
     );
+    assert!(
+        build(&[-1.0]).is_ok(),
+        "the lower limit belongs to the range"
+    );
+    assert_eq!(
+        message(&[-1.5]),
+        "parameter `lead` of joint type `screw` is -1.5: it must be at least -1"
+    );
+    assert_eq!(
+        message(&[2.0]),
+        "parameter `lead` of joint type `screw` is 2: it must be less than 2"
+    );
+}
+
+#[test]
+fn requirements_name_the_values_that_break_them() {
+    let check =
+        |margin: f64| check_requirement("screw", "lead > 1", margin, &PARAMETERS, &[margin + 1.0]);
+    assert_eq!(check(0.5), Ok(()));
+    let expected =
+        "joint type `screw` requires `lead > 1`: with lead = 0.75 the two sides differ by -0.25";
+    assert_eq!(check(-0.25).expect_err("refused").to_string(), expected);
+    assert!(check(0.0).is_err(), "a strict inequality");
+    assert!(check(f64::NAN).is_err());
 }
 
 /// γ and J22 are one matrix in two readings: Σ γ_k v_k p = −J22(p) v.
@@ -96,7 +129,7 @@ fn erased_kernels_keep_their_meaning() {
             assert!(sum.abs() < 1e-14, "a dozen roundings");
         }
         let mut phi = vec![0.0; size];
-        joint.local(&q, &moved, &mut phi);
+        joint.local(&q, &moved, &mut phi).expect("a closed form");
         assert!((phi[0] - 0.4).abs() + (phi[1] + 0.3).abs() + (phi[2] - 0.9).abs() < 1e-14);
         assert_eq!(joint.coordinates().len(), layout.configuration);
         assert_eq!(

@@ -44,7 +44,8 @@ pub fn local(mechanism: &Mechanism, q: &[f64], target: &[f64]) -> Vec<f64> {
     for body in mechanism.bodies() {
         let own = &mut phi[body.ranges().freedoms.clone()];
         body.joint()
-            .local(body.configuration(q), body.configuration(target), own);
+            .local(body.configuration(q), body.configuration(target), own)
+            .expect("two configurations near each other");
     }
     phi
 }

@@ -1,5 +1,6 @@
 //! What the suites share: specs by name, seeded random input, oracles.
 
+pub mod accuracy;
 pub mod differences;
 pub mod figures;
 pub mod laws;

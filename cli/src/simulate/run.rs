@@ -159,6 +159,7 @@ fn print_summary(plan: &Plan, solution: &Solution, statistics: Statistics) -> Re
         first_kinetic_energy: kinematics.kinetic_energy(),
         samples: solution.samples.len(),
         statistics,
+        approaches: &solution.approaches,
     };
     write!(std::io::stdout().lock(), "{summary}").map_err(Failure::stdout)
 }

@@ -4,7 +4,7 @@ use super::json::Statistics;
 use super::plan::Plan;
 use super::sample::{BodySample, Sample};
 use comfy_table::{Cell, CellAlignment, Table, presets};
-use hamel::integrate::Method;
+use hamel::integrate::{Approach, Method};
 use std::fmt;
 
 /// Numbers from here on are written with an exponent.
@@ -25,6 +25,8 @@ pub struct Summary<'a> {
     pub samples: usize,
     /// What the simulation took.
     pub statistics: Statistics,
+    /// How near joints came to singular sets.
+    pub approaches: &'a [Approach],
 }
 
 impl fmt::Display for Summary<'_> {
@@ -42,6 +44,9 @@ impl fmt::Display for Summary<'_> {
             f,
             "work        {steps} steps, {rejected} rejected, {evaluations} evaluations, {run_time_s:.3} s"
         )?;
+        for approach in self.approaches {
+            writeln!(f, "singular    {approach}")?;
+        }
         match &self.plan.csv {
             Some(path) => writeln!(
                 f,

@@ -99,14 +99,22 @@ fn all_wrong_specs_are_reported_and_nothing_is_written() {
 #[test]
 fn two_specs_must_not_make_one_type() {
     let folder = folder("duplicate");
-    write(&folder, "a.joint", SLIDER);
-    write(&folder, "b.joint", SLIDER);
+    write(
+        &folder,
+        "slider2.joint",
+        &SLIDER.replace("slider", "slider2"),
+    );
+    write(
+        &folder,
+        "slider_2.joint",
+        &SLIDER.replace("slider", "slider_2"),
+    );
     let error = build(&folder)
-        .expect_err("the joint is there twice")
+        .expect_err("the type is there twice")
         .to_string();
     assert_eq!(
         error,
-        "joints/a.joint and joints/b.joint both make the type `Slider`: rename one of the joints"
+        "joints/slider2.joint and joints/slider_2.joint both make the type `Slider2`: rename one of the joints"
     );
     fs::remove_dir_all(folder).expect("can be removed");
 }

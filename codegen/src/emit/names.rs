@@ -6,8 +6,8 @@ use crate::expr::{Function, Rational, Role, Symbol};
 use num_traits::{One, ToPrimitive};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Longest name made from a formula; longer formulas are named after their first symbol.
-const LONGEST: usize = 44;
+/// Longest name made from a formula; longer formulas are named after the first symbols in them.
+const LONGEST: usize = 36;
 
 /// Names that every kernel may use: its arguments, the constants, and what is imported.
 const RESERVED: &[&str] = &[
@@ -27,6 +27,10 @@ const RESERVED: &[&str] = &[
     "sum",
     "rotation",
     "nearest_rotation",
+    "start",
+    "moved",
+    "tangent",
+    "tangent_there",
     "from_rows",
     "self",
     "core",
@@ -41,6 +45,7 @@ const RESERVED_TYPES: &[&str] = &[
     "AnyJoint",
     "Joint",
     "JointEntry",
+    "Limit",
     "Pose",
     "ParameterError",
     "ParameterInfo",
@@ -100,7 +105,7 @@ fn identifier(wish: &str) -> String {
 /// What is added to the name of a symbol whose own is taken.
 fn role_name(role: Role) -> &'static str {
     match role {
-        Role::Parameter => "parameter",
+        Role::Parameter | Role::Constant => "parameter",
         Role::Coordinate => "coordinate",
         Role::Target => "target",
         Role::Local => "local",
@@ -150,6 +155,21 @@ impl Names {
         parameters
             .chain(others.into_iter().flatten())
             .for_each(|symbol| names.claim(symbol));
+        names
+    }
+
+    /// Names of the parameters alone, as the fields of the joint's type have them.
+    pub fn of_fields(derived: &Derived) -> Self {
+        let mut names = Self {
+            by_symbol: BTreeMap::new(),
+            taken: NameSet::default(),
+        };
+        names.taken.taken.extend(number_words());
+        for parameter in &derived.spec.parameters {
+            let name = parameter.symbol.name.to_string();
+            names.taken.taken.insert(name.clone());
+            names.by_symbol.insert(parameter.symbol.clone(), name);
+        }
         names
     }
 
@@ -264,22 +284,32 @@ pub fn describe(node: &Node) -> String {
     if full.len() <= LONGEST {
         return full;
     }
-    let mut first = None;
-    node.visit(&mut |part| {
-        if let (Node::Symbol(symbol), None) = (part, &first) {
-            first = Some(symbol.name.to_string());
-        }
-    });
     let kind = match node {
         Node::Sum(_) => "sum",
         Node::Product(_) => "product",
         Node::Quotient(..) => "quotient",
         _ => "value",
     };
-    format!(
-        "{kind}_with_{}",
-        first.unwrap_or_else(|| "constants".into())
-    )
+    let mut name = format!("{kind}_of");
+    for symbol in distinct_symbols(node) {
+        if name.len() + symbol.len() < LONGEST {
+            name += &format!("_{symbol}");
+        }
+    }
+    name
+}
+
+/// The names of the symbols in a formula, each once, in reading order.
+fn distinct_symbols(node: &Node) -> Vec<String> {
+    let mut symbols: Vec<String> = vec![];
+    node.visit(&mut |part| {
+        if let Node::Symbol(symbol) = part
+            && !symbols.iter().any(|known| **known == *symbol.name)
+        {
+            symbols.push(symbol.name.to_string());
+        }
+    });
+    symbols
 }
 
 fn describe_fully(node: &Node) -> String {

@@ -27,7 +27,7 @@ joint pose(v: m, h: m) {
 }";
 
 fn derived(source: &str) -> Derived {
-    derive(source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"))
+    derive(source, "test").unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn emitted(source: &str) -> String {

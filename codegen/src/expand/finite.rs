@@ -1,4 +1,4 @@
-//! Finite maps of a joint whose Φ is `Q exp(ϕ)` on every factor: Φ, its inverse and differential, projection, residual.
+//! Finite maps of a joint whose Φ is `Q exp(ϕ)` on every factor: Φ, its inverse and differential; projection and residual of any joint.
 
 use super::motion::local_element;
 use super::steps::Steps;
@@ -72,8 +72,18 @@ fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Option<Vec<Expr>> {
         .map(|freedom| freedom.generator.clone())
         .collect();
     let basis = Matrix::from_columns(standard.len(), &columns);
-    let inverse = basis.determinant(&Expr::clone).recip()?;
-    let inverse = basis.adjugate(&Expr::clone).scale(&inverse);
+    // A basis of a subalgebra has fewer columns than rows; within its orbit any left inverse gives the same.
+    let gram = basis.transpose().times(&basis);
+    let inverse = gram.determinant(&Expr::clone).recip()?;
+    let inverse = match basis.rows() == basis.columns() {
+        true => basis
+            .adjugate(&Expr::clone)
+            .scale(&basis.determinant(&Expr::clone).recip()?),
+        false => gram
+            .adjugate(&Expr::clone)
+            .times(&basis.transpose())
+            .scale(&inverse),
+    };
     Some(
         inverse
             .times(&Matrix::column_vector(standard.to_vec()))
@@ -177,45 +187,118 @@ fn inverse_differential(
     steps: &mut Steps,
 ) -> Option<Matrix> {
     let named = |name: &str| format!("{prefix}{name}");
-    let square = ad.times(ad);
+    let ending = ending(ad)?;
     let once = steps.bind_matrix(&named("bracket"), &ad.times(rate));
     let half = once.scale(&Expr::fraction(1, 2));
     let linear = rate.plus(&half);
-    if square.is_zero() {
+    let (Ending::Simple(s) | Ending::Double(s)) = &ending else {
         return Some(linear);
+    };
+    let theta_squared = steps.bind(&named("theta_squared"), s.clone());
+    let g = steps.bind(&named("g"), theta_squared.dexp_inverse(0));
+    let twice = steps.bind_matrix(&named("double_bracket"), &ad.times(&once));
+    if let Ending::Simple(_) = ending {
+        return Some(linear.plus(&twice.scale(&g)));
+    }
+    // The even part is interpolated with its slope at the double root.
+    let slope = steps.bind(&named("g_slope"), theta_squared.dexp_inverse(1));
+    let alpha = steps.bind(&named("alpha"), &g - &(&theta_squared * &slope));
+    let thrice = steps.bind_matrix(&named("triple_bracket"), &ad.times(&twice));
+    let fourth = ad.times(&thrice);
+    Some(
+        linear
+            .plus(&twice.scale(&alpha))
+            .minus(&fourth.scale(&slope)),
+    )
+}
+
+/// D with `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)`: `Σ (−ad_ϕ)ⁿ/(n+1)!`, K×K; `None` where no closed form fits.
+pub fn retract_differential(spec: &JointSpec, constants: &[Matrix]) -> Option<Body> {
+    let size = spec.freedoms.value.len();
+    let mut steps = Steps::default();
+    let mut whole = Matrix::identity(size);
+    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+        let places: Vec<usize> = (0..size)
+            .filter(|&k| spec.freedoms.value[k].factor == n)
+            .collect();
+        let ad = restricted_adjoint(spec, constants, &places);
+        if ad.is_zero() {
+            continue;
+        }
+        let own = differential(&ad, &prefix(spec, factor), &mut steps)?;
+        let place = |i: usize| places.iter().position(|&place| place == i);
+        whole = Matrix::from_fn(size, size, |i, j| match (place(i), place(j)) {
+            (Some(row), Some(column)) => own.at(row, column).clone(),
+            _ => whole.at(i, j).clone(),
+        });
+    }
+    Some((steps.finish(), whole))
+}
+
+/// How powers of ad_ϕ end.
+enum Ending {
+    /// `ad² = 0`.
+    Nilpotent,
+    /// `ad (ad² + s) = 0`.
+    Simple(Expr),
+    /// `ad (ad² + s)² = 0`.
+    Double(Expr),
+}
+
+/// Every subalgebra of se(3) ends in one of these ways.
+fn ending(ad: &Matrix) -> Option<Ending> {
+    let square = ad.times(ad);
+    if square.is_zero() {
+        return Some(Ending::Nilpotent);
     }
     let cube = square.times(ad);
     for rank in [2, 4] {
         let s = &-square.trace() * &Expr::fraction(1, rank);
-        let simple = cube.plus(&ad.scale(&s)).is_zero();
+        if cube.plus(&ad.scale(&s)).is_zero() {
+            return Some(Ending::Simple(s));
+        }
         let two_s = &s * &Expr::integer(2);
-        let double = || {
-            cube.times(&square)
-                .plus(&cube.scale(&two_s))
-                .plus(&ad.scale(&s.square()))
-                .is_zero()
-        };
-        if !simple && !double() {
-            continue;
+        let double = cube
+            .times(&square)
+            .plus(&cube.scale(&two_s))
+            .plus(&ad.scale(&s.square()));
+        if double.is_zero() {
+            return Some(Ending::Double(s));
         }
-        let theta_squared = steps.bind(&named("theta_squared"), s);
-        let g = steps.bind(&named("g"), theta_squared.dexp_inverse(0));
-        let twice = steps.bind_matrix(&named("double_bracket"), &ad.times(&once));
-        if simple {
-            return Some(linear.plus(&twice.scale(&g)));
-        }
-        // ad (ad² + s)² = 0: the even part is interpolated with its slope at the double root.
-        let slope = steps.bind(&named("g_slope"), theta_squared.dexp_inverse(1));
-        let alpha = steps.bind(&named("alpha"), &g - &(&theta_squared * &slope));
-        let thrice = steps.bind_matrix(&named("triple_bracket"), &ad.times(&twice));
-        let fourth = ad.times(&thrice);
-        return Some(
-            linear
-                .plus(&twice.scale(&alpha))
-                .minus(&fourth.scale(&slope)),
-        );
     }
     None
+}
+
+/// `Σ (−ad)ⁿ/(n+1)! = I − ad O(ad²) + ad² E(ad²)` with `O(−s) = c₂(s)` and `E(−s) = c₃(s)`.
+///
+/// On the range of ad, ad² is −s, or nearly so: where −s is a double root, O and E are their tangents there.
+fn differential(ad: &Matrix, prefix: &str, steps: &mut Steps) -> Option<Matrix> {
+    let identity = Matrix::identity(ad.rows());
+    let named = |name: &str| format!("{prefix}{name}");
+    let ending = ending(ad)?;
+    let (Ending::Simple(s) | Ending::Double(s)) = &ending else {
+        return Some(identity.minus(&ad.scale(&Expr::fraction(1, 2))));
+    };
+    let square = steps.bind_matrix(&named("ad_squared"), &ad.times(ad));
+    let s = steps.bind(&named("theta_squared"), s.clone());
+    let mut coefficient = |order: u8| steps.bind(&named(&format!("c{order}")), s.stumpff(order));
+    let (c2, c3) = (coefficient(2), coefficient(3));
+    if let Ending::Simple(_) = ending {
+        return Some(identity.minus(&ad.scale(&c2)).plus(&square.scale(&c3)));
+    }
+    let (c1, c4, c5) = (coefficient(1), coefficient(4), coefficient(5));
+    let half = |e: Expr| &e * &Expr::fraction(1, 2);
+    let times = |n: i64, c: &Expr| &Expr::integer(n) * c;
+    // dc₂/ds = c₄ − c₃/2 and dc₃/ds = (3 c₅ − c₄)/2; c₂ − s dc₂/ds and c₃ − s dc₃/ds by s c₄ = ½ − c₂ and the like.
+    let odd = steps.bind(&named("odd"), &times(2, &c2) - &half(c1));
+    let odd_slope = steps.bind(&named("odd_slope"), &c4 - &half(c3.clone()));
+    let even = steps.bind(&named("even"), half(&times(5, &c3) - &c2));
+    let even_slope = steps.bind(&named("even_slope"), half(&times(3, &c5) - &c4));
+    let cube = steps.bind_matrix(&named("ad_cubed"), &ad.times(&square));
+    let fourth = square.times(&square);
+    let odd_part = ad.scale(&odd).minus(&cube.scale(&odd_slope));
+    let even_part = square.scale(&even).minus(&fourth.scale(&even_slope));
+    Some(identity.minus(&odd_part).plus(&even_part))
 }
 
 /// The nearest configuration on the manifold.
@@ -281,6 +364,7 @@ pub fn residual(spec: &JointSpec) -> Matrix {
             .factors()
             .iter()
             .flat_map(residual_of_factor)
+            .chain(spec.manifold.value.declared().iter().cloned())
             .collect(),
     )
 }

@@ -10,38 +10,76 @@ use crate::matrix::Matrix;
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
-const NAMES: [&str; 10] = [
-    "m", "mcx", "mcy", "mcz", "ixx", "iyy", "izz", "ixy", "ixz", "iyz",
-];
-
 /// A basis of N_X; each element `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
 ///
-/// `child` is X^c, `twists` the twists by ϕ̇ in the child frame. What holds only at special parameter values does not count.
+/// `child` is X^c, `twists` the twists by ϕ̇ in the child frame. What holds only at special parameter values does not count. Conditions
+/// are met one after the other, so that the first ones, which are short, leave little for the others.
 pub fn imperceptible(child: &Matrix, twists: &Matrix, ideal: &Ideal) -> Vec<[Rational; 10]> {
-    let symbols: Vec<Symbol> = NAMES
-        .iter()
-        .enumerate()
-        .map(|(i, name)| Symbol::new(Role::Inertia, i, name))
-        .collect();
-    let inertia = spatial_inertia(&symbols);
-    let mut conditions = inertia.times(child).entries().to_vec();
+    let whole: Vec<[Rational; 10]> = (0..10).map(unit).collect();
+    let columns = (0..child.columns()).map(|j| Matrix::column_vector(child.column(j)));
+    // Forces before moments: they hold mass and first moment alone.
+    let mut left = columns.fold(whole, |left, column| {
+        let of_rows = |rows: &'static [usize]| {
+            let column = &column;
+            move |n: &Matrix| n.select_rows(rows).times(column)
+        };
+        let left = restrict(left, ideal, of_rows(&[3, 4, 5]));
+        restrict(left, ideal, of_rows(&[0, 1, 2]))
+    });
     for k in 0..twists.columns() {
         let ad = bracket(&twists.column(k));
-        conditions.extend_from_slice(
-            ad.transpose()
-                .times(&inertia)
-                .plus(&inertia.times(&ad))
-                .entries(),
-        );
+        left = restrict(left, ideal, |n| ad.transpose().times(n).plus(&n.times(&ad)));
     }
-    let rows = conditions
-        .iter()
-        .flat_map(|condition| linear_conditions(&ideal.normal_form(condition)));
-    null_space(rows.collect())
+    // One more elimination gives the reduced form that does not depend on the order.
+    null_space(annihilator(&left))
 }
 
-fn spatial_inertia(symbols: &[Symbol]) -> Matrix {
-    let n: Vec<Expr> = symbols.iter().map(Expr::symbol).collect();
+fn unit(n: usize) -> [Rational; 10] {
+    std::array::from_fn(|i| Rational::from_integer(i64::from(i == n).into()))
+}
+
+/// The combinations of the given inertias for which the condition, linear in N, vanishes.
+fn restrict(
+    left: Vec<[Rational; 10]>,
+    ideal: &Ideal,
+    condition: impl Fn(&Matrix) -> Matrix,
+) -> Vec<[Rational; 10]> {
+    if left.is_empty() {
+        return left;
+    }
+    let weights = Symbol::series(Role::Inertia, "n", left.len());
+    let entry = |i: usize| -> Expr {
+        let terms = left.iter().zip(&weights);
+        terms
+            .map(|(element, weight)| &Expr::rational(element[i].clone()) * &Expr::symbol(weight))
+            .sum()
+    };
+    let inertia = spatial_inertia(&(0..10).map(entry).collect::<Vec<_>>());
+    let condition = condition(&inertia);
+    let mut rows: Vec<[Rational; 10]> = condition
+        .entries()
+        .iter()
+        .flat_map(|entry| linear_conditions(&ideal.normal_form(entry)))
+        .collect();
+    // Weights beyond those that are left are zero.
+    rows.extend((left.len()..10).map(unit));
+    let combined = |weights: [Rational; 10]| {
+        std::array::from_fn(|i| {
+            left.iter()
+                .zip(&weights)
+                .map(|(element, w)| &element[i] * w)
+                .sum()
+        })
+    };
+    null_space(rows).into_iter().map(combined).collect()
+}
+
+/// Linear conditions that hold for the given inertias alone.
+fn annihilator(inertias: &[[Rational; 10]]) -> Vec<[Rational; 10]> {
+    null_space(inertias.to_vec())
+}
+
+fn spatial_inertia(n: &[Expr]) -> Matrix {
     let moment = Matrix::tilde(&n[1..4]);
     let entry = |i: usize, j: usize| n[[[4, 7, 8], [7, 5, 9], [8, 9, 6]][i][j]].clone();
     let inertia = Matrix::from_fn(3, 3, entry);

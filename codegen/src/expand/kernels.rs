@@ -1,9 +1,9 @@
 //! The kernels of THEORY §3 from an expansion, in the order in which they are emitted.
 
-use super::{Expansion, finite, hamel};
+use super::{Expansion, finite, general, hamel};
 use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
-use crate::expr::Role;
+use crate::expr::{Role, Symbol};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
@@ -15,6 +15,7 @@ pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, V
         spec,
         x: expansion,
         ideal: spec.manifold.value.ideal(),
+        child_slopes: child_slopes(spec, expansion),
     };
     let mut kernels = maker.pose_and_velocity();
     kernels.extend(maker.nonholonomic());
@@ -28,6 +29,16 @@ struct Maker<'a> {
     spec: &'a JointSpec,
     x: &'a Expansion,
     ideal: &'a Ideal,
+    child_slopes: Vec<Matrix>,
+}
+
+/// ∂X^c/∂ϕ.
+fn child_slopes(spec: &JointSpec, x: &Expansion) -> Vec<Matrix> {
+    let slope = |k| x.motion.along_each(&x.twist_map_child, k);
+    let ideal = spec.manifold.value.ideal();
+    (0..x.shape.freedoms)
+        .map(|k| ideal.normal_forms(&slope(k)))
+        .collect()
 }
 
 impl Maker<'_> {
@@ -45,9 +56,8 @@ impl Maker<'_> {
         let velocity = Matrix::symbols(&self.x.arguments.velocity);
         let momentum = Matrix::symbols(&self.x.arguments.momentum);
         let inverse = &self.x.velocity_map_inverse;
-        let child_slopes = (0..self.x.shape.freedoms)
-            .map(|k| self.normal(&self.x.motion.along_each(&self.x.twist_map_child, k)));
-        let home = Matrix::column_vector(self.spec.manifold.value.home());
+        let home = self.spec.home.as_ref().map(|home| home.value.clone());
+        let home = Matrix::column_vector(home.unwrap_or_else(|| self.spec.manifold.value.home()));
         vec![
             plain(KernelKind::Home, vec![home]),
             plain(
@@ -59,7 +69,7 @@ impl Maker<'_> {
                 KernelKind::TwistMapChild,
                 vec![self.x.twist_map_child.clone()],
             ),
-            plain(KernelKind::TwistMapChildGradient, child_slopes.collect()),
+            plain(KernelKind::TwistMapChildGradient, self.child_slopes.clone()),
             plain(KernelKind::VelocityMap, vec![s.base.clone()]),
             plain(KernelKind::VelocityMapInverse, vec![inverse.clone()]),
             plain(KernelKind::VelocityMapGradient, s.slopes.clone()),
@@ -84,33 +94,30 @@ impl Maker<'_> {
     }
 
     fn finite_maps(&self) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
+        let moving = match self.x.exponential {
+            true => self
+                .exponential_maps()
+                .ok_or_else(|| vec![no_closed_form(self.spec)])?,
+            false => self.general_maps(),
+        };
+        Ok([moving, self.manifold_maps()].concat())
+    }
+
+    /// Φ = Q exp(ϕ): closed forms.
+    fn exponential_maps(&self) -> Option<Vec<Kernel>> {
         let (spec, arguments) = (self.spec, &self.x.arguments);
-        let missing = || vec![no_closed_form(spec)];
-        let (retract_steps, retract) = finite::retract(spec).ok_or_else(missing)?;
-        let (local_steps, local) =
-            finite::local(spec, &spec.manifold.value.target()).ok_or_else(missing)?;
-        let (differential_steps, differential) = finite::retract_differential_inverse(
-            spec,
-            &self.x.structure_constants,
-            &arguments.velocity,
-        )
-        .ok_or_else(missing)?;
-        let (project_steps, project) = finite::project(spec);
-        let identity =
-            |value: &Matrix, symbols: &[crate::expr::Symbol]| *value == Matrix::symbols(symbols);
-        let differential_structure = match identity(&differential, &arguments.velocity) {
+        let (retract_steps, retract) = finite::retract(spec)?;
+        let (local_steps, local) = finite::local(spec, &spec.manifold.value.target())?;
+        let constants = &self.x.structure_constants;
+        let (inverse_steps, inverse) =
+            finite::retract_differential_inverse(spec, constants, &arguments.velocity)?;
+        let structure = same_or_general(&inverse, &arguments.velocity);
+        let (forward_steps, forward) = finite::retract_differential(spec, constants)?;
+        let forward_structure = match forward.is_identity() {
             true => Structure::Identity,
             false => Structure::General,
         };
-        let project_structure = match identity(&project, &arguments.configuration) {
-            true => Structure::Identity,
-            false => Structure::General,
-        };
-        Ok(vec![
-            plain(
-                KernelKind::ConfigurationRate,
-                vec![self.configuration_rate()],
-            ),
+        Some(vec![
             with(
                 KernelKind::Retract,
                 retract_steps,
@@ -119,19 +126,74 @@ impl Maker<'_> {
             ),
             with(KernelKind::Local, local_steps, local, Structure::General),
             with(
-                KernelKind::RetractDifferentialInverse,
-                differential_steps,
-                differential,
-                differential_structure,
+                KernelKind::RetractDifferential,
+                forward_steps,
+                forward,
+                forward_structure,
             ),
             with(
-                KernelKind::Project,
-                project_steps,
-                project,
-                project_structure,
+                KernelKind::RetractDifferentialInverse,
+                inverse_steps,
+                inverse,
+                structure,
             ),
-            plain(KernelKind::Residual, vec![finite::residual(spec)]),
         ])
+    }
+
+    /// Any other Φ: as declared, with what the runtime's solvers need.
+    fn general_maps(&self) -> Vec<Kernel> {
+        let formulas = [
+            (KernelKind::Retract, general::retract(self.spec)),
+            (
+                KernelKind::RetractTangent,
+                general::retract_tangent(self.spec),
+            ),
+        ];
+        let formulas = formulas
+            .into_iter()
+            .filter_map(|(kind, value)| Some(with(kind, vec![], value?, Structure::General)));
+        let solved = [
+            (KernelKind::Local, Method::Newton),
+            (KernelKind::RetractDifferential, Method::Solve),
+            (KernelKind::RetractDifferentialInverse, Method::Solve),
+        ];
+        formulas
+            .chain(solved.map(|(kind, method)| by_runtime(kind, method)))
+            .collect()
+    }
+
+    /// Projection and residual; Newton's method where the spec declares relations.
+    fn manifold_maps(&self) -> Vec<Kernel> {
+        let spec = self.spec;
+        let (steps, start) = finite::project(spec);
+        let relations = general::relations(spec);
+        let structure = match relations {
+            None => same_or_general(&start, &self.x.arguments.configuration),
+            Some(_) => Structure::General,
+        };
+        let mut project = with(KernelKind::Project, steps, start, structure);
+        let rate = plain(
+            KernelKind::ConfigurationRate,
+            vec![self.configuration_rate()],
+        );
+        let residual = plain(KernelKind::Residual, vec![finite::residual(spec)]);
+        let singular = match spec.loci.is_empty() {
+            true => Structure::Constant,
+            false => Structure::General,
+        };
+        let singular = with(
+            KernelKind::Singularity,
+            vec![],
+            singular_functions(spec),
+            singular,
+        );
+        let Some((values, gradient)) = relations else {
+            return vec![rate, project, residual, singular];
+        };
+        project.method = Method::Newton;
+        let values = plain(KernelKind::Relations, vec![values]);
+        let gradient = plain(KernelKind::RelationGradient, vec![gradient]);
+        vec![rate, project, residual, singular, values, gradient]
     }
 
     /// `Q̇ = Σ_k δ_k (S₀⁻¹ v)_k`, (31).
@@ -153,26 +215,30 @@ impl Maker<'_> {
         let basis = &self.x.nonholonomic.speed_basis;
         let speeds = Matrix::symbols(&self.x.arguments.speeds);
         let rates = self.normal(&self.x.velocity_map_inverse.times(basis).times(&speeds));
-        let reduced = self.normal(&self.x.twist_map_child.times(basis));
         let zero = Matrix::zeros(6, basis.columns());
-        let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| {
-            sum.plus(
-                &self
-                    .normal(&self.x.motion.along_each(&reduced, k))
-                    .scale(rates.at(k, 0)),
-            )
-        });
-        let acceleration = self.normal(&rate.times(&speeds));
-        let momentum = self.normal(
-            &rate
-                .transpose()
-                .times(&Matrix::symbols(&self.x.arguments.wrench)),
-        );
+        let slopes = self.child_slopes.iter().zip(&self.x.nonholonomic.slopes);
+        let rate = slopes
+            .enumerate()
+            .fold(zero, |sum, (k, (child, of_basis))| {
+                let moved = self.x.twist_map_child.times(of_basis);
+                sum.plus(&child.times(basis).plus(&moved).scale(rates.at(k, 0)))
+            });
+        let rate = self.short(&rate);
+        let acceleration = rate.times(&speeds);
+        let momentum = rate
+            .transpose()
+            .times(&Matrix::symbols(&self.x.arguments.wrench));
         vec![
             plain(KernelKind::BiasAcceleration, vec![acceleration]),
             plain(KernelKind::BiasMomentum, vec![momentum]),
         ]
     }
+}
+
+/// The functions whose zeros the joint must stay away from: a column, empty for a joint that is global.
+fn singular_functions(spec: &JointSpec) -> Matrix {
+    let functions = spec.loci.iter().map(|locus| locus.value.function.clone());
+    Matrix::column_vector(functions.collect())
 }
 
 /// A kernel without intermediate lines.
@@ -184,6 +250,24 @@ fn plain(kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
         outputs,
         method: Method::Formula,
         structure,
+    }
+}
+
+/// A kernel that the runtime evaluates from others.
+fn by_runtime(kind: KernelKind, method: Method) -> Kernel {
+    Kernel {
+        kind,
+        steps: vec![],
+        outputs: vec![],
+        method,
+        structure: Structure::General,
+    }
+}
+
+fn same_or_general(value: &Matrix, argument: &[Symbol]) -> Structure {
+    match *value == Matrix::symbols(argument) {
+        true => Structure::Identity,
+        false => Structure::General,
     }
 }
 

@@ -2,7 +2,10 @@
 //!
 //! Nothing here is trusted: [`crate::prove`] substitutes the results back into their definitions.
 
+mod complement;
+pub(crate) mod dimension;
 mod finite;
+mod general;
 mod hamel;
 mod imperceptible;
 mod kernels;
@@ -12,14 +15,17 @@ pub(crate) mod rank;
 mod steps;
 mod velocity;
 
+pub use dimension::{Confinement, confine};
+pub use general::is_exponential;
 pub use kernels::kernels;
-pub use motion::{Motion, local_element};
+pub use motion::{Motion, exponential, local_element};
 pub use nonholonomic::{Nonholonomic, speed_names};
 pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
 
 use crate::algebra;
 use crate::derived::{Arguments, Shape};
 use crate::diagnostic::Diagnostic;
+use crate::domain::Domain;
 use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
@@ -33,6 +39,8 @@ pub struct Expansion {
     pub shape: Shape,
     /// Symbols of the kernels' arguments.
     pub arguments: Arguments,
+    /// Whether Φ is Q exp(ϕ), so that the finite maps have closed forms.
+    pub exponential: bool,
     /// Φ to second order.
     pub motion: Motion,
     /// Structure constants: slice k is `ad_{b_k}` in the declared basis, entry (i, j) = c^i_kj.
@@ -57,18 +65,34 @@ pub struct Expansion {
 
 /// Expands a spec.
 pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
-    check_dimensions(spec)?;
     let ideal = spec.manifold.value.ideal();
+    let domain = Domain::new(spec);
+    let exponential = is_exponential(spec);
+    dimension::check(spec, exponential)?;
     let arguments = arguments(spec);
-    let motion = Motion::of_exponential(spec);
+    let motion = match (&spec.retract, exponential) {
+        (Some(declared), false) => Motion::of_map(spec, &declared.value),
+        _ => Motion::of_exponential(spec),
+    };
     let structure_constants = structure_constants(spec);
     let jacobian = TwistJacobian::new(&spec.pose.value, &motion, ideal);
     let to_child = adjoint_inverse(&spec.pose.value);
-    let twist_map = twist_map(spec, &jacobian, &to_child, ideal)?;
-    let twist_map_child = ideal.simplest_entries(&ideal.normal_forms(&to_child.times(&twist_map)));
-    let left_inverse = velocity::left_inverse(&twist_map, &twist_map_child, &to_child, ideal)
-        .ok_or_else(|| vec![singular_twist_map(spec, &twist_map)])?;
-    let velocity_map = VelocityMap::new(&jacobian, &twist_map, &left_inverse, &motion, ideal);
+    let twist_map = twist_map(spec, &jacobian, ideal)?;
+    let twist_map_child = match twist_map == jacobian.base {
+        true => jacobian.child.clone(),
+        false => ideal.simplest_entries(&to_child.times(&twist_map)),
+    };
+    let velocity_map = velocity::Solver {
+        jacobian: &jacobian,
+        twist_map: &twist_map,
+        child: &twist_map_child,
+        to_child: &to_child,
+        motion: &motion,
+        domain: &domain,
+        structure_constants: exponential.then_some(&structure_constants),
+    }
+    .solve()
+    .ok_or_else(|| vec![singular_twist_map(spec, &twist_map)])?;
     let simplify = |e: &Expr| ideal.normal_form(e);
     let determinant = velocity_map.base.determinant(&simplify);
     let inverse = determinant
@@ -76,8 +100,7 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
         .ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
     let velocity_map_inverse =
         ideal.normal_forms(&velocity_map.base.adjugate(&simplify).scale(&inverse));
-    let nonholonomic = Nonholonomic::new(spec, &motion, ideal)?;
-    let twists = ideal.normal_forms(&to_child.times(&jacobian.base));
+    let nonholonomic = Nonholonomic::new(spec, &motion, &domain)?;
     Ok(Expansion {
         shape: Shape {
             configuration: arguments.configuration.len(),
@@ -85,8 +108,9 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
             speeds: nonholonomic.speed_basis.columns(),
             constraints: nonholonomic.constraint.columns(),
         },
-        imperceptible: imperceptible::imperceptible(&twist_map_child, &twists, ideal),
+        imperceptible: imperceptible::imperceptible(&twist_map_child, &jacobian.child, ideal),
         arguments,
+        exponential,
         motion,
         structure_constants,
         jacobian,
@@ -131,39 +155,14 @@ fn arguments(spec: &JointSpec) -> Arguments {
     }
 }
 
-/// A joint of k freedoms has a k-dimensional configuration manifold, factor by factor.
-fn check_dimensions(spec: &JointSpec) -> Result<(), Vec<Diagnostic>> {
-    let errors: Vec<Diagnostic> = spec
-        .manifold
-        .value
-        .factors()
-        .iter()
-        .enumerate()
-        .filter_map(|(n, factor)| {
-            let moved = spec.freedoms.value.iter().filter(|freedom| freedom.factor == n).count();
-            let dimension = factor.kind.dimension();
-            (moved != dimension || factor.kind.algebra_name().is_none()).then(|| {
-                let message = format!("{} has dimension {dimension}, but the basis moves {moved} of it", factor.kind.name());
-                Diagnostic::new(code::DIMENSION, spec.freedoms.span.clone(), message)
-                    .label("these local coordinates")
-                    .help(format!("give {} a basis of {dimension} elements, or choose a manifold of dimension {moved}", factor.name))
-            })
-        })
-        .collect();
-    if errors.is_empty() {
-        Ok(())
-    } else {
-        Err(errors)
-    }
-}
-
 /// `c^i_kj` with `[b_k, b_j] = Σ_i c^i_kj b_i`, in the declared basis. The language has checked that the basis closes.
 fn structure_constants(spec: &JointSpec) -> Vec<Matrix> {
     let freedoms = &spec.freedoms.value;
     let count = freedoms.len();
     let mut constants = vec![vec![vec![Expr::zero(); count]; count]; count];
     for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
-        let places: Vec<usize> = (0..count).filter(|&k| freedoms[k].factor == n).collect();
+        let belongs = |&k: &usize| freedoms[k].factor == n && !freedoms[k].generator.is_empty();
+        let places: Vec<usize> = (0..count).filter(belongs).collect();
         let basis = places
             .iter()
             .map(|&k| freedoms[k].generator.clone())
@@ -195,12 +194,11 @@ fn structure_constants(spec: &JointSpec) -> Vec<Matrix> {
 fn twist_map(
     spec: &JointSpec,
     jacobian: &TwistJacobian,
-    to_child: &Matrix,
     ideal: &Ideal,
 ) -> Result<Matrix, Vec<Diagnostic>> {
     match &spec.twist_map {
         Some(declared) => Ok(declared.value.clone()),
-        None => twist_map_in_frame(spec, jacobian, to_child, ideal),
+        None => twist_map_in_frame(spec, jacobian, ideal),
     }
 }
 
@@ -208,14 +206,12 @@ fn twist_map(
 pub(crate) fn twist_map_in_frame(
     spec: &JointSpec,
     jacobian: &TwistJacobian,
-    to_child: &Matrix,
     ideal: &Ideal,
 ) -> Result<Matrix, Vec<Diagnostic>> {
-    let moving = ideal.simplest_entries(&jacobian.base);
     if spec.velocity.value != VelocityFrame::Parent {
-        return Ok(moving);
+        return Ok(jacobian.base.clone());
     }
-    let child = ideal.normal_forms(&to_child.times(&moving));
+    let child = ideal.normal_forms(&jacobian.child);
     match child.is_constant() {
         true => Ok(child),
         false => Err(vec![

@@ -2,6 +2,7 @@
 
 use crate::algebra;
 use crate::expr::{Expr, Symbol};
+use crate::manifold::{Factor, Kind, Manifold};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 
@@ -23,13 +24,31 @@ pub fn local_element(spec: &JointSpec, factor: usize) -> Matrix {
         .freedoms
         .value
         .iter()
-        .filter(|freedom| freedom.factor == factor)
+        .filter(|freedom| freedom.factor == factor && !freedom.generator.is_empty())
     {
         for (sum, component) in standard.iter_mut().zip(&freedom.generator) {
             *sum += &(component * &Expr::symbol(&freedom.local));
         }
     }
     algebra::hat(kind, &standard)
+}
+
+/// Q exp(ϕ) in closed form, as stored scalars; `None` where exp has none.
+pub fn exponential(spec: &JointSpec) -> Option<Vec<Expr>> {
+    let mut moved = vec![];
+    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+        let exp = algebra::exp(&local_element(spec, n))?;
+        moved.extend(factor.coordinates_of(&factor.matrix().times(&exp)));
+    }
+    Some(moved)
+}
+
+/// The velocity of a point of the sphere that turns about an axis.
+fn turned(factor: &Factor, axis: &[Expr]) -> Vec<Expr> {
+    Matrix::tilde(axis)
+        .times(&factor.matrix())
+        .entries()
+        .to_vec()
 }
 
 impl Motion {
@@ -43,6 +62,36 @@ impl Motion {
         Self::of_map(spec, &moved.collect::<Vec<_>>())
     }
 
+    /// Every direction of the known manifolds, declared relations apart, to first order alone.
+    pub fn of_known_manifold(manifold: &Manifold) -> Self {
+        let mut first = vec![];
+        let mut before = 0;
+        let size = manifold.coordinates().len();
+        for factor in manifold.factors() {
+            let directions = match factor.kind {
+                Kind::S2 => (0..3)
+                    .map(|n| Matrix::identity(3).column(n))
+                    .map(|axis| turned(factor, &axis))
+                    .collect(),
+                kind => algebra::standard_basis(kind)
+                    .iter()
+                    .map(|generator| factor.coordinates_of(&factor.matrix().times(generator)))
+                    .collect::<Vec<_>>(),
+            };
+            for direction in directions {
+                let mut whole = vec![Expr::zero(); size];
+                whole[before..before + direction.len()].clone_from_slice(&direction);
+                first.push(whole);
+            }
+            before += factor.coordinates.len();
+        }
+        Self {
+            coordinates: manifold.coordinates(),
+            first,
+            second: vec![],
+        }
+    }
+
     /// Any Φ, given as stored scalars in Q and ϕ.
     pub fn of_map(spec: &JointSpec, moved: &[Expr]) -> Self {
         let locals: Vec<Symbol> = spec
@@ -51,10 +100,11 @@ impl Motion {
             .iter()
             .map(|freedom| freedom.local.clone())
             .collect();
+        let ideal = spec.manifold.value.ideal();
         let at_base = |entries: &[Expr]| {
             entries
                 .iter()
-                .map(|e| e.at_zero(&locals))
+                .map(|e| ideal.simplest(&e.at_zero(&locals)))
                 .collect::<Vec<_>>()
         };
         let along = |entries: &[Expr], k: usize| {

@@ -2,6 +2,7 @@
 
 use super::motion::Motion;
 use super::rank;
+use crate::domain::{Domain, is_unit};
 use crate::expr::Expr;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
@@ -26,6 +27,8 @@ pub fn bracket(twist: &[Expr]) -> Matrix {
 pub struct TwistJacobian {
     /// J₀, 6×k.
     pub base: Matrix,
+    /// J₀ in the child frame.
+    pub child: Matrix,
     /// J_l = ∂J/∂ϕ_l.
     pub slopes: Vec<Matrix>,
 }
@@ -44,8 +47,15 @@ impl TwistJacobian {
             .collect();
         let omegas: Vec<Vec<Expr>> = rotations
             .iter()
-            .map(|dr| vee(&ideal.normal_forms(&dr.times(&r_t))))
+            .map(|dr| vee(&ideal.simplest_entries(&dr.times(&r_t))))
             .collect();
+        let child_column = |i: usize| {
+            let omega = vee(&ideal.simplest_entries(&r_t.times(&rotations[i])));
+            join(
+                &omega,
+                &ideal.simplest_entries(&r_t.times(&translations[i])),
+            )
+        };
         let column = |i: usize| {
             let linear = translations[i].minus(&cross(&omegas[i], p));
             join(&omegas[i], &ideal.simplest_entries(&linear))
@@ -55,18 +65,19 @@ impl TwistJacobian {
             let omega_slope = curved
                 .times(&r_t)
                 .plus(&rotations[i].times(&rotations[l].transpose()));
-            let omega_slope = vee(&ideal.normal_forms(&omega_slope));
+            let omega_slope = vee(&ideal.simplest_entries(&omega_slope));
             let linear = pose.translation.map(|entry| motion.along_both(entry, i, l));
             let linear = linear
                 .minus(&cross(&omega_slope, p))
                 .minus(&cross(&omegas[i], translations[l].entries()));
-            join(&omega_slope, &ideal.normal_forms(&linear))
+            join(&omega_slope, &ideal.simplest_entries(&linear))
         };
         let slope = |l: usize| {
             Matrix::from_columns(6, &(0..k).map(|i| slope_column(i, l)).collect::<Vec<_>>())
         };
         Self {
             base: Matrix::from_columns(6, &(0..k).map(column).collect::<Vec<_>>()),
+            child: Matrix::from_columns(6, &(0..k).map(child_column).collect::<Vec<_>>()),
             slopes: (0..k).map(slope).collect(),
         }
     }
@@ -93,59 +104,114 @@ pub struct VelocityMap {
     pub slopes: Vec<Matrix>,
 }
 
-impl VelocityMap {
-    /// Applies a left inverse of X₀ to both orders. Whether the result solves (23) is proved afterwards, by substitution.
-    pub fn new(
-        jacobian: &TwistJacobian,
-        twist_map: &Matrix,
-        left_inverse: &Matrix,
-        motion: &Motion,
-        ideal: &Ideal,
-    ) -> Self {
-        let base = ideal.normal_forms(&left_inverse.times(&jacobian.base));
-        let slope = |(l, j): (usize, &Matrix)| {
-            let rest = j.minus(&motion.along_each(twist_map, l).times(&base));
-            ideal.normal_forms(&left_inverse.times(&ideal.normal_forms(&rest)))
-        };
-        Self {
-            slopes: jacobian.slopes.iter().enumerate().map(slope).collect(),
-            base,
+/// What S is solved from.
+pub struct Solver<'a, 'b> {
+    /// J.
+    pub jacobian: &'a TwistJacobian,
+    /// X.
+    pub twist_map: &'a Matrix,
+    /// X^c.
+    pub child: &'a Matrix,
+    /// `Ad_{H⁻¹}`.
+    pub to_child: &'a Matrix,
+    /// Φ to second order.
+    pub motion: &'a Motion,
+    /// Where the joint lives.
+    pub domain: &'a Domain<'b>,
+    /// Structure constants, where Φ = Q exp(ϕ).
+    pub structure_constants: Option<&'a Vec<Matrix>>,
+}
+
+impl Solver<'_, '_> {
+    /// Applies a left inverse of X₀ to both orders of (23), where the answer is not plain. Whether the result solves (23) is proved
+    /// afterwards, by substitution. `None` where X has dependent columns everywhere.
+    pub fn solve(&self) -> Option<VelocityMap> {
+        let ideal = self.domain.ideal();
+        let rates = self.jacobian.base.minus(self.twist_map);
+        if !ideal.normal_forms(&rates).is_zero() {
+            let inverse = self.left_inverse()?;
+            let base = ideal.normal_forms(&inverse.times(&self.jacobian.base));
+            let slopes = self.rests(&base);
+            return Some(VelocityMap {
+                slopes: slopes
+                    .iter()
+                    .map(|rest| ideal.normal_forms(&inverse.times(rest)))
+                    .collect(),
+                base,
+            });
         }
+        // v = ϕ̇ at ϕ = 0, so that S₀ = I.
+        let base = Matrix::identity(self.motion.freedoms());
+        let slopes = match self.structure_constants {
+            // S = I − ½ ad_ϕ.
+            Some(constants) => constants
+                .iter()
+                .map(|ad| ad.scale(&Expr::fraction(-1, 2)))
+                .collect(),
+            None => self.slopes_of_rates(&base)?,
+        };
+        Some(VelocityMap { base, slopes })
+    }
+
+    /// ∂S/∂ϕ where S₀ = I.
+    fn slopes_of_rates(&self, base: &Matrix) -> Option<Vec<Matrix>> {
+        let rests = self.rests(base);
+        if rests.iter().all(Matrix::is_zero) {
+            return Some(vec![base.minus(base); rests.len()]);
+        }
+        let inverse = self.left_inverse()?;
+        let solved = |rest: &Matrix| self.domain.ideal().normal_forms(&inverse.times(rest));
+        Some(rests.iter().map(solved).collect())
+    }
+
+    /// `J_l − X_l S₀`.
+    fn rests(&self, base: &Matrix) -> Vec<Matrix> {
+        let rest = |(l, j): (usize, &Matrix)| {
+            let moved = self.motion.along_each(self.twist_map, l).times(base);
+            self.domain.ideal().normal_forms(&j.minus(&moved))
+        };
+        self.jacobian.slopes.iter().enumerate().map(rest).collect()
+    }
+
+    /// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
+    /// constant of one term; from rows whose determinant is short and never 0; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
+    fn left_inverse(&self) -> Option<Matrix> {
+        let constant = |determinant: &Expr| is_unit(determinant);
+        let short = |determinant: &Expr| {
+            determinant.terms().len() <= LONGEST_PIVOT && self.domain.nonzero(determinant).is_some()
+        };
+        let in_parent = |good: &dyn Fn(&Expr) -> bool| self.row_inverse(self.twist_map, good);
+        let in_child = |good: &dyn Fn(&Expr) -> bool| {
+            Some(self.row_inverse(self.child, good)?.times(self.to_child))
+        };
+        match self.child.is_constant() && !self.twist_map.is_constant() {
+            true => in_child(&constant).or_else(|| in_parent(&constant)),
+            false => in_parent(&constant).or_else(|| in_child(&constant)),
+        }
+        .or_else(|| in_child(&short))
+        .or_else(|| in_parent(&short))
+        .or_else(|| pseudo_inverse(self.twist_map, self.domain.ideal()))
+    }
+
+    /// The inverse of the first rows with a good determinant, zero elsewhere.
+    fn row_inverse(&self, m: &Matrix, good: &dyn Fn(&Expr) -> bool) -> Option<Matrix> {
+        let simplify = |e: &Expr| self.domain.ideal().normal_form(e);
+        rank::combinations(m.rows(), m.columns())
+            .into_iter()
+            .find_map(|rows| {
+                let square = m.select_rows(&rows);
+                let determinant = square.determinant(&simplify);
+                if determinant.is_zero() || !good(&determinant) {
+                    return None;
+                }
+                let inverse = square.adjugate(&simplify).scale(&determinant.recip()?);
+                Some(spread_columns(&inverse, &rows, m.rows()))
+            })
     }
 }
 
-/// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
-/// constant of one term; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
-pub fn left_inverse(
-    twist_map: &Matrix,
-    child: &Matrix,
-    to_child: &Matrix,
-    ideal: &Ideal,
-) -> Option<Matrix> {
-    let in_parent = || row_inverse(twist_map, ideal);
-    let in_child = || Some(row_inverse(child, ideal)?.times(to_child));
-    match child.is_constant() && !twist_map.is_constant() {
-        true => in_child().or_else(in_parent),
-        false => in_parent().or_else(in_child),
-    }
-    .or_else(|| pseudo_inverse(twist_map, ideal))
-}
-
-/// The inverse of the first rows with a determinant of one constant term, zero elsewhere.
-fn row_inverse(m: &Matrix, ideal: &Ideal) -> Option<Matrix> {
-    let simplify = |e: &Expr| ideal.normal_form(e);
-    rank::combinations(m.rows(), m.columns())
-        .into_iter()
-        .find_map(|rows| {
-            let square = m.select_rows(&rows);
-            let determinant = square.determinant(&simplify);
-            if !rank::is_unit(&determinant) {
-                return None;
-            }
-            let inverse = square.adjugate(&simplify).scale(&determinant.recip()?);
-            Some(spread_columns(&inverse, &rows, m.rows()))
-        })
-}
+/// Most terms of a determinant that is divided by, rather than by that of XᵀX.
+const LONGEST_PIVOT: usize = 2;
 
 fn pseudo_inverse(m: &Matrix, ideal: &Ideal) -> Option<Matrix> {
     let simplify = |e: &Expr| ideal.normal_form(e);

@@ -9,6 +9,8 @@ use std::sync::Arc;
 pub enum Role {
     /// A parameter of the joint: an element of the field of coefficients, never zero.
     Parameter,
+    /// A parameter, or its inverse, that is an indeterminate: see `manifold::Reduction`.
+    Constant,
     /// A stored scalar of the configuration Q.
     Coordinate,
     /// A stored scalar of a second configuration Q′.

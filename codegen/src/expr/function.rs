@@ -108,7 +108,7 @@ impl Expr {
     }
 
     /// The function with new arguments, folded.
-    pub(super) fn applied(function: Function, arguments: &[Self]) -> Self {
+    pub fn applied(function: Function, arguments: &[Self]) -> Self {
         match (function, arguments) {
             (Function::Cos, [x]) => x.cos(),
             (Function::Sin, [x]) => x.sin(),

@@ -26,9 +26,11 @@ pub enum Kind {
 
 /// The longest real vector that a joint may have: a joint has at most six freedoms.
 pub const LARGEST_REAL: usize = 6;
+/// The longest real vector of a joint whose relations leave at most six freedoms of it.
+pub const LARGEST_CONSTRAINED_REAL: usize = 24;
 
 impl Kind {
-    /// The manifold of that name in the spec language.
+    /// The manifold of that name in the spec language; real vectors longer than [`LARGEST_REAL`] need relations.
     pub fn parse(name: &str) -> Option<Self> {
         Some(match name {
             "S1" => Self::S1,
@@ -40,7 +42,7 @@ impl Kind {
             "S2" => Self::S2,
             _ => {
                 let size: usize = name.strip_prefix('R')?.parse().ok()?;
-                (1..=LARGEST_REAL)
+                (1..=LARGEST_CONSTRAINED_REAL)
                     .contains(&size)
                     .then_some(Self::Real(size))?
             }

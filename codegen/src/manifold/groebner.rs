@@ -12,8 +12,27 @@ pub struct NotMonic {
 
 /// The reduced Gröbner basis of the ideal of `relations`.
 pub fn groebner_basis(relations: &[Expr]) -> Result<Vec<Expr>, NotMonic> {
-    let mut basis = interreduce(relations.to_vec())?;
-    let mut pairs: Vec<(usize, usize)> = pairs_up_to(basis.len());
+    let basis = interreduce(relations.to_vec())?;
+    let pairs = pairs_up_to(basis.len());
+    completed(basis, pairs)
+}
+
+/// The reduced Gröbner basis of the ideal of a basis and further relations.
+pub fn extended(basis: &[Expr], relations: &[Expr]) -> Result<Vec<Expr>, NotMonic> {
+    let mut all = basis.to_vec();
+    let mut pairs = vec![];
+    for relation in relations {
+        let reduced = reduce(relation, &all);
+        if !reduced.is_zero() {
+            pairs.extend((0..all.len()).map(|i| (i, all.len())));
+            all.push(monic(reduced)?);
+        }
+    }
+    completed(all, pairs)
+}
+
+/// Buchberger's algorithm: reduces S-polynomials until all reduce to zero.
+fn completed(mut basis: Vec<Expr>, mut pairs: Vec<(usize, usize)>) -> Result<Vec<Expr>, NotMonic> {
     while let Some((i, j)) = take_smallest(&mut pairs, &basis) {
         if budget::is_exhausted() {
             break;
@@ -23,8 +42,12 @@ pub fn groebner_basis(relations: &[Expr]) -> Result<Vec<Expr>, NotMonic> {
         };
         let remainder = reduce(&s, &basis);
         if !remainder.is_zero() {
+            let found = monic(remainder)?;
+            if found.is_one() {
+                return Ok(vec![found]);
+            }
             pairs.extend((0..basis.len()).map(|k| (k, basis.len())));
-            basis.push(monic(remainder)?);
+            basis.push(found);
         }
     }
     interreduce(basis)
@@ -81,6 +104,11 @@ fn s_polynomial(f: &Expr, g: &Expr) -> Option<Expr> {
     let mut s = f.scaled(&one, &multiple.divided_by(lf)?);
     s.add_scaled(&-one, &multiple.divided_by(lg)?, g);
     Some(s)
+}
+
+/// The relation as a rule for its leading monomial, where that can be solved for.
+pub fn rule(relation: &Expr) -> Option<Expr> {
+    monic(relation.clone()).ok().filter(|rule| !rule.is_zero())
 }
 
 /// Scales so that the leading term has coefficient 1 and no parameters.

@@ -1,47 +1,100 @@
 //! Equality on a manifold: normal forms modulo its relations and those of the functions that occur.
 
-use super::groebner::{self, NotMonic};
-use crate::expr::{Atom, Expr, Function};
+use super::reduction::Reduction;
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, budget};
 use crate::matrix::Matrix;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Most term operations that the search for a shorter form of one expression may take.
+const SIMPLIFICATION_LIMIT: u64 = 10_000;
+
 /// The ideal of a manifold's relations, with its Gröbner basis.
 #[derive(Clone, Debug, Default)]
 pub struct Ideal {
-    basis: Vec<Expr>,
+    own: Reduction,
     /// Bases extended by the relations of the functions that an expression holds, by those functions.
-    extended: RefCell<BTreeMap<BTreeSet<Atom>, Vec<Expr>>>,
+    extended: RefCell<BTreeMap<BTreeSet<Atom>, Reduction>>,
 }
 
 impl Ideal {
     /// The ideal of the relations.
-    pub fn new(relations: &[Expr]) -> Result<Self, NotMonic> {
-        Ok(Self {
-            basis: groebner::groebner_basis(relations)?,
+    pub fn new(relations: &[Expr]) -> Self {
+        Self {
+            own: Reduction::new(relations),
             extended: RefCell::default(),
-        })
+        }
     }
 
     /// The reduced Gröbner basis of the manifold's own relations.
     pub fn basis(&self) -> &[Expr] {
-        &self.basis
+        self.own.basis()
+    }
+
+    /// Whether no configuration satisfies the relations.
+    pub fn is_contradictory(&self) -> bool {
+        self.own.is_trivial()
     }
 
     /// The normal form: zero exactly for the expressions that vanish modulo the relations.
     pub fn normal_form(&self, expression: &Expr) -> Expr {
         let functions = related_functions(expression);
         if functions.is_empty() {
-            return groebner::reduce(expression, &self.basis);
+            return self.own.normal_form(expression);
         }
+        let settled = self.settled(expression);
+        let functions = related_functions(&settled);
         let known = self.extended.borrow().get(&functions).cloned();
-        let basis = known.unwrap_or_else(|| self.extend(functions));
-        groebner::reduce(expression, &basis)
+        let reduction = known.unwrap_or_else(|| self.extend(functions));
+        reduction.normal_form(&settled)
     }
 
-    /// Whether the expression vanishes on the manifold.
+    /// The expression with the arguments of its functions in normal form, so that functions of equal arguments are equal.
+    fn settled(&self, expression: &Expr) -> Expr {
+        let term = |(monomial, coefficient): (&Monomial, &Rational)| {
+            let start = Expr::rational(coefficient.clone());
+            monomial.factors().fold(start, |product, (atom, power)| {
+                let value = match atom {
+                    Atom::Apply(application) => self.settled_function(application),
+                    Atom::Symbol(_) => Expr::atom(atom.clone()),
+                };
+                let value = match power < 0 {
+                    true => value.recip().unwrap_or_default(),
+                    false => value,
+                };
+                &product * &value.pow(power.unsigned_abs())
+            })
+        };
+        expression.terms().map(term).sum()
+    }
+
+    fn settled_function(&self, application: &Application) -> Expr {
+        let arguments = application
+            .arguments
+            .iter()
+            .map(|argument| self.normal_form(argument));
+        Expr::applied(application.function, &arguments.collect::<Vec<_>>())
+    }
+
+    /// Whether the expression vanishes on the manifold, wherever it is defined: its numerator has normal form 0.
     pub fn vanishes(&self, expression: &Expr) -> bool {
-        self.normal_form(expression).is_zero()
+        let normal = self.normal_form(expression);
+        normal.is_zero() || {
+            let numerator = self.numerator(&normal);
+            self.normal_form(&numerator).is_zero()
+        }
+    }
+
+    /// The expression times all its denominators: it vanishes where the expression does.
+    fn numerator(&self, expression: &Expr) -> Expr {
+        let mut numerator = self.settled(expression);
+        while let Some((atom, denominator)) = quotient_in(&numerator) {
+            if budget::is_exhausted() {
+                break;
+            }
+            numerator = cleared(&numerator, &atom, &denominator);
+        }
+        numerator
     }
 
     /// Entry by entry.
@@ -51,10 +104,10 @@ impl Ideal {
 
     /// The shorter of an expression and its normal form; the expression as it stands where they are alike.
     pub fn simplest(&self, expression: &Expr) -> Expr {
-        let normal = self.normal_form(expression);
-        match weight(&normal) < weight(expression) {
-            true => normal,
-            false => expression.clone(),
+        let normal = budget::scope(SIMPLIFICATION_LIMIT, || self.normal_form(expression));
+        match normal {
+            Ok(normal) if weight(&normal) < weight(expression) => normal,
+            _ => expression.clone(),
         }
     }
 
@@ -63,45 +116,98 @@ impl Ideal {
         matrix.map(|entry| self.simplest(entry))
     }
 
-    /// Whether the expressions have no common zero on the manifold, shown by 1 being among their combinations.
+    /// Whether the expressions have no common zero on the manifold, shown by 1 being among the combinations of their numerators.
     pub fn has_no_zero_with(&self, expressions: &[Expr]) -> bool {
-        let functions: BTreeSet<Atom> = expressions.iter().flat_map(related_functions).collect();
-        let mut all = match functions.is_empty() {
-            true => self.basis.clone(),
-            false => self.extend(functions),
-        };
-        all.extend_from_slice(expressions);
-        groebner::groebner_basis(&all).is_ok_and(|basis| groebner::is_trivial(&basis))
+        let numerators: Vec<Expr> = expressions.iter().map(|e| self.numerator(e)).collect();
+        let functions: BTreeSet<Atom> = numerators.iter().flat_map(related_functions).collect();
+        let relations = relations_of(&functions, |function| function != Function::Recip);
+        self.own
+            .with(&[relations, numerators].concat())
+            .is_trivial()
     }
 
-    fn extend(&self, functions: BTreeSet<Atom>) -> Vec<Expr> {
-        let relations = functions
-            .iter()
-            .flat_map(|atom| Expr::atom(atom.clone()).atom_relations());
-        let mut all: Vec<Expr> = self.basis.clone();
-        for relation in relations {
-            if !all.contains(&relation) {
-                all.push(relation);
-            }
-        }
-        // Fails only for the reciprocal of a sum of parameters; what needs that relation is then not proved, and refused.
-        let basis = groebner::groebner_basis(&all).unwrap_or_else(|_| self.basis.clone());
-        self.extended.borrow_mut().insert(functions, basis.clone());
-        basis
+    /// Sines and roots complete the basis; quotients only rewrite, since their completion grows.
+    fn extend(&self, functions: BTreeSet<Atom>) -> Reduction {
+        let mut reduction = self.own.with(&relations_of(&functions, |function| {
+            function != Function::Recip
+        }));
+        reduction.add_rules(&relations_of(&functions, |function| {
+            function == Function::Recip
+        }));
+        self.extended
+            .borrow_mut()
+            .insert(functions, reduction.clone());
+        reduction
     }
 }
 
-/// Number of operations to write the expression as it stands.
-fn weight(expression: &Expr) -> usize {
-    expression
+/// The relations of those functions that are wanted, each once.
+fn relations_of(functions: &BTreeSet<Atom>, wanted: impl Fn(Function) -> bool) -> Vec<Expr> {
+    let mut relations: Vec<Expr> = vec![];
+    for atom in functions {
+        let Atom::Apply(application) = atom else {
+            continue;
+        };
+        if wanted(application.function) {
+            let found = Expr::atom(atom.clone()).atom_relations();
+            relations.extend(
+                found
+                    .into_iter()
+                    .filter(|r| !relations.contains(r))
+                    .collect::<Vec<_>>(),
+            );
+        }
+    }
+    relations
+}
+
+/// A quotient in the expression itself, with its denominator.
+fn quotient_in(expression: &Expr) -> Option<(Atom, Expr)> {
+    expression.atoms().into_iter().find_map(|atom| match &atom {
+        Atom::Apply(application) if application.function == Function::Recip => {
+            let denominator = application.arguments.first()?.clone();
+            Some((atom, denominator))
+        }
+        _ => None,
+    })
+}
+
+/// The expression times the highest power of the denominator in it.
+fn cleared(expression: &Expr, quotient: &Atom, denominator: &Expr) -> Expr {
+    let power_in = |monomial: &Monomial| monomial.power(quotient).max(0);
+    let highest = expression
         .terms()
-        .map(|(monomial, _)| {
-            1 + monomial
-                .factors()
-                .map(|(_, power)| power.unsigned_abs() as usize)
-                .sum::<usize>()
-        })
-        .sum()
+        .map(|(monomial, _)| power_in(monomial))
+        .max()
+        .unwrap_or(0);
+    let term = |(monomial, coefficient): (&Monomial, &Rational)| {
+        let power = power_in(monomial);
+        let single = Monomial::atom(quotient.clone());
+        let rest = (0..power).try_fold(monomial.clone(), |rest, _| rest.divided_by(&single));
+        let rest = Expr::term(coefficient.clone(), rest.unwrap_or_default());
+        &rest * &denominator.pow((highest - power).unsigned_abs())
+    };
+    expression.terms().map(term).sum()
+}
+
+/// Number of operations to write the expression as it stands, each function of it once.
+fn weight(expression: &Expr) -> usize {
+    let of_term = |(monomial, _): (&Monomial, &Rational)| {
+        let powers = monomial
+            .factors()
+            .map(|(_, power)| power.unsigned_abs() as usize);
+        1 + powers.sum::<usize>()
+    };
+    let functions = expression
+        .atoms()
+        .into_iter()
+        .filter_map(|atom| match atom {
+            Atom::Apply(application) => {
+                Some(application.arguments.iter().map(weight).sum::<usize>())
+            }
+            Atom::Symbol(_) => None,
+        });
+    expression.terms().map(of_term).sum::<usize>() + functions.sum::<usize>()
 }
 
 /// The functions with relations that occur in the expression, those inside arguments of roots and quotients included.

@@ -3,11 +3,11 @@
 mod factor;
 mod groebner;
 mod ideal;
+mod reduction;
 #[cfg(test)]
 mod tests;
 
-pub use factor::{Factor, Kind, LARGEST_REAL};
-pub use groebner::NotMonic;
+pub use factor::{Factor, Kind, LARGEST_CONSTRAINED_REAL, LARGEST_REAL};
 pub use ideal::Ideal;
 
 use crate::expr::{Expr, Role, Symbol};
@@ -22,25 +22,25 @@ pub struct Manifold {
 
 impl Manifold {
     /// The product of the named factors.
-    pub fn new(factors: &[(String, Kind)]) -> Result<Self, NotMonic> {
+    pub fn new(factors: &[(String, Kind)]) -> Self {
         let factors = Self::factors_of(factors, Role::Coordinate);
         let relations: Vec<Expr> = factors.iter().flat_map(Factor::relations).collect();
-        Ok(Self {
+        Self {
             factors,
             declared: vec![],
-            ideal: Ideal::new(&relations)?,
-        })
+            ideal: Ideal::new(&relations),
+        }
     }
 
     /// The part of this manifold where the polynomials in its stored scalars vanish.
-    pub fn constrained(self, declared: Vec<Expr>) -> Result<Self, NotMonic> {
+    pub fn constrained(self, declared: Vec<Expr>) -> Self {
         let mut all = self.relations();
         all.extend_from_slice(&declared);
-        Ok(Self {
-            ideal: Ideal::new(&all)?,
+        Self {
+            ideal: Ideal::new(&all),
             declared: [self.declared, declared].concat(),
             factors: self.factors,
-        })
+        }
     }
 
     /// The relations that the spec declares.

@@ -80,7 +80,7 @@ fn gives(entry: &Expr, symbol: &Symbol, known: &BTreeSet<Symbol>) -> bool {
         .symbols()
         .into_iter()
         .filter(|s| s.role == Role::Coordinate && s != symbol);
-    crate::expand::rank::is_unit(&slope) && others.into_iter().all(|s| known.contains(&s))
+    crate::domain::is_unit(&slope) && others.into_iter().all(|s| known.contains(&s))
 }
 
 fn is_even(entries: &[Expr], rest: &[&Symbol], spec: &JointSpec) -> bool {

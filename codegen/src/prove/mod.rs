@@ -3,6 +3,7 @@
 //! Identities hold when their difference has normal form 0 modulo the manifold's relations. Ranks and invertibility need a
 //! certificate that holds at every configuration; random points never serve for them.
 
+mod defined;
 mod fibres;
 mod nonholonomic;
 mod retract;
@@ -10,6 +11,7 @@ mod twist;
 
 use crate::derived::{Claim, Proof};
 use crate::diagnostic::Diagnostic;
+use crate::domain::Domain;
 use crate::expand::Expansion;
 use crate::expr::Expr;
 use crate::manifold::Ideal;
@@ -24,8 +26,11 @@ pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         spec,
         x: expansion,
         ideal: spec.manifold.value.ideal(),
+        domain: Domain::new(spec),
     };
     let attempts = [
+        prover.is_defined(),
+        prover.has_dimension(),
         prover.pose_is_rigid(),
         prover.retract_starts_at_q(),
         prover.retract_stays_on_manifold(),
@@ -60,9 +65,24 @@ struct Prover<'a> {
     spec: &'a JointSpec,
     x: &'a Expansion,
     ideal: &'a Ideal,
+    domain: Domain<'a>,
 }
 
 impl Prover<'_> {
+    /// The statement with the places where it is not claimed.
+    fn where_it_holds(&self, statement: &str) -> String {
+        let loci: Vec<String> = self
+            .spec
+            .loci
+            .iter()
+            .map(|locus| format!("{} ≠ 0", locus.value.function))
+            .collect();
+        match loci.is_empty() {
+            true => statement.to_owned(),
+            false => format!("{statement} where {}", loci.join(" and ")),
+        }
+    }
+
     fn identity(
         &self,
         name: &'static str,
@@ -70,7 +90,10 @@ impl Prover<'_> {
         difference: &Matrix,
         refuted: impl FnOnce(Matrix) -> Diagnostic,
     ) -> Attempt {
-        let residual = self.ideal.normal_forms(difference);
+        let residual = difference.map(|entry| match self.ideal.vanishes(entry) {
+            true => Expr::zero(),
+            false => self.ideal.normal_form(entry),
+        });
         match residual.is_zero() {
             true => Ok(Some(symbolic(
                 name,

@@ -1,10 +1,10 @@
 //! Claims about Φ: it starts at Q, stays on the manifold, and is what the generator can invert.
 
-use super::{Attempt, Prover, refuted};
-use crate::expand::Motion;
+use super::{Attempt, Prover, certified, refuted, symbolic};
+use crate::derived::Proof;
+use crate::expand::{Confinement, Motion, dimension, exponential};
 use crate::expr::Expr;
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
 use crate::spec::code;
 use std::ops::Range;
 
@@ -17,9 +17,12 @@ impl Prover<'_> {
 
     pub(super) fn retract_starts_at_q(&self) -> Attempt {
         let manifold = &self.spec.manifold.value;
-        let (moved, span) = self
-            .retract()
-            .unwrap_or_else(|| (exponential(self.spec), self.spec.freedoms.span.clone()));
+        let (moved, span) = self.retract().unwrap_or_else(|| {
+            (
+                exponential(self.spec).unwrap_or_default(),
+                self.spec.freedoms.span.clone(),
+            )
+        });
         let base: Vec<Expr> = moved
             .iter()
             .map(|entry| entry.at_zero(&self.x.arguments.local))
@@ -79,36 +82,49 @@ impl Prover<'_> {
         )
     }
 
+    /// How the finite maps of Φ are evaluated.
     pub(super) fn declared_retract(&self) -> Attempt {
-        let Some((moved, span)) = self.retract() else {
-            return Ok(None);
-        };
-        let difference =
-            Matrix::column_vector(moved).minus(&Matrix::column_vector(exponential(self.spec)));
-        self.identity(
-            "retract_is_exponential",
-            "Φ(Q, ϕ) = Q exp(ϕ)",
-            &difference,
-            |residual| {
-                refuted(
-                    code::NOT_EXPONENTIAL,
-                    &span,
-                    "Φ is not Q * exp(phi), nor q + phi",
-                    "the only maps whose finite inverse the generator knows",
-                )
-                .note(format!("Φ − Q exp(ϕ) =\n{residual}"))
-            },
-        )
+        match (&self.spec.retract, self.x.exponential) {
+            (None, _) => Ok(None),
+            (Some(_), true) => Ok(Some(symbolic(
+                "retract_is_exponential",
+                "Φ(Q, ϕ) = Q exp(ϕ)",
+                Proof::NormalForm,
+                "the difference of both sides has normal form 0",
+            ))),
+            (Some(_), false) => Ok(Some(certified(
+                "retract_local_diffeomorphism",
+                &self.where_it_holds("Φ(Q, ·) is a local diffeomorphism at ϕ = 0"),
+                "∂H ∂Φ/∂ϕ = J₀ = X S₀ with rank X = k and S₀ invertible, and the manifold has k dimensions",
+            ))),
+        }
     }
-}
 
-/// Q exp(ϕ) in closed form, as stored scalars.
-fn exponential(spec: &JointSpec) -> Vec<Expr> {
-    let factors = spec.manifold.value.factors().iter().enumerate();
-    let moved = factors.flat_map(|(n, factor)| {
-        let xi = crate::expand::local_element(spec, n);
-        let exp = crate::algebra::exp(&xi).unwrap_or_else(|| crate::algebra::exp_second_order(&xi));
-        factor.coordinates_of(&factor.matrix().times(&exp))
-    });
-    moved.collect()
+    /// The manifold has as many dimensions as there are freedoms.
+    pub(super) fn has_dimension(&self) -> Attempt {
+        let found = dimension::confinement(self.spec, &self.domain, self.x.exponential);
+        match found {
+            Ok(Confinement::Known) => Ok(None),
+            Ok(Confinement::Relations(certificate)) => Ok(Some(certified(
+                "manifold_dimension",
+                &self.where_it_holds("the relations cut out a manifold of k dimensions"),
+                &format!("derivatives of the relations: {certificate}"),
+            ))),
+            Ok(Confinement::Orbit) => Ok(Some(certified(
+                "manifold_orbit",
+                "Q moves in the orbit of home under the subgroup of the basis",
+                "the basis closes under the bracket; the relations that are checked may admit more than this orbit",
+            ))),
+            Err(gram) => Err(Box::new(
+                refuted(
+                    code::DIMENSION,
+                    &self.spec.manifold.span,
+                    "the relations are not shown to cut out a manifold of as many dimensions as there are freedoms",
+                    "here",
+                )
+                .note(format!("their derivatives become dependent where {gram} = 0"))
+                .help("if the joint ends there, declare it: `except … = 0;`"),
+            )),
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Claims about X and S: they span the velocities of H, to first order in ϕ, at every configuration.
 
 use super::{Attempt, Prover, certified, refuted};
-use crate::expand::{adjoint_inverse, rank, twist_map_in_frame};
+use crate::expand::{rank, twist_map_in_frame};
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
@@ -23,9 +23,7 @@ impl Prover<'_> {
             VelocityFrame::Parent => "X maps velocities in parent axes",
             VelocityFrame::Rates => return Ok(None),
         };
-        let to_child = adjoint_inverse(&self.spec.pose.value);
-        let Ok(expected) = twist_map_in_frame(self.spec, &self.x.jacobian, &to_child, self.ideal)
-        else {
+        let Ok(expected) = twist_map_in_frame(self.spec, &self.x.jacobian, self.ideal) else {
             return Ok(None);
         };
         self.identity(
@@ -98,31 +96,23 @@ impl Prover<'_> {
 
     pub(super) fn velocity_map_is_invertible(&self) -> Attempt {
         let determinant = &self.x.determinant;
-        match rank::is_unit(determinant) {
-            true => Ok(Some(certified(
+        match self.domain.nonzero(determinant) {
+            Some(certificate) => Ok(Some(certified(
                 "velocity_map_invertible",
-                "S₀ is invertible",
-                &format!("det S₀ = {determinant}"),
+                &self.where_it_holds("S₀ is invertible"),
+                &format!("det S₀ {certificate}"),
             ))),
-            false
-                if self
-                    .ideal
-                    .has_no_zero_with(std::slice::from_ref(determinant)) =>
-            {
-                Ok(Some(certified(
-                    "velocity_map_invertible",
-                    "S₀ is invertible",
-                    &format!("det S₀ = {determinant} and the manifold's relations generate 1"),
-                )))
-            }
-            false => Err(Box::new(
+            None => Err(Box::new(
                 refuted(
                     code::VELOCITY_MAP_LOCUS,
                     &self.twist_map_span(),
-                    "S₀ is not invertible at every configuration",
+                    "S₀ is not shown to be invertible at every configuration",
                     "here",
                 )
-                .note(format!("it is singular where {determinant} = 0")),
+                .note(format!("generic: it is singular where {determinant} = 0"))
+                .help(format!(
+                    "if the joint ends there, declare it: `except {determinant} = 0;`"
+                )),
             )),
         }
     }
@@ -136,16 +126,21 @@ impl Prover<'_> {
         span: Range<usize>,
         what: &str,
     ) -> Attempt {
-        match rank::full_column_rank(m, self.ideal) {
-            Ok(certificate) => Ok(Some(certified(name, statement, &certificate.to_string()))),
+        match rank::full_column_rank(m, &self.domain) {
+            Ok(certificate) => Ok(Some(certified(
+                name,
+                &self.where_it_holds(statement),
+                &certificate,
+            ))),
             Err(gram) => Err(Box::new(
                 refuted(
                     code,
                     &span,
-                    &format!("{what} does not have full rank at every configuration"),
+                    &format!("{what} is not shown to have full rank at every configuration"),
                     "here",
                 )
-                .note(format!("its columns become dependent where {gram} = 0")),
+                .note(format!("generic rank: its columns become dependent where {gram} = 0"))
+                .help("if the joint ends there, declare it: `except … = 0;` with a function that vanishes there"),
             )),
         }
     }

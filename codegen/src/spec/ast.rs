@@ -34,12 +34,28 @@ impl File {
     }
 }
 
-/// `name: unit`.
+/// `name: unit`, and the values that it may take.
 #[derive(Debug)]
 pub(super) struct Parameter {
     pub docs: Vec<String>,
     pub name: Name,
     pub unit: Name,
+    pub range: Option<Bounds>,
+}
+
+/// `> 0`, `>= 0 < 5`, `in 0..=1`.
+#[derive(Debug)]
+pub(super) struct Bounds {
+    pub span: Range<usize>,
+    pub lower: Option<Bound>,
+    pub upper: Option<Bound>,
+}
+
+/// One end of the range of a parameter.
+#[derive(Debug)]
+pub(super) struct Bound {
+    pub value: Node,
+    pub included: bool,
 }
 
 /// One statement, up to its `;`.
@@ -58,6 +74,10 @@ impl Statement {
                 .filter_map(|(_, value)| value.as_ref())
                 .collect(),
             StatementKind::Let(_, value) => vec![value],
+            StatementKind::Relation(equation) | StatementKind::Except(equation) => {
+                vec![&equation.left, &equation.right]
+            }
+            StatementKind::Require(requirement) => vec![&requirement.larger, &requirement.smaller],
             StatementKind::Assign(_, values) => values.iter().collect(),
             _ => vec![],
         }
@@ -78,8 +98,44 @@ pub(super) enum StatementKind {
     Speeds(Vec<Name>),
     /// `let a = …;`
     Let(Name, Node),
-    /// `H = …;` and its like; Phi has one value for each factor.
+    /// `relation a = b;`
+    Relation(Equation),
+    /// `except a = b;`
+    Except(Equation),
+    /// `require a > b;`
+    Require(Requirement),
+    /// `H = …;` and its like; Phi and home have one value for each factor.
     Assign(Target, Vec<Node>),
+}
+
+/// `left = right`, with the doc comment before the statement.
+#[derive(Debug)]
+pub(super) struct Equation {
+    pub docs: Vec<String>,
+    pub left: Node,
+    pub right: Node,
+}
+
+impl Equation {
+    /// The bytes of both sides.
+    pub fn span(&self) -> Range<usize> {
+        self.left.span.start..self.right.span.end
+    }
+}
+
+/// `larger > smaller`, or written the other way round.
+#[derive(Debug)]
+pub(super) struct Requirement {
+    pub larger: Node,
+    pub smaller: Node,
+}
+
+impl Requirement {
+    /// The bytes of both sides.
+    pub fn span(&self) -> Range<usize> {
+        let (a, b) = (&self.larger.span, &self.smaller.span);
+        a.start.min(b.start)..a.end.max(b.end)
+    }
 }
 
 #[derive(Debug)]
@@ -92,6 +148,7 @@ pub(super) struct Basis {
 /// What a spec declares by `=`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Target {
+    Home,
     Retract,
     Pose,
     TwistMap,
@@ -100,7 +157,8 @@ pub(super) enum Target {
 }
 
 impl Target {
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
+        Self::Home,
         Self::Retract,
         Self::Pose,
         Self::TwistMap,
@@ -110,6 +168,7 @@ impl Target {
 
     pub fn name(self) -> &'static str {
         match self {
+            Self::Home => "home",
             Self::Retract => "Phi",
             Self::Pose => "H",
             Self::TwistMap => "X",

@@ -7,13 +7,17 @@ use proc_macro2::{Ident, Span, TokenTree};
 
 /// Words that begin the statements of the language.
 pub const STATEMENTS: &[&str] = &[
-    "config", "basis", "local", "velocity", "speeds", "let", "Phi", "H", "X", "A", "S_bar",
+    "config", "relation", "home", "except", "require", "basis", "local", "velocity", "speeds",
+    "let", "Phi", "H", "X", "A", "S_bar",
 ];
 
 /// Words that belong to the language.
 const WORDS: &[&str] = &[
     "hamel", "joint", "of", "in", "child", "parent", "phi", "pi", "I", "O",
 ];
+
+/// Keys that a scene gives each joint besides its parameters; `type` is a keyword of Rust already.
+const SCENE_KEYS: &[&str] = &["name"];
 
 /// Most names that a suggestion lists.
 const MOST_SUGGESTIONS: usize = 3;
@@ -30,6 +34,13 @@ pub(super) enum Form {
 /// Whether the name may be defined; else why not.
 pub(super) fn check(name: &Name, form: Form, functions: &[&str]) -> Option<Diagnostic> {
     form_error(name, form).or_else(|| reserved_error(name, functions))
+}
+
+/// Whether a parameter may have the name, as far as scenes are concerned; else why not.
+pub(super) fn check_parameter(name: &Name) -> Option<Diagnostic> {
+    SCENE_KEYS
+        .contains(&name.text.as_str())
+        .then(|| reserved(name, "a key of each joint in a scene"))
 }
 
 /// Whether a joint may have the name; else why not. No expression speaks of joints, so that only Rust's words are taken.

@@ -9,7 +9,7 @@ const LARGEST_SOURCE: usize = 64 * 1024;
 /// Deepest nesting of brackets.
 const DEEPEST: usize = 64;
 /// What the language is written with, outside comments, besides letters, digits and white space.
-const PUNCTUATION: &str = "_+-*/^=.,:;";
+const PUNCTUATION: &str = "_+-*/^=<>.,:;";
 /// Greek spellings of names of the language; the last is the macron of S̄.
 const GREEK: &str = "Φϕφπ\u{304}";
 

@@ -10,6 +10,13 @@ use syn::buffer::Cursor;
 /// Most characters of a token that a message shows.
 const LONGEST_SHOWN: usize = 40;
 
+/// `>`, `>=`, `<` or `<=`.
+pub(super) struct Comparison {
+    pub greater: bool,
+    pub included: bool,
+    pub span: Range<usize>,
+}
+
 /// The tokens between two brackets, or of a whole file.
 #[derive(Clone)]
 pub(super) struct Tokens<'a> {
@@ -67,6 +74,30 @@ impl<'a> Tokens<'a> {
         self.cursor
             .punct()
             .is_some_and(|(punct, _)| punct.as_char() == character)
+    }
+
+    /// Whether the next two tokens are `..`.
+    pub fn peek_range(&self) -> bool {
+        let dot = |cursor: Cursor<'a>| {
+            let (punct, rest) = cursor.punct()?;
+            (punct.as_char() == '.').then_some(rest)
+        };
+        dot(self.cursor).and_then(dot).is_some()
+    }
+
+    /// Takes `>`, `>=`, `<` or `<=`.
+    pub fn comparison(&mut self) -> Option<Comparison> {
+        let start = self.span().start;
+        let greater = self.eat('>');
+        if !greater && !self.eat('<') {
+            return None;
+        }
+        let included = self.eat('=');
+        Some(Comparison {
+            greater,
+            included,
+            span: start..self.previous,
+        })
     }
 
     pub fn peek_group(&self, delimiter: Delimiter) -> bool {

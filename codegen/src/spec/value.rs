@@ -81,12 +81,47 @@ impl Value {
         }
     }
 
-    /// As a column: columns, and lists.
+    /// As a column: columns, lists, elements of S1 and S3, and the coordinates of elements of algebras.
     pub fn as_column(&self) -> Option<Vec<Expr>> {
         match self {
             Self::List(entries) => Some(entries.clone()),
             Self::Matrix(matrix) if matrix.columns() == 1 => Some(matrix.entries().to_vec()),
+            Self::Element(Kind::S1 | Kind::S3, matrix) => Some(matrix.column(0)),
+            Self::Tangent(_, coordinates) => Some(coordinates.clone()),
             _ => None,
+        }
+    }
+
+    /// As a matrix in sums and multiples: matrices, and the elements of S1 and S3 as columns of their scalars.
+    pub fn as_summand(&self) -> Option<Matrix> {
+        match self {
+            Self::Element(Kind::S1 | Kind::S3, matrix) => {
+                Some(Matrix::column_vector(matrix.column(0)))
+            }
+            _ => self.as_matrix(),
+        }
+    }
+
+    /// This minus another of its shape, entry by entry; a list takes the shape of the other.
+    pub fn minus(&self, other: &Self) -> Option<Vec<Expr>> {
+        let subtract = |a: &[Expr], b: &[Expr]| -> Option<Vec<Expr>> {
+            (a.len() == b.len()).then(|| a.iter().zip(b).map(|(a, b)| a - b).collect())
+        };
+        match (self, other) {
+            (Self::Scalar(a), Self::Scalar(b)) => Some(vec![a - b]),
+            (Self::Scalar(_), _) | (_, Self::Scalar(_)) => None,
+            (Self::List(a), Self::List(b)) => subtract(a, b),
+            (Self::List(_), _) => other
+                .minus(self)
+                .map(|all| all.iter().map(|e| -e).collect()),
+            _ => {
+                let a = self.as_summand()?;
+                let b = match other {
+                    Self::List(_) => other.as_shape(a.rows(), a.columns())?,
+                    _ => other.as_summand().filter(|b| b.shape() == a.shape())?,
+                };
+                subtract(a.entries(), b.entries())
+            }
         }
     }
 

@@ -1,12 +1,13 @@
 //! From the initial time to the last, by accepted steps, over the sample times.
 
+use super::approach::Watch;
 use super::clock::Clock;
 use super::control::Controller;
 use super::flow::Flow;
 use super::stepper::Stepper;
 use super::{
-    Form, Inputs, IntegrateError, Method, Observer, Options, Solution, State, Statistics, Step,
-    StepFailure,
+    Form, Inputs, IntegrateError, Method, Near, Observer, Options, Solution, State, Statistics,
+    Step, StepFailure,
 };
 use crate::dynamics::Dynamics;
 use alloc::boxed::Box;
@@ -28,6 +29,7 @@ pub(super) struct Driver<'a> {
     start: f64,
     statistics: Statistics,
     samples: Vec<State>,
+    watch: Watch,
 }
 
 /// How the next step is chosen.
@@ -45,6 +47,7 @@ impl<'a> Driver<'a> {
         inputs: &'a mut Inputs<'a>,
     ) -> Result<Self, IntegrateError> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
+        let watch = Watch::new(&flow.mechanism);
         let (time, tableau) = (initial.time, options.method.tableau());
         let stepper = Stepper::new(
             tableau,
@@ -53,8 +56,13 @@ impl<'a> Driver<'a> {
             &initial.configuration,
             &initial.speeds,
         )
-        .map_err(|cause| at_state(time, cause))?;
+        .map_err(|cause| IntegrateError::AtState {
+            time,
+            cause: Box::new(cause),
+            near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
+        })?;
         Ok(Self {
+            watch,
             flow,
             stepper,
             options,
@@ -78,6 +86,7 @@ impl<'a> Driver<'a> {
             state: self.state(),
             samples: self.samples,
             statistics: self.statistics,
+            approaches: self.watch.finish(),
             stopped,
         })
     }
@@ -185,9 +194,14 @@ impl<'a> Driver<'a> {
 
     /// Ends the integration where no smaller step can help.
     fn refuse(&self, pacing: &Pacing, step: f64, cause: StepFailure) -> Result<(), IntegrateError> {
-        let (time, cause) = (self.clock.time(), Box::new(cause));
+        let (time, cause, near) = (self.clock.time(), Box::new(cause), self.near());
         if matches!(self.options.method, Method::Rk4 { .. }) {
-            return Err(IntegrateError::Step { time, step, cause });
+            return Err(IntegrateError::Step {
+                time,
+                step,
+                cause,
+                near,
+            });
         }
         let limit = 16.0 * f64::EPSILON * time.abs().max(self.options.t_end - self.start);
         if pacing.step > limit {
@@ -198,6 +212,7 @@ impl<'a> Driver<'a> {
             step: pacing.step,
             limit,
             cause,
+            near,
         })
     }
 
@@ -208,15 +223,26 @@ impl<'a> Driver<'a> {
             self.clock.advance(step);
         }
         let time = self.clock.time();
-        self.stepper
-            .accept(&mut self.flow, time)
-            .map_err(|cause| at_state(time, cause))?;
+        if let Err(cause) = self.stepper.accept(&mut self.flow, time) {
+            let (cause, near) = (Box::new(cause), self.near());
+            return Err(IntegrateError::AtState { time, cause, near });
+        }
         self.statistics.steps += 1;
         Ok(())
     }
 
+    /// The joint that is nearest to a singular set of its own.
+    fn near(&self) -> Near {
+        let q = &self.stepper.configuration;
+        self.watch
+            .nearest_at(&self.flow.mechanism, self.clock.time(), q)
+    }
+
     /// Records the samples that fall on this time and shows the state; whether to stop.
     fn report(&mut self, observer: &mut Observer<'_>) -> bool {
+        let time = self.clock.time();
+        self.watch
+            .see(&self.flow.mechanism, time, &self.stepper.configuration);
         let mut sample = None;
         while self.options.samples.get(self.samples.len()) == Some(&self.clock.time()) {
             sample = Some(self.samples.len());
@@ -240,9 +266,4 @@ impl<'a> Driver<'a> {
             speeds: self.stepper.speeds().to_vec(),
         }
     }
-}
-
-fn at_state(time: f64, cause: StepFailure) -> IntegrateError {
-    let cause = Box::new(cause);
-    IntegrateError::AtState { time, cause }
 }

@@ -1,9 +1,23 @@
 //! Why an integration ends before its time.
 
+use super::Near;
 use crate::dynamics::DynamicsError;
 use crate::mechanism::StateError;
 use alloc::boxed::Box;
 use alloc::string::String;
+use core::fmt::{Display, Formatter};
+
+/// A time for messages: with an exponent where decimals would be unreadable.
+pub(super) struct Seconds(pub(super) f64);
+
+impl Display for Seconds {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match self.0.abs() {
+            size if size > 0.0 && !(1e-3..1e7).contains(&size) => write!(f, "{:e}", self.0),
+            _ => write!(f, "{}", self.0),
+        }
+    }
+}
 
 /// Why a step cannot be taken, or is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -30,6 +44,9 @@ pub enum StepFailure {
         /// The joint.
         joint: String,
     },
+    /// The state reached cannot be brought back to its manifold.
+    #[error(transparent)]
+    State(#[from] StateError),
     /// The equations of motion cannot be evaluated.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
@@ -49,7 +66,7 @@ pub enum IntegrateError {
         requirement: &'static str,
     },
     /// The end lies before the start.
-    #[error("t_end is {end} s: it lies before the initial time {start} s")]
+    #[error("t_end is {} s: it lies before the initial time {} s", Seconds(*.end), Seconds(*.start))]
     TimeOrder {
         /// Initial time.
         start: f64,
@@ -58,7 +75,8 @@ pub enum IntegrateError {
     },
     /// A sample time out of order or out of range.
     #[error(
-        "sample {index} is at {time} s: sample times ascend, and this one must lie between {earliest} s and {end} s"
+        "sample {index} is at {} s: sample times ascend, and this one must lie between {} s and {} s",
+        Seconds(*.time), Seconds(*.earliest), Seconds(*.end)
     )]
     Sample {
         /// Its index.
@@ -74,15 +92,17 @@ pub enum IntegrateError {
     #[error("initial state: {0}")]
     Initial(#[from] StateError),
     /// The equations of motion fail at a state that was reached, so that no step size can mend it.
-    #[error("at {time} s: {cause}")]
+    #[error("at {} s: {cause}{near}", Seconds(*.time))]
     AtState {
         /// When.
         time: f64,
         /// Why.
         cause: Box<StepFailure>,
+        /// The joint that is nearest to a singular set of its own there, if one has any.
+        near: Near,
     },
     /// A step of fixed size fails.
-    #[error("the step of {step:e} s at {time} s fails: {cause}; take a smaller dt")]
+    #[error("the step of {step:e} s at {} s fails: {cause}{near}; take a smaller dt", Seconds(*.time))]
     Step {
         /// When.
         time: f64,
@@ -90,9 +110,11 @@ pub enum IntegrateError {
         step: f64,
         /// Why.
         cause: Box<StepFailure>,
+        /// The joint that is nearest to a singular set of its own there, if one has any.
+        near: Near,
     },
     /// Step control has come to steps that time cannot resolve.
-    #[error("the step has shrunk to {step:e} s at {time} s, the limit is {limit:e} s: {cause}")]
+    #[error("the step has shrunk to {step:e} s at {} s, the limit is {limit:e} s: {cause}{near}", Seconds(*.time))]
     StepUnderflow {
         /// When.
         time: f64,
@@ -102,5 +124,7 @@ pub enum IntegrateError {
         limit: f64,
         /// Why the last attempt was refused.
         cause: Box<StepFailure>,
+        /// The joint that is nearest to a singular set of its own there, if one has any.
+        near: Near,
     },
 }

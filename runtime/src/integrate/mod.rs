@@ -4,6 +4,7 @@
 //! `Q_i = Φ(Q_n, ϕ_i)` and `ϕ̇_i = S(Q_n, ϕ_i)⁻¹ S̄(Q_i) v̄_i`, so that any explicit tableau keeps its order. The step ends
 //! at `Φ(Q_n, ϕ)`, projected onto the manifold against rounding, where ϕ begins at 0 again. Nothing is ever added to Q.
 
+mod approach;
 mod clock;
 mod control;
 mod driver;
@@ -14,6 +15,7 @@ mod solution;
 mod stepper;
 mod tableau;
 
+pub use approach::{Approach, Near};
 pub use error::{IntegrateError, StepFailure};
 pub use options::{Form, Method, Options};
 pub use solution::{Solution, State, Statistics, Step};

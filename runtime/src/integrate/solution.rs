@@ -1,5 +1,6 @@
 //! What an integration starts from, shows on the way, and returns.
 
+use super::Approach;
 use alloc::vec::Vec;
 
 /// State of a mechanism at one time.
@@ -50,6 +51,8 @@ pub struct Solution {
     pub samples: Vec<State>,
     /// The work done.
     pub statistics: Statistics,
+    /// How near each joint that has singular sets came to them, in the order of the joints.
+    pub approaches: Vec<Approach>,
     /// Whether the observer ended it before [`Options::t_end`](super::Options::t_end).
     pub stopped: bool,
 }

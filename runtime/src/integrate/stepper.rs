@@ -121,7 +121,8 @@ impl Stepper {
         );
         for body in flow.mechanism.bodies() {
             let own = &mut self.next_configuration[body.ranges().configuration.clone()];
-            body.joint().project(own);
+            let projected = body.joint().project(own);
+            projected.map_err(|cause| body.finite_map(cause))?;
         }
         core::mem::swap(&mut self.configuration, &mut self.next_configuration);
         core::mem::swap(&mut self.y, &mut self.next_y);

@@ -121,10 +121,24 @@ impl Body {
         &q[self.ranges.configuration.clone()]
     }
 
+    /// The least of the functions of [`AnyJoint::singularities`] at this joint's own `q`, where it is 0 or not finite.
+    pub(super) fn singular_value(&self, q: &[f64]) -> Option<f64> {
+        singular_value(self.joint(), q)
+    }
+
     /// The configuration that the joint calls home.
     pub fn home(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.ranges.configuration.len()];
         self.joint().home(&mut q);
         q
     }
+}
+
+/// The least of the functions of [`AnyJoint::singularities`] at `q`, where it is 0 or not finite.
+pub(super) fn singular_value(joint: &dyn AnyJoint, q: &[f64]) -> Option<f64> {
+    if joint.singularities().is_empty() {
+        return None;
+    }
+    let value = joint.singularity(q);
+    (value == 0.0 || !value.is_finite()).then_some(value)
 }

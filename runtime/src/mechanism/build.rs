@@ -1,7 +1,8 @@
 //! Construction of a mechanism: checks, all at once, then assembly.
 
+use super::body::singular_value;
 use super::check::CONFIGURATION_TOLERANCE;
-use super::{Body, BodySpec, MechanismError, Ranges};
+use super::{Body, BodySpec, Loci, MechanismError, Ranges};
 use crate::erased::Layout;
 use crate::spatial::{Pose, SpatialInertia};
 use alloc::collections::BTreeMap;
@@ -82,6 +83,14 @@ fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
             joint: body.joint_name.clone(),
             residual,
             limit: CONFIGURATION_TOLERANCE,
+        });
+        return;
+    }
+    if let Some(value) = singular_value(&**joint, &home) {
+        errors.push(MechanismError::Singular {
+            joint: body.joint_name.clone(),
+            loci: Loci(joint.singularities()),
+            value,
         });
         return;
     }

@@ -1,6 +1,7 @@
 //! Checks of a state against its mechanism, and projection onto the joints' manifolds.
 
-use super::{Body, Mechanism, StateError};
+use super::{Body, Loci, Mechanism, StateError};
+use crate::erased::FiniteMapError;
 use alloc::string::String;
 
 /// Largest residual of a joint's relations that is taken for rounding of the input.
@@ -28,6 +29,12 @@ pub(crate) fn check_size(
 }
 
 impl Body {
+    /// The joint's own failure, with its name in the mechanism.
+    pub(crate) fn finite_map(&self, cause: FiniteMapError) -> StateError {
+        let joint = self.joint_name().into();
+        StateError::FiniteMap { joint, cause }
+    }
+
     /// Whether every value is finite; `names` tells the entries in the message.
     pub(super) fn check_finite(
         &self,
@@ -50,7 +57,7 @@ impl Body {
         }
     }
 
-    /// Whether `q`, this joint's Q alone, is finite and on the joint's manifold.
+    /// Whether `q`, this joint's Q alone, is finite, on the joint's manifold and not singular.
     pub(super) fn check_configuration(&self, q: &[f64]) -> Result<(), StateError> {
         let element = self.joint_name();
         check_size(
@@ -61,22 +68,31 @@ impl Body {
         )?;
         self.check_finite("configuration", self.joint().coordinates(), q)?;
         let residual = self.joint().residual(q);
-        if residual <= CONFIGURATION_TOLERANCE {
-            return Ok(());
+        // A comparison that NaN fails as well.
+        if !(residual <= CONFIGURATION_TOLERANCE) {
+            return Err(StateError::OffManifold {
+                joint: self.joint_name().into(),
+                residual,
+                limit: CONFIGURATION_TOLERANCE,
+            });
         }
-        Err(StateError::OffManifold {
-            joint: self.joint_name().into(),
-            residual,
-            limit: CONFIGURATION_TOLERANCE,
-        })
+        match self.singular_value(q) {
+            None => Ok(()),
+            Some(value) => Err(StateError::Singular {
+                joint: self.joint_name().into(),
+                loci: Loci(self.joint().singularities()),
+                value,
+            }),
+        }
     }
 }
 
 impl Mechanism {
-    /// Whether `q` has the right size, is finite, and lies on every joint's manifold to [`CONFIGURATION_TOLERANCE`].
+    /// Whether `q` has the right size, is finite, lies on every joint's manifold to [`CONFIGURATION_TOLERANCE`], and on none
+    /// of the sets where a joint is singular.
     ///
     /// # Errors
-    /// The first joint that is refused, with its residual and the limit.
+    /// The first joint that is refused, with its residual and the limit, or with the functions that vanish.
     pub fn check_configuration(&self, q: &[f64]) -> Result<(), StateError> {
         check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
         self.bodies
@@ -99,12 +115,14 @@ impl Mechanism {
     /// Moves each joint's Q to the nearest point of its manifold.
     ///
     /// # Errors
-    /// When `q` has the wrong size.
+    /// When `q` has the wrong size; when a projection fails, with the name of the joint.
     pub fn project(&self, q: &mut [f64]) -> Result<(), StateError> {
         check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
         for body in &self.bodies {
+            let own = &mut q[body.ranges.configuration.clone()];
             body.joint()
-                .project(&mut q[body.ranges.configuration.clone()]);
+                .project(own)
+                .map_err(|cause| body.finite_map(cause))?;
         }
         Ok(())
     }

@@ -1,7 +1,23 @@
 //! What a mechanism refuses, in its construction and in its state.
 
+use crate::erased::FiniteMapError;
 use crate::spatial::{MassError, PoseError};
 use alloc::string::String;
+use core::fmt::{Display, Formatter};
+
+/// The functions whose zeros a joint must stay away from, for messages: `` `f` `` or `` `f` or `g` ``.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Loci(pub &'static [&'static str]);
+
+impl Display for Loci {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        for (i, locus) in self.0.iter().enumerate() {
+            let between = if i > 0 { " or " } else { "" };
+            write!(f, "{between}`{locus}`")?;
+        }
+        Ok(())
+    }
+}
 
 /// Why a mechanism cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -66,6 +82,18 @@ pub enum MechanismError {
         /// Largest residual allowed.
         limit: f64,
     },
+    /// The joint is singular at home.
+    #[error(
+        "joint `{joint}`: it is singular where {loci} is 0, and at home the least of these is {value}"
+    )]
+    Singular {
+        /// The joint.
+        joint: String,
+        /// The functions whose zeros it must stay away from.
+        loci: Loci,
+        /// Least absolute value: 0, or not finite.
+        value: f64,
+    },
     /// X or S̄ loses rank at home.
     #[error(
         "joint `{joint}`: its {which} is rank-deficient at home: the smallest pivot is {ratio:e} of the largest, the limit \
@@ -129,6 +157,24 @@ pub enum StateError {
         residual: f64,
         /// Largest residual allowed.
         limit: f64,
+    },
+    /// The configuration is singular.
+    #[error("joint `{joint}`: it is singular where {loci} is 0, and the least of these is {value}")]
+    Singular {
+        /// The joint.
+        joint: String,
+        /// The functions whose zeros it must stay away from.
+        loci: Loci,
+        /// Least absolute value: 0, or not finite.
+        value: f64,
+    },
+    /// A finite map of the joint fails.
+    #[error("joint `{joint}`: {cause}")]
+    FiniteMap {
+        /// The joint.
+        joint: String,
+        /// Which map.
+        cause: FiniteMapError,
     },
     /// The pose given is no pose.
     #[error("joint `{joint}`: {cause}")]

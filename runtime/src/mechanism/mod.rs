@@ -14,7 +14,7 @@ mod reach;
 pub use body::{Body, BodySpec, Ranges};
 pub use check::CONFIGURATION_TOLERANCE;
 pub(crate) use check::{WHOLE, check_size};
-pub use error::{MechanismError, StateError};
+pub use error::{Loci, MechanismError, StateError};
 pub use initial::CONSTRAINT_TOLERANCE;
 pub use kinematics::{BodyState, Kinematics};
 pub use reach::REACH_TOLERANCE;

@@ -47,7 +47,8 @@ impl Body {
     fn moved(&self, q: &[f64], phi: &DVector<f64>) -> Vec<f64> {
         let mut moved = vec![0.0; q.len()];
         self.joint().retract(q, phi.as_slice(), &mut moved);
-        self.joint().project(&mut moved);
+        // Where the projection fails, what it leaves is NaN, and NaN is no nearer to anything.
+        _ = self.joint().project(&mut moved);
         moved
     }
 

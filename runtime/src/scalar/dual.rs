@@ -114,6 +114,10 @@ impl<T: Scalar> Scalar for Dual<T> {
         Self::constant(T::from_f64(value))
     }
 
+    fn epsilon() -> Self {
+        Self::constant(T::epsilon())
+    }
+
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         let product = self.derivative.mul_add(factor.value, addend.derivative);
         Self::new(

@@ -15,6 +15,11 @@ macro_rules! implement_scalar {
             }
 
             #[inline]
+            fn epsilon() -> Self {
+                $float::EPSILON
+            }
+
+            #[inline]
             fn mul_add(self, factor: Self, addend: Self) -> Self {
                 // Without the instruction a fused product is a library call, an order of magnitude slower.
                 if cfg!(target_feature = "fma") {

@@ -6,10 +6,14 @@
 
 mod dual;
 mod float;
+#[cfg(feature = "wide")]
+mod lanes;
 mod rotation;
 mod series;
 
 pub use dual::Dual;
+#[cfg(feature = "wide")]
+pub use lanes::{F64x4, Mask4};
 
 use core::ops::Neg;
 use nalgebra::{
@@ -36,6 +40,9 @@ pub trait Scalar:
 
     /// The constant `value`, in every lane.
     fn from_f64(value: f64) -> Self;
+
+    /// Distance from 1 to the next larger number of its precision.
+    fn epsilon() -> Self;
 
     /// `self * factor + addend`, fused only where the target has a fused instruction.
     fn mul_add(self, factor: Self, addend: Self) -> Self;

@@ -17,6 +17,7 @@ pub trait Declared<const N: usize, const K: usize, const S: usize, const C: usiz
     const FREEDOMS: [&'static str; K];
     const SPEEDS: [&'static str; S];
     const VELOCITY_FRAME: VelocityFrame;
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn home<T: Scalar>(&self) -> SVector<T, N>;
     fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T>;
@@ -28,6 +29,9 @@ pub trait Declared<const N: usize, const K: usize, const S: usize, const C: usiz
     fn constraint<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, C>;
     fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N>;
     fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T;
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, N>) -> T {
+        hamel::finite::least_absolute([])
+    }
 }
 
 /// The joint that a declaration amounts to.
@@ -178,6 +182,7 @@ where
         bias_momentum: Structure::General,
     };
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const SINGULARITIES: &'static [&'static str] = D::SINGULARITIES;
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         core::iter::empty()
@@ -263,6 +268,14 @@ where
         self.0.local(q, target)
     }
 
+    fn retract_differential<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        phi: &SVector<T, K>,
+    ) -> SMatrix<T, K, K> {
+        self.velocity_map_inverse(&self.0.retract(q, phi)) * self.map_at(q, phi)
+    }
+
     fn retract_differential_inverse<T: Scalar>(
         &self,
         q: &SVector<T, N>,
@@ -280,6 +293,10 @@ where
 
     fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T {
         self.0.residual(q)
+    }
+
+    fn singularity<T: Scalar>(&self, q: &SVector<T, N>) -> T {
+        self.0.singularity(q)
     }
 
     fn bias_acceleration<T: Scalar>(

@@ -3,5 +3,6 @@
 
 pub mod derived;
 pub mod joints;
+pub mod polar;
 pub mod random;
 pub mod trees;

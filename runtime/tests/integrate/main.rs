@@ -6,4 +6,5 @@ mod common;
 mod motion;
 mod order;
 mod requests;
+mod singular;
 mod support;

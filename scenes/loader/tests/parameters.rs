@@ -8,11 +8,15 @@ const PARAMETERS: [ParameterInfo; 2] = [
         name: "lead",
         unit: "m",
         description: "advance of one turn",
+        lower: None,
+        upper: None,
     },
     ParameterInfo {
         name: "radius",
         unit: "m",
         description: "distance from the axis",
+        lower: None,
+        upper: None,
     },
 ];
 

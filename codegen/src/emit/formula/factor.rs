@@ -2,7 +2,6 @@
 
 use super::Node;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational};
-use crate::matrix::Matrix;
 use num_traits::{One, Signed};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -10,11 +9,6 @@ use std::collections::BTreeMap;
 /// The expression with common factors pulled out, terms in ascending order.
 pub fn factored(expression: &Expr) -> Node {
     Node::sum(terms(expression).into_values())
-}
-
-/// Every entry of a matrix, row by row.
-pub fn factored_entries(matrix: &Matrix) -> Vec<Node> {
-    matrix.entries().iter().map(factored).collect()
 }
 
 /// What several terms can share.

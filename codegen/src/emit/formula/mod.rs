@@ -4,14 +4,18 @@
 //! both written from nodes, so that what is counted is what is emitted and what is shown.
 
 mod count;
+mod divisor;
 mod factor;
+mod fused;
 mod pairs;
+mod reciprocal;
 mod share;
 #[cfg(test)]
 mod tests;
 
 pub use count::Counts;
-pub use factor::{factored, factored_entries};
+pub use factor::factored;
+pub use fused::Chain;
 pub use share::{Binding, Program};
 
 use crate::expr::{Function, Rational, Symbol};
@@ -190,6 +194,19 @@ impl Node {
         visit(self);
         for part in self.parts() {
             part.visit(visit);
+        }
+    }
+
+    /// The same value without sums as terms of sums, nor products and quotients as factors.
+    #[must_use]
+    pub fn opened(&self) -> Self {
+        match self.map_parts(&mut Self::opened) {
+            Self::Sum(terms) => Self::sum(terms.into_iter().map(|(minus, term)| match minus {
+                true => term.negated(),
+                false => term,
+            })),
+            Self::Product(factors) => Self::product(factors),
+            other => other,
         }
     }
 

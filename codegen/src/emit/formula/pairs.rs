@@ -2,77 +2,175 @@
 
 use super::Node;
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Most pairs pulled out of one kernel: a bound on the work, far above what joints need.
-const MOST_PAIRS: usize = 64;
+const MOST_PAIRS: usize = 400;
 
 /// Pulls the most frequent pairs of factors out of all products of the formulas.
 pub fn extract_pairs(formulas: &mut [Node]) {
+    let mut search = Search::new(formulas);
     for _ in 0..MOST_PAIRS {
-        let Some((a, b)) = most_frequent_pair(formulas) else {
-            return;
+        let Some(pair) = search.most_frequent() else {
+            break;
         };
-        for formula in formulas.iter_mut() {
-            *formula = with_pair(formula, &a, &b);
-        }
+        search.pull_out(pair);
     }
-}
-
-/// The pair of factors, numbers aside, in most distinct products; in two at least, one of them longer than the pair.
-fn most_frequent_pair(formulas: &[Node]) -> Option<(Node, Node)> {
-    let mut products = BTreeSet::new();
+    let mut rewritten = HashMap::new();
     for formula in formulas {
-        formula.visit(&mut |node| {
-            if let Node::Product(factors) = node {
-                products.insert(factors.clone());
+        *formula = search.rewritten(formula, &mut rewritten);
+    }
+}
+
+/// Two factors by number.
+type Pair = (usize, usize);
+
+/// A factor of products.
+enum Factor {
+    /// A formula as it stood.
+    Formula(Node),
+    /// Two factors pulled out together.
+    Pair(Pair),
+}
+
+/// How many products hold a pair.
+#[derive(Default)]
+struct Uses {
+    all: usize,
+    /// Those with further factors.
+    long: usize,
+}
+
+/// The distinct products of the formulas, as lists of numbered factors.
+struct Search {
+    factors: Vec<Factor>,
+    products: Vec<Vec<usize>>,
+    by_value: BTreeMap<Vec<Node>, usize>,
+    uses: BTreeMap<Pair, Uses>,
+}
+
+impl Search {
+    fn new(formulas: &[Node]) -> Self {
+        let mut search = Self {
+            factors: vec![],
+            products: vec![],
+            by_value: BTreeMap::new(),
+            uses: BTreeMap::new(),
+        };
+        let mut distinct: BTreeSet<Vec<Node>> = BTreeSet::new();
+        for formula in formulas {
+            formula.visit(&mut |node| {
+                if let Node::Product(factors) = node
+                    && !distinct.contains(factors)
+                {
+                    distinct.insert(factors.clone());
+                }
+            });
+        }
+        let numbers = search.number(distinct.iter().flatten());
+        for product in distinct {
+            let list = product.iter().map(|factor| numbers[factor]).collect();
+            search.by_value.insert(product, search.products.len());
+            search.products.push(list);
+        }
+        (0..search.products.len()).for_each(|product| search.count(product, true));
+        search
+    }
+
+    /// Numbers the factors in ascending order.
+    fn number<'a>(&mut self, factors: impl Iterator<Item = &'a Node>) -> HashMap<Node, usize> {
+        let distinct: BTreeSet<&Node> = factors.collect();
+        for (number, factor) in distinct.iter().enumerate() {
+            debug_assert_eq!(number, self.factors.len());
+            self.factors.push(Factor::Formula((*factor).clone()));
+        }
+        let numbered = distinct.into_iter().enumerate();
+        numbered
+            .map(|(number, factor)| (factor.clone(), number))
+            .collect()
+    }
+
+    /// Adds the pairs of a product to the uses, or takes them away.
+    fn count(&mut self, product: usize, add: bool) {
+        let factors = &self.products[product];
+        let long = usize::from(factors.len() > 2);
+        let named =
+            |factor: &&usize| !matches!(&self.factors[**factor], Factor::Formula(Node::Number(_)));
+        let named: Vec<usize> = factors.iter().filter(named).copied().collect();
+        let mut pairs = BTreeSet::new();
+        for (i, a) in named.iter().enumerate() {
+            pairs.extend(named[i + 1..].iter().map(|b| (*a, *b)));
+        }
+        for pair in pairs {
+            let uses = self.uses.entry(pair).or_default();
+            match add {
+                true => (uses.all, uses.long) = (uses.all + 1, uses.long + long),
+                false => (uses.all, uses.long) = (uses.all - 1, uses.long - long),
             }
-        });
-    }
-    let mut uses: BTreeMap<(Node, Node), (usize, usize)> = BTreeMap::new();
-    for factors in &products {
-        for pair in pairs_of(factors) {
-            let entry = uses.entry(pair).or_default();
-            entry.0 += 1;
-            entry.1 += usize::from(factors.len() > 2);
         }
     }
-    let shared = uses
-        .into_iter()
-        .filter(|(_, (all, long))| *all >= 2 && *long >= 1);
-    shared
-        .min_by_key(|(pair, (all, _))| (Reverse(*all), pair.clone()))
-        .map(|(pair, _)| pair)
+
+    /// The pair of factors, numbers aside, in most products; in two at least, one of them longer than the pair.
+    fn most_frequent(&self) -> Option<Pair> {
+        let shared = self
+            .uses
+            .iter()
+            .filter(|(_, uses)| uses.all >= 2 && uses.long >= 1);
+        shared
+            .min_by_key(|(_, uses)| Reverse(uses.all))
+            .map(|(pair, _)| *pair)
+    }
+
+    /// Makes the pair one factor wherever there are others beside it.
+    fn pull_out(&mut self, pair: Pair) {
+        self.factors.push(Factor::Pair(pair));
+        let new = self.factors.len() - 1;
+        for product in 0..self.products.len() {
+            if let Some(shorter) = without(&self.products[product], pair, new) {
+                self.count(product, false);
+                self.products[product] = shorter;
+                self.count(product, true);
+            }
+        }
+    }
+
+    /// The formula with pairs as products of their own.
+    fn rewritten(&self, node: &Node, done: &mut HashMap<usize, Node>) -> Node {
+        let Node::Product(factors) = node else {
+            return node.map_parts(&mut |part| self.rewritten(part, done));
+        };
+        let Some(product) = self.by_value.get(factors) else {
+            return node.clone();
+        };
+        if let Some(known) = done.get(product) {
+            return known.clone();
+        }
+        let factors = self.products[*product].iter();
+        let node = Node::Product(factors.map(|factor| self.factor(*factor, done)).collect());
+        done.insert(*product, node.clone());
+        node
+    }
+
+    fn factor(&self, factor: usize, done: &mut HashMap<usize, Node>) -> Node {
+        match &self.factors[factor] {
+            Factor::Formula(node) => self.rewritten(node, done),
+            Factor::Pair((a, b)) => {
+                Node::Product(vec![self.factor(*a, done), self.factor(*b, done)])
+            }
+        }
+    }
 }
 
-fn pairs_of(factors: &[Node]) -> BTreeSet<(Node, Node)> {
-    let named: Vec<&Node> = factors
+/// The product with the pair as one factor in the place of its first; nothing where it does not hold the pair and more.
+fn without(factors: &[usize], (a, b): Pair, new: usize) -> Option<Vec<usize>> {
+    let first = factors.iter().position(|factor| *factor == a)?;
+    let second = factors[first + 1..]
         .iter()
-        .filter(|factor| !matches!(factor, Node::Number(_)))
-        .collect();
-    let mut pairs = BTreeSet::new();
-    for (i, a) in named.iter().enumerate() {
-        for b in &named[i + 1..] {
-            pairs.insert(((*a).clone(), (*b).clone()));
-        }
-    }
-    pairs
-}
-
-fn with_pair(node: &Node, a: &Node, b: &Node) -> Node {
-    let node = node.map_parts(&mut |part| with_pair(part, a, b));
-    let Node::Product(factors) = &node else {
-        return node;
-    };
-    let first = factors.iter().position(|factor| factor == a);
-    let second = first.and_then(|first| {
-        Some(first + 1 + factors[first + 1..].iter().position(|factor| factor == b)?)
-    });
-    let (Some(first), Some(second), true) = (first, second, factors.len() > 2) else {
-        return node;
-    };
-    let mut factors = factors.clone();
-    factors.remove(second);
-    factors[first] = Node::Product(vec![a.clone(), b.clone()]);
-    Node::Product(factors)
+        .position(|factor| *factor == b)?
+        + first
+        + 1;
+    let mut shorter = factors.to_vec();
+    shorter.remove(second);
+    shorter[first] = new;
+    (factors.len() > 2).then_some(shorter)
 }

@@ -1,7 +1,7 @@
 //! Formulas keep the value of their expression, are counted as they are written, and have names of their own.
 
 use super::{Binding, Counts, Node, Program, factored};
-use crate::derived::{Kernel, KernelKind, Step, Structure};
+use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::emit::names::NameSet;
 use crate::expr::{Expr, Number, Role, Symbol, evaluate_f64};
 use crate::matrix::Matrix;
@@ -123,6 +123,7 @@ fn program(steps: Vec<Step>, entries: Vec<Expr>) -> Program {
         kind: KernelKind::Retract,
         steps,
         outputs,
+        method: Method::Formula,
         structure: Structure::General,
     };
     let mut taken = NameSet::default();
@@ -227,6 +228,7 @@ fn a_shared_name_gives_way_to_a_name_that_is_taken() {
             &(&a + &b) * &c,
             &(&a + &b) * &a,
         ])],
+        method: Method::Formula,
         structure: Structure::General,
     };
     let mut taken = NameSet::default();

@@ -104,7 +104,10 @@ fn velocity_map(derived: &Derived, notation: &Notation) -> Formula {
 
 /// The formula of a kernel; nothing for parts of nonholonomic joints where there are none, and for kernels without formulas.
 fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option<Formula> {
-    let kernel = derived.kernel(kind)?;
+    // What the runtime solves for has no formula.
+    let kernel = derived
+        .kernel(kind)
+        .filter(|kernel| !kernel.outputs.is_empty())?;
     let (name, title) = heading(kind)?;
     let only_nonholonomic = [
         KernelKind::Constraint,

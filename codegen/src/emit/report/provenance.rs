@@ -21,6 +21,7 @@ pub fn statement(spec: &JointSpec, kind: KernelKind) -> Option<String> {
             None => spec.freedoms.span.clone(),
         },
         KernelKind::Project | KernelKind::Residual | KernelKind::Home => spec.manifold.span.clone(),
+        KernelKind::Singularity => spec.loci.first()?.span.clone(),
         _ => return None,
     };
     lines_around(&spec.source, span)

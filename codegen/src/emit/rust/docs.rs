@@ -1,6 +1,7 @@
 //! Documentation of emitted code: what a kernel maps, its shape, frame and units, its equation, its cost.
 
 use super::kernel::Method;
+use super::numeric;
 use super::signature::{Output, Signature};
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
 use crate::emit::report::{
@@ -91,12 +92,12 @@ fn claims(report: &Report) -> Vec<String> {
 /// The documentation of a kernel.
 pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenStream {
     let mut lines = vec![meaning(kernel.kind).to_owned(), String::new()];
-    let operations = method.counts();
     let shape = shape_of(derived, kernel);
-    lines.push(format!(
-        "{shape}{} Operations: {operations}.",
-        constancy(kernel.structure)
-    ));
+    let cost = match numeric::sentence(kernel) {
+        Some(sentence) => sentence.to_owned(),
+        None => format!("Operations: {}.", method.counts()),
+    };
+    lines.push(format!("{shape}{} {cost}", constancy(kernel.structure)));
     if let Some(statement) = statement(&derived.spec, kernel.kind) {
         lines.extend([String::new(), format!("From `{statement}`")]);
     }

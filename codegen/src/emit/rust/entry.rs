@@ -1,11 +1,11 @@
 //! The registry entry of a joint, and the text of its spec.
 
 use super::docs;
+use super::limits;
 use super::tokens::ident;
 use super::type_ident;
-use crate::derived::{Derived, Step};
+use crate::derived::Derived;
 use crate::emit::report::summary;
-use crate::expr::{Atom, Expr, Symbol};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -21,7 +21,8 @@ pub fn tokens(derived: &Derived) -> TokenStream {
             &parameter.unit,
             parameter.docs.trim(),
         );
-        quote! { ParameterInfo { name: #name, unit: #unit, description: #description } }
+        let limits = limits::fields(&parameter.range);
+        quote! { ParameterInfo { name: #name, unit: #unit, description: #description, #limits } }
     });
     let count = Literal::usize_unsuffixed(spec.parameters.len());
     let source = raw_string(&spec.source);
@@ -57,64 +58,14 @@ fn build(derived: &Derived) -> TokenStream {
         .iter()
         .map(|parameter| ident(&parameter.symbol.name))
         .collect();
-    let checks = parameters
-        .iter()
-        .filter(|parameter| divides(derived, &parameter.symbol))
-        .map(|parameter| {
-            let (text, field) = (
-                parameter.symbol.name.as_ref(),
-                ident(&parameter.symbol.name),
-            );
-            quote! {
-                if #field == 0.0 {
-                    return Err(ParameterError::OutOfRange {
-                        joint: #name,
-                        parameter: #text,
-                        value: #field,
-                        requirement: "other than zero",
-                    });
-                }
-            }
-        });
+    let checks = limits::checks(derived);
     quote! {
         |values| {
             let [#(#fields),*] = check_parameters(#name, &PARAMETERS, values)?;
-            #(#checks)*
+            #checks
             Ok(erase(#type_name::new(#(#fields),*)))
         }
     }
-}
-
-/// Whether some kernel divides by the parameter.
-fn divides(derived: &Derived, parameter: &Symbol) -> bool {
-    let atom = Atom::Symbol(parameter.clone());
-    let entries = derived
-        .kernels
-        .iter()
-        .flat_map(|kernel| &kernel.outputs)
-        .flat_map(|output| output.entries());
-    let steps = derived
-        .kernels
-        .iter()
-        .flat_map(|kernel| &kernel.steps)
-        .filter_map(|step| match step {
-            Step::Let(_, value) => Some(value),
-            Step::Call { .. } => None,
-        });
-    entries.chain(steps).any(|entry| divides_in(entry, &atom))
-}
-
-fn divides_in(expression: &Expr, atom: &Atom) -> bool {
-    expression
-        .terms()
-        .any(|(monomial, _)| monomial.power(atom) < 0)
-        || expression.atoms().iter().any(|inner| match inner {
-            Atom::Apply(application) => application
-                .arguments
-                .iter()
-                .any(|argument| divides_in(argument, atom)),
-            Atom::Symbol(_) => false,
-        })
 }
 
 /// The text as a raw string literal, so that a reader sees the spec as it was written.

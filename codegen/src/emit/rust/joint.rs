@@ -2,9 +2,11 @@
 
 use super::docs;
 use super::kernel::Method;
+use super::limits;
+use super::numeric;
 use super::tokens::{ident, signed_literal};
 use super::type_ident;
-use crate::derived::{Derived, KernelKind, Structure};
+use crate::derived::{Derived, Kernel, KernelKind, Structure};
 use crate::emit::names::Names;
 use crate::emit::report::summary;
 use crate::expr::Rational;
@@ -20,12 +22,20 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let constants = constants(derived);
     let parameters = parameters(derived);
     let names = Names::new(derived);
-    let methods = derived.kernels.iter().map(|kernel| {
+    let method = |kernel: &Kernel| {
         let method = Method::new(derived, kernel, &names);
         method.tokens(&docs::kernel(derived, kernel, &method))
-    });
+    };
+    let (own, methods): (Vec<&Kernel>, Vec<&Kernel>) = derived
+        .kernels
+        .iter()
+        .partition(|kernel| numeric::is_beside_the_trait(kernel.kind));
+    let (own, methods) = (own.into_iter().map(method), methods.into_iter().map(method));
+    let own: Vec<TokenStream> = own.collect();
+    let own = (!own.is_empty()).then(|| quote! { impl #name { #(#own)* } });
     quote! {
         #definition
+        #own
         impl Joint<#n, #k, #s, #c> for #name {
             #constants
             #parameters
@@ -67,9 +77,13 @@ fn definition(derived: &Derived) -> TokenStream {
             ),
             text => format!("{text} In {}.", parameter.unit),
         };
+        let text = match limits::in_words(&parameter.range) {
+            Some(range) => format!("{text} It is {range}."),
+            None => text,
+        };
         docs::outer(&text.lines().map(str::trim).collect::<Vec<_>>())
     });
-    let constructor = docs::outer(&["The joint with the given parameters, in SI units."]);
+    let constructor = constructor_docs(derived);
     quote! {
         #docs #derives
         pub struct #name { #(#field_docs pub #fields: f64),* }
@@ -80,6 +94,21 @@ fn definition(derived: &Derived) -> TokenStream {
             }
         }
     }
+}
+
+/// What the constructor, which checks nothing, leaves to its caller.
+fn constructor_docs(derived: &Derived) -> TokenStream {
+    let mut lines = vec!["The joint with the given parameters, in SI units.".to_owned()];
+    let requirements = &derived.spec.requirements;
+    if !requirements.is_empty() {
+        let texts = requirements
+            .iter()
+            .map(|requirement| format!("`{}`", requirement.value.text));
+        let texts: Vec<String> = texts.collect();
+        lines.push(String::new());
+        lines.push(format!("They must meet {}.", texts.join(", ")));
+    }
+    docs::outer(&lines)
 }
 
 fn parameters(derived: &Derived) -> TokenStream {
@@ -135,6 +164,7 @@ fn constants(derived: &Derived) -> TokenStream {
     });
     let structures = structures(derived);
     let inertias = derived.imperceptible.iter().map(inertia);
+    let loci = spec.loci.iter().map(|locus| &locus.value.text);
     quote! {
         const NAME: &'static str = #name;
         #coordinates
@@ -143,6 +173,7 @@ fn constants(derived: &Derived) -> TokenStream {
         const VELOCITY_FRAME: VelocityFrame = VelocityFrame::#frame;
         const STRUCTURES: Structures = #structures;
         const IMPERCEPTIBLE: &'static [[f64; 10]] = &[#(#inertias),*];
+        const SINGULARITIES: &'static [&'static str] = &[#(#loci),*];
     }
 }
 

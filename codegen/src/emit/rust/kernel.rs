@@ -1,9 +1,10 @@
 //! One kernel as a method of the trait `Joint`.
 
+use super::numeric;
 use super::result;
 use super::signature::{Argument, Signature};
 use super::tokens::{Writer, ident};
-use crate::derived::{Derived, Kernel, KernelKind, Primitive, Step};
+use crate::derived::{self, Derived, Kernel, KernelKind, Primitive, Step};
 use crate::emit::formula::{Binding, Counts, Program};
 use crate::emit::names::Names;
 use crate::expr::{Role, Symbol};
@@ -60,6 +61,7 @@ impl<'a> Method<'a> {
             counts += Counts {
                 additions: relations,
                 multiplications: relations,
+                fused: relations,
                 divisions: 0,
                 calls: 1,
             };
@@ -69,7 +71,7 @@ impl<'a> Method<'a> {
 
     /// The method, with its documentation.
     pub fn tokens(&self, docs: &TokenStream) -> TokenStream {
-        let whole = self.whole_argument();
+        let whole = self.returned_argument();
         let body = match whole {
             Some(argument) => {
                 let name = ident(argument.name());
@@ -89,10 +91,17 @@ impl<'a> Method<'a> {
         });
         let name = ident(self.signature.name);
         let output = self.signature.output_type(self.derived.shape);
-        quote! { #docs fn #name<T: Scalar>(&self, #(#arguments),*) -> #output { #body } }
+        let visibility = numeric::is_beside_the_trait(self.kernel.kind).then(|| quote! { pub });
+        quote! { #docs #visibility fn #name<T: Scalar>(&self, #(#arguments),*) -> #output { #body } }
     }
 
     /// The argument that is returned as it stands, if the kernel does just that.
+    fn returned_argument(&self) -> Option<Argument> {
+        self.whole_argument()
+            .filter(|_| self.kernel.method == derived::Method::Formula)
+    }
+
+    /// The argument that the formulas are, if they are just that.
     fn whole_argument(&self) -> Option<Argument> {
         let [output] = self.kernel.outputs.as_slice() else {
             return None;
@@ -115,6 +124,12 @@ impl<'a> Method<'a> {
     }
 
     fn reads(&self, argument: Argument) -> bool {
+        let calls = self.kernel.method != derived::Method::Formula;
+        // What calls the runtime hands its arguments on.
+        calls || self.reads_scalars(argument)
+    }
+
+    fn reads_scalars(&self, argument: Argument) -> bool {
         argument
             .symbols(&self.derived.arguments)
             .iter()
@@ -122,6 +137,31 @@ impl<'a> Method<'a> {
     }
 
     fn body(&self) -> TokenStream {
+        let start = self.start();
+        let begins_at_value = start.is_none() && !self.kernel.outputs.is_empty();
+        let start = start.unwrap_or_else(|| quote! { &start });
+        match numeric::call(self.derived, self.kernel, &start) {
+            None => self.formulas(),
+            Some(call) if begins_at_value => {
+                let value = self.formulas();
+                let size = Literal::usize_unsuffixed(self.derived.shape.configuration);
+                quote! { let start: SVector<T, #size> = { #value }; #call }
+            }
+            Some(call) => call,
+        }
+    }
+
+    /// Where an iteration begins, if that is at an argument rather than at a value of the formulas.
+    fn start(&self) -> Option<TokenStream> {
+        let argument = match self.kernel.outputs.as_slice() {
+            [] => Argument::Configuration,
+            _ => self.whole_argument()?,
+        };
+        let name = ident(argument.name());
+        Some(quote! { #name })
+    }
+
+    fn formulas(&self) -> TokenStream {
         let writer = Writer::new(&self.names, &self.program);
         let parameters = self
             .used

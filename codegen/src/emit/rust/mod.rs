@@ -5,9 +5,13 @@ mod entry;
 mod index;
 mod joint;
 mod kernel;
+mod limits;
+mod numeric;
 mod result;
 mod signature;
 mod spacing;
+#[cfg(test)]
+mod tests;
 mod tokens;
 
 pub use docs::meaning;
@@ -22,7 +26,7 @@ use std::collections::BTreeSet;
 use tokens::ident;
 
 /// Version of the runtime's trait `Joint` that is emitted.
-pub const KERNEL_INTERFACE: u32 = 1;
+pub const KERNEL_INTERFACE: u32 = 2;
 
 /// The first line of an emitted file, without the comment signs. `label` is the spec's path as the reader knows it.
 pub fn header(label: &str) -> String {
@@ -83,9 +87,11 @@ fn uses(tokens: &TokenStream) -> TokenStream {
             quote! { ::hamel::registry },
             &[
                 "JointEntry",
+                "Limit",
                 "ParameterError",
                 "ParameterInfo",
                 "check_parameters",
+                "check_requirement",
             ],
         ),
         (quote! { ::hamel::scalar }, &["Scalar"]),

@@ -2,7 +2,7 @@
 
 use super::signature::{Output, Signature};
 use super::tokens::Writer;
-use crate::derived::Kernel;
+use crate::derived::{Kernel, KernelKind};
 use crate::emit::formula::Node;
 use crate::matrix::Matrix;
 use proc_macro2::{Literal, TokenStream};
@@ -28,6 +28,7 @@ pub fn tokens(
                 (matrix(writer, rotation, r), vector(writer, translation, p));
             quote! { Pose { rotation: #rotation, translation: #translation } }
         }
+        (Output::Scalar, _) if kernel.kind == KernelKind::Singularity => least(writer, entries),
         (Output::Scalar, _) => norm(writer, entries),
         (Output::Vector(_), [(column, own)]) => vector(writer, column, own),
         (Output::Matrix(..), [(only, own)]) => matrix(writer, only, own),
@@ -60,6 +61,12 @@ fn vector(writer: &Writer<'_>, column: &Matrix, entries: &[Node]) -> TokenStream
     quote! { SVector::from([#(#entries),*]) }
 }
 
+/// Least absolute value.
+fn least(writer: &Writer<'_>, functions: &[Node]) -> TokenStream {
+    let functions = functions.iter().map(|function| writer.formula(function));
+    quote! { ::hamel::finite::least_absolute([#(#functions),*]) }
+}
+
 /// Root of the sum of squares.
 fn norm(writer: &Writer<'_>, relations: &[Node]) -> TokenStream {
     if relations.iter().all(Node::is_zero) {
@@ -68,7 +75,7 @@ fn norm(writer: &Writer<'_>, relations: &[Node]) -> TokenStream {
     let relations = relations.iter().map(|relation| writer.formula(relation));
     quote! {
         let relations = [#(#relations),*];
-        let sum = relations.into_iter().fold(T::zero(), |sum, relation| sum + relation * relation);
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 }

@@ -1,6 +1,6 @@
 //! Formulas as Rust tokens, generic in the scalar `T`.
 
-use crate::emit::formula::{Binding, Node, Program};
+use crate::emit::formula::{Binding, Chain, Node, Program};
 use crate::emit::names::{NameSet, Names, number_name};
 use crate::expr::{Function, Rational, Symbol};
 use num_bigint::BigInt;
@@ -121,12 +121,36 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// The sum; products in it as multiply–adds.
     fn sum(&self, terms: &[(bool, Node)]) -> TokenStream {
+        let Some(chain) = Chain::new(terms) else {
+            return self.plain_sum(terms.iter());
+        };
+        let rest = self.plain_sum(chain.rest.iter().copied());
+        let products = chain.products.iter().rev();
+        products.fold(rest, |rest, (minus, factors, last)| {
+            let receiver = match factors {
+                [single] => self.at_least(single, Level::Atom),
+                several => {
+                    let several = self.product(several);
+                    quote! { (#several) }
+                }
+            };
+            let last = match minus {
+                true => self.formula(&(*last).clone().negated().polished()),
+                false => self.formula(last),
+            };
+            quote! { #receiver.mul_add(#last, #rest) }
+        })
+    }
+
+    fn plain_sum<'n>(&self, terms: impl Iterator<Item = &'n (bool, Node)>) -> TokenStream {
         let mut tokens = TokenStream::new();
-        for (i, (minus, term)) in terms.iter().enumerate() {
+        for (i, (minus, term)) in terms.enumerate() {
             let value = self.at_least(term, Level::Product);
             tokens.extend(match (i, minus) {
                 (0, false) => quote! { #value },
+                (0, true) => quote! { -#value },
                 (_, false) => quote! { + #value },
                 (_, true) => quote! { - #value },
             });
@@ -195,6 +219,7 @@ impl<'a> Writer<'a> {
     /// The formula, in parentheses where it binds less tightly than `level`.
     fn at_least(&self, node: &Node, level: Level) -> TokenStream {
         let own = match node {
+            Node::Sum(terms) if Chain::new(terms).is_some() => Level::Atom,
             Node::Sum(_) => Level::Sum,
             Node::Product(_) | Node::Quotient(..) => Level::Product,
             Node::Negative(_) => Level::Sign,

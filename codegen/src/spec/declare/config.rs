@@ -5,8 +5,9 @@ use super::super::{code, names};
 use super::once::Once;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Role;
-use crate::manifold::{Factor, Kind, Manifold};
+use crate::manifold::{Factor, Kind, LARGEST_REAL, Manifold};
 use crate::model::Declared;
+use std::ops::Range;
 
 /// Most factors, and most stored scalars, of a configuration.
 const MOST_FACTORS: usize = 6;
@@ -33,6 +34,15 @@ pub(super) fn manifold(
         .map(|factor| kind(factor, errors))
         .collect();
     let factors: Vec<(String, Kind)> = kinds.into_iter().collect::<Option<_>>()?;
+    let long = |(_, kind): &&(String, Kind)| matches!(kind, Kind::Real(n) if *n > LARGEST_REAL);
+    if let Some((_, kind)) = factors
+        .iter()
+        .find(long)
+        .filter(|_| statements.relations.is_empty())
+    {
+        errors.push(too_long(*kind, config.span));
+        return None;
+    }
     let refuse = |message: String| {
         Diagnostic::new(code::FREEDOMS, config.span.clone(), message).label("too large")
     };
@@ -57,17 +67,19 @@ pub(super) fn manifold(
         )));
         return None;
     }
-    let manifold = Manifold::new(&factors).ok();
-    let value = manifold.or_else(|| {
-        errors.push(refuse(
-            "the relations of this configuration have no normal form".into(),
-        ));
-        None
-    })?;
     Some(Declared {
-        value,
+        value: Manifold::new(&factors),
         span: config.span.clone(),
     })
+}
+
+fn too_long(kind: Kind, span: &Range<usize>) -> Diagnostic {
+    let message = format!(
+        "{} has more freedoms than the {LARGEST_REAL} of a joint",
+        kind.name()
+    );
+    let error = Diagnostic::new(code::FREEDOMS, span.clone(), message).label("too large");
+    error.help("relations between its scalars leave fewer: `relation dot(Q, Q) = 1;`")
 }
 
 fn kind((name, manifold): &(Name, Name), errors: &mut Vec<Diagnostic>) -> Option<(String, Kind)> {

@@ -1,4 +1,4 @@
-//! The freedoms: those of each `basis`, then the coordinates of real factors without one; or those of `local`.
+//! The freedoms: those of each `basis`, then those of `local`, or the coordinates of real factors without a basis.
 
 use super::super::ast::{Basis, Name, Target};
 use super::super::code;
@@ -11,6 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::{Factor, Kind};
 use crate::model::{Declared, Freedom, VelocityFrame};
+use std::ops::Range;
 
 /// Most freedoms: those of a free body.
 const MOST_FREEDOMS: usize = 6;
@@ -18,37 +19,69 @@ const MOST_FREEDOMS: usize = 6;
 /// The freedoms of a joint.
 pub(super) struct Freedoms {
     pub list: Declared<Vec<Freedom>>,
-    /// Whether they are those of `local`, with a Phi of their own.
+    /// Whether some are those of `local`, which only Phi gives a meaning.
     pub local: bool,
 }
 
 /// All freedoms, in order; `None` where they cannot be told.
 pub(super) fn freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> Option<Freedoms> {
-    let freedoms = match context.statements.local {
-        Some(local) => local_freedoms(context, local, scope)?,
-        None => Freedoms {
-            list: basis_freedoms(context, scope)?,
-            local: false,
-        },
+    let bases = basis_freedoms(context, scope);
+    let local = context.statements.local;
+    let list = match local {
+        Some(local) => local_freedoms(context, local, bases, scope)?,
+        None => coordinate_freedoms(context, bases, scope)?,
     };
-    let count = freedoms.list.value.len();
-    if count > MOST_FREEDOMS {
-        let span = freedoms.list.span.clone();
-        let error = Diagnostic::new(
-            code::FREEDOMS,
-            span,
-            format!("{count} freedoms, a joint has at most {MOST_FREEDOMS}"),
-        );
-        scope.evaluator.report(error.label("too many"));
+    let first = context.statements.bases.first().map(|at| at.span);
+    let span = first
+        .or(local.map(|at| at.span))
+        .unwrap_or(&context.manifold.span);
+    if let Some(error) = too_many(context, list.len(), span) {
+        scope.evaluator.report(error);
         return None;
     }
-    Some(freedoms)
+    Some(Freedoms {
+        list: Declared {
+            value: list,
+            span: span.clone(),
+        },
+        local: local.is_some(),
+    })
 }
 
-fn basis_freedoms(
-    context: &Context<'_>,
-    scope: &mut Scope<'_, '_, '_>,
-) -> Option<Declared<Vec<Freedom>>> {
+/// The error that there are more freedoms than a joint, or its configuration, can have.
+fn too_many(context: &Context<'_>, count: usize, span: &Range<usize>) -> Option<Diagnostic> {
+    let error = |message| Diagnostic::new(code::FREEDOMS, span.clone(), message).label("too many");
+    let dimension = context.manifold.value.dimension();
+    let related = !context.statements.relations.is_empty();
+    if related && count >= dimension {
+        let message =
+            format!("{count} freedoms, and relations leave fewer than {dimension} of the factors");
+        return Some(error(message).help(
+            "name the freedoms that are left by `local a, b;`, and say by Phi how they move Q",
+        ));
+    }
+    if count > MOST_FREEDOMS {
+        return Some(error(format!(
+            "{count} freedoms, a joint has at most {MOST_FREEDOMS}"
+        )));
+    }
+    (count > dimension).then(|| {
+        error(format!(
+            "{count} freedoms on a manifold of dimension {dimension}"
+        ))
+    })
+}
+
+/// The freedoms of the `basis` statements.
+struct Bases {
+    list: Vec<Freedom>,
+    /// Factors that have one.
+    taken: Vec<usize>,
+    /// Whether every statement could be read.
+    complete: bool,
+}
+
+fn basis_freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> Bases {
     let factors = context.manifold.value.factors();
     let (mut list, mut taken, mut complete) = (vec![], vec![], true);
     for at in &context.statements.bases {
@@ -66,11 +99,26 @@ fn basis_freedoms(
             None => complete = false,
         }
     }
-    for (n, factor) in factors
-        .iter()
-        .enumerate()
-        .filter(|(n, _)| !taken.contains(n))
-    {
+    Bases {
+        list,
+        taken,
+        complete,
+    }
+}
+
+/// Those of the bases, then the coordinates of real factors without one; every other factor needs a basis.
+fn coordinate_freedoms(
+    context: &Context<'_>,
+    bases: Bases,
+    scope: &mut Scope<'_, '_, '_>,
+) -> Option<Vec<Freedom>> {
+    let Bases {
+        mut list,
+        taken,
+        mut complete,
+    } = bases;
+    let factors = context.manifold.value.factors().iter().enumerate();
+    for (n, factor) in factors.filter(|(n, _)| !taken.contains(n)) {
         match factor.kind {
             Kind::Real(size) => list.extend(coordinates(factor, n, size, list.len())),
             // A basis that could not be read, or names no factor, may be this one's.
@@ -81,15 +129,7 @@ fn basis_freedoms(
             }
         }
     }
-    let span = context
-        .statements
-        .bases
-        .first()
-        .map_or(&context.manifold.span, |at| at.span);
-    complete.then(|| Declared {
-        value: list,
-        span: span.clone(),
-    })
+    complete.then_some(list)
 }
 
 fn claim<'n>(names: impl Iterator<Item = &'n Name>, scope: &mut Scope<'_, '_, '_>) {
@@ -145,71 +185,35 @@ fn no_basis(context: &Context<'_>, factor: &Factor) -> Diagnostic {
                 .collect();
             error.help(format!("add `basis {} of {algebra};`", names.join(", ")))
         }
-        None => {
-            error.help("it is no group: name its freedoms by `local a, b;` and declare Phi and X")
-        }
+        None => error.help("it is no group: name its freedoms by `local a, b;` and declare Phi"),
     }
 }
 
-/// `local a, b;`: freedoms that only Phi gives a meaning.
+/// Those of the bases, then those of `local a, b;`, which only Phi gives a meaning.
 fn local_freedoms(
     context: &Context<'_>,
     local: At<'_, [Name]>,
+    bases: Bases,
     scope: &mut Scope<'_, '_, '_>,
-) -> Option<Freedoms> {
+) -> Option<Vec<Freedom>> {
     claim(local.value.iter(), scope);
-    let statements = context.statements;
-    let missing: Vec<&str> = [Target::Retract, Target::TwistMap]
-        .into_iter()
-        .filter(|target| statements.target(*target).is_none() && !context.file.partial)
-        .map(Target::name)
-        .collect();
-    if !missing.is_empty() {
-        let message = format!("`local` needs {} declared", missing.join(" and "));
-        let error = Diagnostic::new(code::MISSING, local.span.clone(), message)
-            .label("no meaning without them");
-        scope.evaluator.report(
-            error.help(
-                "Phi says how the configuration moves with these coordinates, X what v means",
-            ),
-        );
-    }
-    if let Some(basis) = statements.bases.first() {
+    if context.statements.target(Target::Retract).is_none() && !context.file.partial {
         let error = Diagnostic::new(
-            code::BASIS_MISSING,
-            basis.span.clone(),
-            "a joint has either `basis` or `local`",
+            code::MISSING,
+            local.span.clone(),
+            "`local` needs Phi declared",
         );
         scope.evaluator.report(
             error
-                .label("beside `local`")
-                .help("with `local`, Phi alone says what the freedoms are"),
+                .label("no meaning without it")
+                .help("Phi says how the configuration moves with these coordinates"),
         );
     }
-    let dimension = context.manifold.value.dimension();
-    if local.value.len() > dimension {
-        let message = format!(
-            "{} local coordinates on a manifold of dimension {dimension}",
-            local.value.len()
-        );
-        scope
-            .evaluator
-            .report(Diagnostic::new(code::FREEDOMS, local.span.clone(), message).label("too many"));
-        return None;
+    let mut list = bases.list;
+    for name in local.value {
+        list.push(freedom(&name.text, list.len(), 0, vec![]));
     }
-    let list = local
-        .value
-        .iter()
-        .enumerate()
-        .map(|(n, name)| freedom(&name.text, n, 0, vec![]))
-        .collect();
-    Some(Freedoms {
-        list: Declared {
-            value: list,
-            span: local.span.clone(),
-        },
-        local: true,
-    })
+    bases.complete.then_some(list)
 }
 
 /// The frame of v: never implied where it matters, never declared where it means nothing.
@@ -249,7 +253,7 @@ pub(super) fn velocity(
 
 fn meaningless(velocity: At<'_, bool>, local: bool) -> Diagnostic {
     let message = match local {
-        true => "with `local`, X says what v means",
+        true => "with `local`, v is the rate of the local coordinates, or what X says",
         false => "v of a joint in real coordinates is the rate of its coordinates, in no frame",
     };
     let error = Diagnostic::new(code::VELOCITY_UNUSED, velocity.span.clone(), message);

@@ -2,11 +2,18 @@
 
 mod basis;
 mod config;
+mod division;
+mod equation;
 mod freedoms;
+mod home;
+mod loci;
 mod matrices;
 mod once;
+mod parameter;
+mod relations;
 mod retract;
 mod scope;
+mod stored;
 mod unit;
 
 use self::freedoms::Freedoms;
@@ -83,11 +90,16 @@ fn declare(
     let parameters = scope.parameters(&file.parameters);
     scope.factors(statements.config, manifold.value.factors());
     scope.lets(&statements.lets);
+    let manifold = relations::constrained(statements, manifold, scope.evaluator);
     let context = Context {
         file,
         statements,
-        manifold,
+        manifold: &manifold,
     };
+    let home = home::home(&context, scope.evaluator);
+    let declared_home = home.as_ref().map(|home| home.value.as_slice());
+    let loci = loci::loci(&context, declared_home, source, scope.evaluator);
+    let requirements = parameter::requirements(statements, source, scope.evaluator);
     let freedoms = freedoms::freedoms(&context, &mut scope);
     let velocity = freedoms
         .as_ref()
@@ -105,7 +117,7 @@ fn declare(
     };
     scope::report_unused(file, statements, evaluator);
     let (freedoms, matrices): (Freedoms, _) = (freedoms?, matrices?);
-    Some(JointSpec {
+    let spec = JointSpec {
         name: Declared {
             value: file.name.text.clone(),
             span: file.name.span.clone(),
@@ -113,10 +125,10 @@ fn declare(
         docs: file.docs.clone(),
         source: source.to_owned(),
         parameters,
-        requirements: vec![],
-        manifold: manifold.clone(),
-        loci: vec![],
-        home: None,
+        requirements,
+        manifold,
+        loci,
+        home,
         freedoms: freedoms.list,
         velocity: velocity?,
         pose: pose?,
@@ -125,7 +137,11 @@ fn declare(
         constraint: matrices.constraint,
         speed_basis: matrices.speed_basis,
         speed_names: matrices.speed_names,
-    })
+    };
+    evaluator
+        .errors
+        .extend(division::errors(&spec, statements.relations_span()));
+    Some(spec)
 }
 
 fn pose(

@@ -1,6 +1,6 @@
 //! Statements by kind: which may stand once, and where they stand.
 
-use super::super::ast::{Basis, File, Name, Node, StatementKind, Target};
+use super::super::ast::{Basis, Equation, File, Name, Node, Requirement, StatementKind, Target};
 use super::super::code;
 use crate::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
@@ -30,12 +30,21 @@ pub(super) struct Once<'a> {
     pub speeds: Option<At<'a, [Name]>>,
     pub bases: Vec<At<'a, Basis>>,
     pub lets: Vec<(&'a Name, &'a Node)>,
+    pub relations: Vec<At<'a, Equation>>,
+    pub exceptions: Vec<At<'a, Equation>>,
+    pub requirements: Vec<At<'a, Requirement>>,
     targets: BTreeMap<Target, At<'a, [Node]>>,
 }
 
 impl<'a> Once<'a> {
     pub fn target(&self, target: Target) -> Option<At<'a, [Node]>> {
         self.targets.get(&target).copied()
+    }
+
+    /// From the first relation to the last.
+    pub fn relations_span(&self) -> Option<Range<usize>> {
+        let (first, last) = (self.relations.first()?, self.relations.last()?);
+        Some(first.span.start..last.span.end)
     }
 }
 
@@ -63,6 +72,18 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Let(name, value) => {
                 once.lets.push((name, value));
+                continue;
+            }
+            StatementKind::Relation(value) => {
+                once.relations.push(At { value, span });
+                continue;
+            }
+            StatementKind::Except(value) => {
+                once.exceptions.push(At { value, span });
+                continue;
+            }
+            StatementKind::Require(value) => {
+                once.requirements.push(At { value, span });
                 continue;
             }
             StatementKind::Assign(target, values) => {

@@ -1,16 +1,14 @@
 //! `Phi`: Φ(Q, ϕ) as stored scalars.
 
-use super::super::ast::{Node, Target};
-use super::super::code;
+use super::super::ast::Target;
 use super::super::evaluate::{Evaluator, Locals};
 use super::super::value::Value;
-use super::Context;
 use super::freedoms::Freedoms;
-use crate::diagnostic::Diagnostic;
+use super::{Context, stored};
 use crate::expr::Expr;
 use crate::manifold::{Factor, Kind};
 use crate::matrix::Matrix;
-use crate::model::Declared;
+use crate::model::{Declared, Freedom};
 use std::collections::BTreeMap;
 
 /// Φ(Q, ϕ), where declared.
@@ -21,34 +19,18 @@ pub(super) fn retract(
 ) -> Option<Declared<Vec<Expr>>> {
     let statement = context.statements.target(Target::Retract)?;
     let factors = context.manifold.value.factors();
-    if statement.value.len() != factors.len() {
-        let message = format!(
-            "values of Phi: {}, factors of the configuration: {}",
-            statement.value.len(),
-            factors.len()
-        );
-        let error = Diagnostic::new(code::DECLARED_SHAPE, statement.span.clone(), message)
-            .label("wrong number of values");
-        evaluator.report(error.help(
-            "write one value for each factor, separated by commas, in the order of `config`",
-        ));
+    if !stored::complete(Target::Retract, statement, factors, evaluator) {
         return None;
     }
     let scalars = evaluator.bounded("Phi", statement.span, |evaluator| {
         evaluator.with_names(generator_names(freedoms, factors), |evaluator| {
             evaluator.with_locals(locals(freedoms, factors), |evaluator| {
-                let parts: Vec<Option<Vec<Expr>>> = statement
-                    .value
-                    .iter()
-                    .zip(factors)
-                    .map(|(node, factor)| part(node, factor, evaluator))
-                    .collect();
-                parts.into_iter().collect::<Option<Vec<_>>>()
+                stored::scalars(Target::Retract, statement.value, factors, evaluator)
             })
         })
     })?;
     Some(Declared {
-        value: scalars.concat(),
+        value: scalars,
         span: statement.span.clone(),
     })
 }
@@ -96,78 +78,42 @@ fn locals(freedoms: &Freedoms, factors: &[Factor]) -> Locals {
         .map(|freedom| freedom.name.clone())
         .zip(all.clone())
         .collect();
-    if freedoms.local {
-        let by_factor = BTreeMap::from([(String::new(), Value::column(all.clone()))]);
-        return Locals {
-            by_factor,
-            by_freedom,
-            all,
-            factors: 1,
-        };
+    let mut by_factor = by_factor(list, factors);
+    // Those of `local` belong to no factor: `phi` is their column where no factor has a basis, else ambiguous.
+    let parts = match (freedoms.local, by_factor.is_empty()) {
+        (false, _) => factors.len(),
+        (true, true) => {
+            by_factor.insert(String::new(), Value::column(all.clone()));
+            1
+        }
+        (true, false) => by_factor.len() + 1,
+    };
+    Locals {
+        by_factor,
+        by_freedom,
+        all,
+        parts,
     }
+}
+
+/// ϕ of each factor that has freedoms with generators.
+fn by_factor(list: &[Freedom], factors: &[Factor]) -> BTreeMap<String, Value> {
     let sum = |n: usize, factor: &Factor| {
         let mut coordinates = Matrix::zeros(factor.kind.dimension(), 1);
-        for freedom in list.iter().filter(|freedom| freedom.factor == n) {
+        for freedom in list.iter().filter(|freedom| moves(freedom, n)) {
             let generator = Matrix::column_vector(freedom.generator.clone());
             coordinates = coordinates.plus(&generator.scale(&Expr::symbol(&freedom.local)));
         }
         direction(factor.kind, coordinates.entries().to_vec())
     };
-    let by_factor = factors
+    factors
         .iter()
         .enumerate()
+        .filter(|(n, _)| list.iter().any(|freedom| moves(freedom, *n)))
         .map(|(n, factor)| (factor.name.clone(), sum(n, factor)))
-        .collect();
-    Locals {
-        by_factor,
-        by_freedom,
-        all,
-        factors: factors.len(),
-    }
+        .collect()
 }
 
-/// The stored scalars of one factor.
-fn part(node: &Node, factor: &Factor, evaluator: &mut Evaluator<'_>) -> Option<Vec<Expr>> {
-    let value = evaluator.value(node)?;
-    let scalars = stored(&value, factor);
-    if scalars.is_none() {
-        let message = format!(
-            "Phi of factor `{}` is {}, and must be in {}",
-            factor.name,
-            value.describe(),
-            factor.kind.name()
-        );
-        let error =
-            Diagnostic::new(code::DECLARED_SHAPE, node.span.clone(), message).label("wrong shape");
-        evaluator.report(error.help(match factor.kind {
-            Kind::Real(_) => format!("`{} + phi`, say", factor.name),
-            _ => format!("`{} * exp(phi)`, say", factor.name),
-        }));
-    }
-    scalars
-}
-
-fn stored(value: &Value, factor: &Factor) -> Option<Vec<Expr>> {
-    let shaped = |rows: usize, columns: usize| {
-        value
-            .as_shape(rows, columns)
-            .map(|matrix| matrix.entries().to_vec())
-    };
-    match (factor.kind, value) {
-        (kind, Value::Element(other, matrix)) if kind == *other => {
-            Some(factor.coordinates_of(matrix))
-        }
-        (Kind::Real(size), _) => shaped(size, 1),
-        (Kind::S1, _) => shaped(2, 1),
-        (Kind::S2, _) => shaped(3, 1),
-        (Kind::S3, _) => shaped(4, 1),
-        (Kind::So2, _) => shaped(2, 2),
-        (Kind::So3, _) => shaped(3, 3),
-        (Kind::Se2, _) => shaped(2, 3),
-        (Kind::Se3, _) => {
-            let pose = value.is_pose().then(|| value.as_pose()).flatten();
-            pose.map(|pose| pose.rotation.beside(&pose.translation).entries().to_vec())
-                .or_else(|| shaped(3, 4))
-        }
-    }
+fn moves(freedom: &Freedom, factor: usize) -> bool {
+    freedom.factor == factor && !freedom.generator.is_empty()
 }

@@ -64,7 +64,11 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
         let mut declared = vec![];
         for (index, parameter) in parameters.iter().enumerate() {
             self.claim(&parameter.name, Form::Snake, "a parameter");
+            let reserved = names::check_parameter(&parameter.name);
+            self.evaluator.errors.extend(reserved);
             self.evaluator.errors.extend(unit::error(&parameter.unit));
+            let range = parameter.range.as_ref();
+            let range = range.map(|range| super::parameter::interval(range, self.evaluator));
             let symbol = Symbol::new(Role::Parameter, index, &parameter.name.text);
             self.evaluator.define(
                 &parameter.name.text,
@@ -74,7 +78,7 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
                 symbol,
                 unit: parameter.unit.text.clone(),
                 docs: parameter.docs.join("\n"),
-                range: model::Interval::default(),
+                range: range.unwrap_or_default(),
             });
         }
         declared

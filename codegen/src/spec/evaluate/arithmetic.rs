@@ -46,10 +46,11 @@ fn matching(a: &Value, b: &Value) -> Option<(Matrix, Matrix)> {
     let shaped = |value: &Value, other: &Matrix| value.as_shape(other.rows(), other.columns());
     match (a, b) {
         (Value::Scalar(_), _) | (_, Value::Scalar(_)) => None,
-        (Value::List(_), _) => b.as_matrix().and_then(|b| Some((shaped(a, &b)?, b))),
-        _ => a
-            .as_matrix()
+        (Value::List(_), _) => b.as_summand().and_then(|b| Some((shaped(a, &b)?, b))),
+        (_, Value::List(_)) => a
+            .as_summand()
             .and_then(|a| Some((a.clone(), shaped(b, &a)?))),
+        _ => (a.as_summand().zip(b.as_summand())).filter(|(a, b)| a.shape() == b.shape()),
     }
 }
 
@@ -106,14 +107,14 @@ fn divide(a: &Value, b: &Value, span: &Range<usize>) -> Fallible<Value> {
         .ok_or_else(|| Box::new(misfit(span, format!("cannot divide {}", a.describe()))))
 }
 
-/// The value times a scalar; `None` for poses and elements of groups.
+/// The value times a scalar; `None` for poses and elements of motion groups.
 fn scaled(value: &Value, factor: &Expr) -> Option<Value> {
     let scale = |entries: &[Expr]| entries.iter().map(|entry| entry * factor).collect();
     Some(match value {
         Value::Scalar(entry) => Value::Scalar(entry * factor),
         Value::List(entries) => Value::List(scale(entries)),
         Value::Tangent(kind, entries) => Value::Tangent(*kind, scale(entries)),
-        _ => Value::Matrix(value.as_matrix()?.scale(factor)),
+        _ => Value::Matrix(value.as_summand()?.scale(factor)),
     })
 }
 

@@ -3,7 +3,7 @@
 use super::super::value::Value;
 use super::super::{Fallible, limits};
 use super::function::Call;
-use crate::expr::{Expr, Rational};
+use crate::expr::{Expr, Rational, evaluate_f64};
 use num_traits::{One, Signed, ToPrimitive};
 
 /// Functions of one scalar.
@@ -11,8 +11,6 @@ pub(super) fn of_one(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
     let [Value::Scalar(x)] = arguments else {
         return Err(call.refuse("one scalar", arguments));
     };
-    let constant = x.as_rational();
-    let negative = constant.as_ref().is_some_and(Signed::is_negative);
     let value = match call.name {
         "sin" => call.cos_sin(x)?.1,
         "cos" => call.cos_sin(x)?.0,
@@ -21,15 +19,47 @@ pub(super) fn of_one(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
             quotient(call, &sin, &cos)?
         }
         "exp" => x.exp(),
-        "sqrt" if negative => return Err(call.undefined("square root of a negative number")),
-        "sqrt" => x.sqrt(),
-        "log" if negative || x.is_zero() => {
+        "sqrt" => root(call, x)?,
+        "log" if x.is_zero() || is_negative(x) => {
             return Err(call.undefined("logarithm of a number that is not positive"));
         }
         "log" => x.ln(),
+        "asin" | "acos" | "atan" => inverse(call, x)?,
         _ => hyperbolic(call, x)?,
     };
     Ok(Value::Scalar(value))
+}
+
+/// The sign of a number; false for what depends on symbols, and where rounding decides.
+fn is_negative(x: &Expr) -> bool {
+    match x.as_rational() {
+        Some(number) => number.is_negative(),
+        // Exact sums of a few functions: 1e-9 is far above their rounding errors in double precision.
+        None => x.symbols().is_empty() && evaluate_f64(x, &|_| f64::NAN) < -1e-9,
+    }
+}
+
+fn root(call: &Call<'_>, x: &Expr) -> Fallible<Expr> {
+    match is_negative(x) {
+        true => Err(call.undefined("square root of a negative number")),
+        false => Ok(x.sqrt()),
+    }
+}
+
+/// asin, acos and atan, by atan2.
+fn inverse(call: &Call<'_>, x: &Expr) -> Fallible<Expr> {
+    if call.name == "atan" {
+        return Ok(x.atan2(&Expr::one()));
+    }
+    let square = &Expr::one() - &x.square();
+    if is_negative(&square) {
+        return Err(call.undefined(&format!("`{}` of a number outside −1 … 1", call.name)));
+    }
+    let other = square.sqrt();
+    Ok(match call.name {
+        "asin" => x.atan2(&other),
+        _ => other.atan2(x),
+    })
 }
 
 /// sinh, cosh and tanh, by exp.
@@ -74,7 +104,7 @@ fn power(call: &Call<'_>, x: &Expr, exponent: &Rational) -> Fallible<Expr> {
         );
         return Err(call.undefined(&message));
     }
-    if x.as_rational().is_some_and(|x| x.is_negative()) && !size.is_integer() {
+    if is_negative(x) && !size.is_integer() {
         return Err(call.undefined("a broken power of a negative number"));
     }
     let times = size.numer().to_u32().unwrap_or(0);

@@ -19,6 +19,9 @@ pub const NAMES: &[&str] = &[
     "sin",
     "cos",
     "tan",
+    "asin",
+    "acos",
+    "atan",
     "atan2",
     "sqrt",
     "exp",
@@ -70,6 +73,9 @@ impl Call<'_> {
             |value: &Value| matches!(value, Value::Element(Kind::S1 | Kind::Se2 | Kind::S3, _));
         Box::new(match arguments.iter().any(of_group) {
             true => error.help("rot_z(Q) of a Q that turns in a plane, and rot(Q) of a quaternion, are rotation matrices"),
+            false if self.name == "exp" => {
+                error.help("exp(phi) of an algebra element, exp(tilde(a)) of a rotation vector")
+            }
             false => error,
         })
     }
@@ -103,13 +109,13 @@ pub(super) fn apply(name: &Name, arguments: &[Value], span: &Range<usize>) -> Fa
         span,
     };
     match (name.text.as_str(), arguments) {
-        ("exp", [Value::Tangent(kind, x)]) => match algebra::exp(&algebra::hat(*kind, x)) {
-            Some(matrix) => Ok(Value::Element(*kind, matrix)),
-            None => Err(call.undefined("no closed form of exp is known for this element")),
-        },
-        ("sin" | "cos" | "tan" | "sqrt" | "exp" | "log" | "sinh" | "cosh" | "tanh", _) => {
-            elementary::of_one(&call, arguments)
-        }
+        ("exp", [Value::Tangent(kind, x)]) => exponential(&call, *kind, x),
+        ("exp", [matrix]) if matrix.as_rotation().is_some() => skew(&call, matrix, arguments),
+        (
+            "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "sqrt" | "exp" | "log" | "sinh"
+            | "cosh" | "tanh",
+            _,
+        ) => elementary::of_one(&call, arguments),
         ("atan2" | "pow", _) => elementary::of_two(&call, arguments),
         ("I" | "O", _) => constant(&call, arguments),
         ("transpose", _) => transpose(&call, arguments),
@@ -118,6 +124,33 @@ pub(super) fn apply(name: &Name, arguments: &[Value], span: &Range<usize>) -> Fa
         ("trans" | "trans_x" | "trans_y" | "trans_z", _) => translation(&call, arguments),
         ("pose", _) => pose(&call, arguments),
         _ => Err(Box::new(unknown(name))),
+    }
+}
+
+/// The group element of an algebra element.
+fn exponential(call: &Call<'_>, kind: Kind, x: &[Expr]) -> Fallible<Value> {
+    match algebra::exp(&algebra::hat(kind, x)) {
+        Some(matrix) => Ok(Value::Element(kind, matrix)),
+        None => Err(call.undefined("no closed form of exp is known for this element")),
+    }
+}
+
+/// The rotation whose rotation vector is that of a skew 3×3 matrix.
+fn skew(call: &Call<'_>, value: &Value, arguments: &[Value]) -> Fallible<Value> {
+    let matrix = value.as_rotation().unwrap_or(Matrix::zeros(3, 3));
+    match matrix.plus(&matrix.transpose()).is_zero() {
+        true => exponential(call, Kind::So3, &algebra::vee(Kind::So3, &matrix)),
+        false => {
+            let error = call.refuse(
+                "a scalar, an element of an algebra or a skew 3×3 matrix",
+                arguments,
+            );
+            Err(Box::new(
+                error
+                    .note(format!("it is not skew:\n{matrix}"))
+                    .help("exp(tilde(a)) is the rotation about a by the angle |a|"),
+            ))
+        }
     }
 }
 
@@ -133,7 +166,13 @@ fn unknown(name: &Name) -> Diagnostic {
         names::suggestion(&name.text, NAMES.iter().copied()),
     ) {
         ("ln", _) => error.help("the natural logarithm is log(x)"),
-        ("atan", _) => error.help("write atan2(x, 1)"),
+        ("arcsin" | "arccos" | "arctan", _) => {
+            error.help(format!("write `{}`", name.text.replace("arc", "a")))
+        }
+        ("arctan2", _) => error.help("write `atan2(y, x)`"),
+        ("abs" | "sign" | "min" | "max" | "floor" | "mod", _) => error.help(
+            "it is not smooth; sqrt(x * x) is |x| where x does not vanish, which `except x = 0;` declares",
+        ),
         (_, Some(advice)) => error.help(advice),
         _ => error.help(format!("functions are {}", NAMES.join(", "))),
     }

@@ -15,21 +15,25 @@ pub(in super::super) struct Locals {
     pub by_freedom: BTreeMap<String, Expr>,
     /// Each ϕ in order.
     pub all: Vec<Expr>,
-    /// Number of factors.
-    pub factors: usize,
+    /// Number of parts that `phi` has; the whole is defined where there is one.
+    pub parts: usize,
 }
 
 impl Locals {
     /// `phi`: the algebra element, or the column, of the only factor.
     pub fn whole(&self, span: &Range<usize>) -> Fallible<Value> {
-        match (self.factors, self.by_factor.values().next()) {
+        match (self.parts, self.by_factor.values().next()) {
             (1, Some(value)) => Ok(value.clone()),
             _ => {
-                let parts: Vec<String> = self
-                    .by_factor
-                    .keys()
-                    .map(|name| format!("`phi.{name}`"))
-                    .collect();
+                let names = match self.by_factor.len() == self.parts {
+                    true => self.by_factor.keys().collect::<Vec<_>>(),
+                    false => self
+                        .by_factor
+                        .keys()
+                        .chain(self.by_freedom.keys())
+                        .collect(),
+                };
+                let parts: Vec<String> = names.iter().map(|name| format!("`phi.{name}`")).collect();
                 let error = Diagnostic::new(
                     code::SHAPES,
                     span.clone(),

@@ -87,11 +87,22 @@ impl<'a> Evaluator<'a> {
         span: &Range<usize>,
         work: impl FnOnce(&mut Self) -> Option<T>,
     ) -> Option<T> {
+        self.bounded_by(limits::STATEMENT_BUDGET, statement, span, work)
+    }
+
+    /// Does the work of one statement within a budget of its own.
+    pub fn bounded_by<T>(
+        &mut self,
+        budget: u64,
+        statement: &str,
+        span: &Range<usize>,
+        work: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
         if budget::is_exhausted() {
             return None;
         }
         let before = self.errors.len();
-        let result = budget::scope(limits::STATEMENT_BUDGET, || work(self));
+        let result = budget::scope(budget, || work(self));
         let limit = match result {
             Ok(_) if budget::is_exhausted() => limits::FILE_BUDGET,
             Ok(value) => return value,

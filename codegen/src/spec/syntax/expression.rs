@@ -85,7 +85,9 @@ fn access(tokens: &mut Tokens<'_>) -> Fallible<Node> {
     let mut value = primary(tokens)?;
     for _ in 0..LONGEST_ACCESS {
         let start = value.span.start;
-        let kind = if tokens.eat('.') {
+        let kind = if tokens.peek_range() {
+            return Ok(value);
+        } else if tokens.eat('.') {
             let part = tokens.expect_name("the name of a part")?;
             NodeKind::Field(Box::new(value), part)
         } else if let Some((inside, _)) = tokens.group(Delimiter::Bracket) {

@@ -2,6 +2,7 @@
 
 mod expression;
 mod number;
+mod range;
 mod statement;
 
 use super::ast::{File, Name, Parameter};
@@ -153,10 +154,16 @@ fn parameter(tokens: &mut Tokens<'_>) -> Fallible<Parameter> {
     let name = tokens.expect_name("the name of a parameter")?;
     tokens.expect(':', "`:` and a unit")?;
     let unit = unit(tokens)?;
+    let range = range::bounds(tokens)?;
     if !tokens.is_empty() {
-        tokens.expect(',', "`,` or `)`")?;
+        tokens.expect(',', "`,`, `)` or the range of the parameter")?;
     }
-    Ok(Parameter { docs, name, unit })
+    Ok(Parameter {
+        docs,
+        name,
+        unit,
+        range,
+    })
 }
 
 /// `m`, `1`, `m/rad`, `kg*m*m`: checked later, joined here without spaces.

@@ -1,6 +1,6 @@
 //! Statements, and recovery at the end of each.
 
-use super::super::ast::{Basis, Name, Statement, StatementKind, Target};
+use super::super::ast::{Basis, Equation, Name, Requirement, Statement, StatementKind, Target};
 use super::super::names::{self, STATEMENTS};
 use super::super::tokens::Tokens;
 use super::super::{Fallible, code};
@@ -15,12 +15,12 @@ pub(in super::super) fn all(
 ) -> Vec<Statement> {
     let mut statements = vec![];
     loop {
-        tokens.docs();
+        let docs = tokens.docs();
         if tokens.is_empty() {
             return statements;
         }
         let start = tokens.span().start;
-        match statement(&mut tokens) {
+        match statement(&mut tokens, docs) {
             Ok(kind) => statements.push(Statement {
                 span: start..tokens.previous,
                 kind,
@@ -48,7 +48,7 @@ fn recover(tokens: &mut Tokens<'_>, start: usize) {
     }
 }
 
-fn statement(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
+fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKind> {
     let keyword = tokens.expect_name("a statement")?;
     let kind = match keyword.text.as_str() {
         "config" => StatementKind::Config(list(tokens, factor)?),
@@ -58,6 +58,9 @@ fn statement(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
         })?),
         "speeds" => StatementKind::Speeds(list(tokens, |t| t.expect_name("the name of a speed"))?),
         "velocity" => velocity(tokens)?,
+        "relation" => StatementKind::Relation(equation(tokens, docs)?),
+        "except" => StatementKind::Except(equation(tokens, docs)?),
+        "require" => StatementKind::Require(requirement(tokens)?),
         "let" => {
             let name = tokens.expect_name("a name")?;
             tokens.expect('=', "`=`")?;
@@ -164,6 +167,47 @@ fn velocity(tokens: &mut Tokens<'_>) -> Fallible<StatementKind> {
     }
 }
 
+/// `a = b`
+fn equation(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<Equation> {
+    let left = expression::expression(tokens)?;
+    if let Some(comparison) = tokens.comparison() {
+        let message = "an equation is written with `=`";
+        let error = Diagnostic::new(code::EXPECTED, comparison.span, message);
+        let error = error.label("expected `=`");
+        return Err(Box::new(
+            error.help("a condition on parameters is `require a > b;`"),
+        ));
+    }
+    tokens.expect('=', "an operator or `=` and the other side")?;
+    if tokens.peek('=') {
+        let error = tokens.expected("one `=` and the other side");
+        return Err(Box::new(error.help("an equation is written with one `=`")));
+    }
+    let right = expression::expression(tokens)?;
+    Ok(Equation { docs, left, right })
+}
+
+/// `a > b` or `a < b`
+fn requirement(tokens: &mut Tokens<'_>) -> Fallible<Requirement> {
+    let first = expression::expression(tokens)?;
+    let Some(comparison) = tokens.comparison() else {
+        return Err(tokens.expected("an operator, `>` or `<`"));
+    };
+    if comparison.included {
+        let message = "a requirement is strict: `>` or `<`";
+        let error = Diagnostic::new(code::EXPECTED, comparison.span, message);
+        return Err(Box::new(error.label("expected `>` or `<`").help(
+            "a joint whose parameters lie on the border of what is possible has no room to move",
+        )));
+    }
+    let second = expression::expression(tokens)?;
+    let (larger, smaller) = match comparison.greater {
+        true => (first, second),
+        false => (second, first),
+    };
+    Ok(Requirement { larger, smaller })
+}
+
 fn keyword(tokens: &mut Tokens<'_>, word: &str) -> Fallible<()> {
     match tokens.peek_name() {
         Some(name) if name.text == word => {
@@ -177,7 +221,7 @@ fn keyword(tokens: &mut Tokens<'_>, word: &str) -> Fallible<()> {
 fn assignment(tokens: &mut Tokens<'_>, target: Target) -> Fallible<StatementKind> {
     tokens.expect('=', "`=`")?;
     let values = match target {
-        Target::Retract => list(tokens, expression::expression)?,
+        Target::Retract | Target::Home => list(tokens, expression::expression)?,
         _ => vec![expression::expression(tokens)?],
     };
     Ok(StatementKind::Assign(target, values))

@@ -103,8 +103,10 @@ impl Stand {
         let checked = self.mechanism.check_configuration(&q.value);
         checked.map_err(refusal(&q.span))?;
         let mut projected = q.value.clone();
-        self.joint.project(&mut projected);
-        Ok(projected)
+        match self.mechanism.project(&mut projected) {
+            Ok(()) => Ok(projected),
+            Err(error) => Err(refusal(&q.span)(error)),
+        }
     }
 
     fn speeds(&self, q: &[f64], motion: &Motion) -> Result<Vec<f64>, Diagnostic> {

@@ -1,0 +1,164 @@
+//! Where a joint lives, and what cannot vanish there.
+//!
+//! A rank or an inverse needs functions that have no common zero: on the manifold, for every admissible value of the
+//! parameters, away from the loci that the spec excepts. Random points never show that. A certificate does: a constant, a sum of
+//! positive terms, or 1 as a combination of the functions and the relations.
+
+mod sign;
+
+use self::sign::Signs;
+use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
+use crate::manifold::Ideal;
+use crate::model::JointSpec;
+use num_traits::One;
+
+/// Most term operations that one search for a certificate may take.
+const CERTIFICATE_LIMIT: u64 = 60_000;
+
+/// The manifold without the loci, and what is known of signs on it.
+#[derive(Clone, Debug)]
+pub struct Domain<'a> {
+    ideal: &'a Ideal,
+    loci: Vec<Expr>,
+    signs: Signs,
+}
+
+/// Why some functions have no common zero.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Certificate {
+    /// One of them is a constant that is not zero.
+    Constant(Expr),
+    /// One of them is a sum of positive terms, or bounded away from zero.
+    Positive(Expr),
+    /// They and the relations generate 1.
+    NoCommonZero {
+        /// How many functions there are.
+        functions: usize,
+        /// Whether the loci were needed.
+        except: bool,
+    },
+}
+
+impl std::fmt::Display for Certificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Constant(value) => write!(f, "= {value}"),
+            Self::Positive(value) => write!(f, "= {value}, which is of one sign"),
+            Self::NoCommonZero { functions, except } => {
+                let what = match functions {
+                    1 => "it".to_owned(),
+                    count => format!("{count} functions"),
+                };
+                let where_it_holds = if *except {
+                    " away from the declared loci"
+                } else {
+                    ""
+                };
+                write!(
+                    f,
+                    "{what} and the manifold's relations generate 1{where_it_holds}"
+                )
+            }
+        }
+    }
+}
+
+impl<'a> Domain<'a> {
+    /// The domain of a joint.
+    pub fn new(spec: &'a JointSpec) -> Self {
+        Self {
+            ideal: spec.manifold.value.ideal(),
+            loci: spec
+                .loci
+                .iter()
+                .map(|locus| locus.value.function.clone())
+                .collect(),
+            signs: Signs::new(spec),
+        }
+    }
+
+    /// Equality on the manifold.
+    pub fn ideal(&self) -> &'a Ideal {
+        self.ideal
+    }
+
+    /// A certificate that the expressions have no common zero; `None` where none was found.
+    pub fn no_common_zero(&self, expressions: &[Expr]) -> Option<Certificate> {
+        budget::scope(CERTIFICATE_LIMIT, || self.search(expressions))
+            .ok()
+            .flatten()
+    }
+
+    /// A certificate that the expression has no zero.
+    pub fn nonzero(&self, expression: &Expr) -> Option<Certificate> {
+        self.no_common_zero(std::slice::from_ref(expression))
+    }
+
+    /// Whether the expression is positive everywhere.
+    pub fn is_positive(&self, expression: &Expr) -> bool {
+        let normal = self.ideal.normal_form(expression);
+        self.signs.is_positive(expression) || self.signs.is_positive(&normal)
+    }
+
+    fn search(&self, expressions: &[Expr]) -> Option<Certificate> {
+        let normal = |e: &Expr| self.ideal.normal_form(e);
+        let all: Vec<Expr> = expressions
+            .iter()
+            .map(normal)
+            .filter(|e| !e.is_zero())
+            .collect();
+        if let Some(unit) = all.iter().find(|e| is_unit(e)) {
+            return Some(Certificate::Constant(unit.clone()));
+        }
+        let of_one_sign = |e: &&Expr| self.signs.is_positive(e) || self.signs.is_positive(&-*e);
+        if let Some(signed) = expressions.iter().chain(&all).find(of_one_sign) {
+            return Some(Certificate::Positive(signed.clone()));
+        }
+        let functions = all.len();
+        let mut generators = all.clone();
+        let under_roots: Vec<Expr> = expressions.iter().filter_map(under_root).collect();
+        generators.extend(under_roots.iter().cloned());
+        // A sum of terms that are never negative vanishes only where each of them does.
+        for e in expressions.iter().chain(&all).chain(&under_roots) {
+            generators.extend(self.signs.zero_terms(e).into_iter().flatten());
+        }
+        let found = |except| Some(Certificate::NoCommonZero { functions, except });
+        if functions > 0 && self.ideal.has_no_zero_with(&generators) {
+            return found(false);
+        }
+        generators.extend(self.loci.iter().enumerate().map(away_from));
+        match !self.loci.is_empty() && self.ideal.has_no_zero_with(&generators) {
+            true => found(true),
+            false => None,
+        }
+    }
+}
+
+/// The argument of the root, where the expression is a constant times powers of one: both vanish together.
+fn under_root(expression: &Expr) -> Option<Expr> {
+    let (monomial, _) = expression
+        .leading()
+        .filter(|_| expression.terms().len() == 1)?;
+    match monomial.main() {
+        [(Atom::Apply(application), _)] if application.function == Function::Sqrt => {
+            application.arguments.first().cloned()
+        }
+        _ => None,
+    }
+}
+
+/// `1 − t g`: has a solution t exactly where g is not 0.
+fn away_from((index, locus): (usize, &Expr)) -> Expr {
+    let t = Symbol::new(Role::Intermediate, index, "inverse_of_locus");
+    &Expr::one() - &(&Expr::symbol(&t) * locus)
+}
+
+/// Whether the expression is one term of a rational and parameters: never zero.
+pub fn is_unit(e: &Expr) -> bool {
+    e.terms().len() == 1 && e.leading().is_some_and(|(monomial, _)| monomial.is_unit())
+}
+
+/// The expression of one monomial.
+fn of_monomial(monomial: Monomial) -> Expr {
+    Expr::term(Rational::one(), monomial)
+}

@@ -1,0 +1,140 @@
+//! What a joint demands of its parameters: ranges, requirements, and divisors that must not vanish.
+
+use super::tokens::{Writer, ident, signed_literal};
+use crate::derived::{Derived, Step};
+use crate::emit::formula::{Program, factored};
+use crate::emit::names::Names;
+use crate::expr::{Atom, Expr, Rational, Symbol};
+use crate::model::{End, Interval, Parameter};
+use num_traits::{ToPrimitive, Zero};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The fields `lower` and `upper` of a parameter's entry.
+pub fn fields(range: &Interval) -> TokenStream {
+    let limit = |end: &Option<End>| match end {
+        None => quote! { None },
+        Some(End { value, included }) => {
+            let value = signed_literal(value);
+            quote! { Some(Limit { value: #value, included: #included }) }
+        }
+    };
+    let (lower, upper) = (limit(&range.lower), limit(&range.upper));
+    quote! { lower: #lower, upper: #upper }
+}
+
+/// The range in words, `greater than 0 and at most 1`; `None` where nothing is excluded.
+pub fn in_words(range: &Interval) -> Option<String> {
+    let words = |end: &Option<End>, included: &str, excluded: &str| {
+        let end = end.as_ref()?;
+        let word = if end.included { included } else { excluded };
+        Some(format!("{word} {}", decimal(&end.value)))
+    };
+    let lower = words(&range.lower, "at least", "greater than");
+    let upper = words(&range.upper, "at most", "less than");
+    let ends: Vec<String> = lower.into_iter().chain(upper).collect();
+    (!ends.is_empty()).then(|| ends.join(" and "))
+}
+
+fn decimal(value: &Rational) -> String {
+    value
+        .to_f64()
+        .map_or(value.to_string(), |value| value.to_string())
+}
+
+/// The checks of `build`, in which each parameter is a variable of its name.
+pub fn checks(derived: &Derived) -> TokenStream {
+    let requirements = requirements(derived);
+    let divisors = derived
+        .spec
+        .parameters
+        .iter()
+        .filter(|parameter| includes_zero(&parameter.range))
+        .filter(|parameter| divides(derived, &parameter.symbol))
+        .map(|parameter| nonzero(derived, parameter));
+    quote! { #requirements #(#divisors)* }
+}
+
+/// Each requirement as a check of its margin, a polynomial in the parameters.
+fn requirements(derived: &Derived) -> TokenStream {
+    let joint = &derived.spec.name.value;
+    let requirements = &derived.spec.requirements;
+    if requirements.is_empty() {
+        return TokenStream::new();
+    }
+    let names = Names::of_fields(derived);
+    let nothing = Program {
+        bindings: vec![],
+        outputs: vec![],
+    };
+    let writer = Writer::new(&names, &nothing);
+    let checks: Vec<TokenStream> = requirements
+        .iter()
+        .map(|requirement| {
+            let text = &requirement.value.text;
+            let margin = writer.formula(&factored(&requirement.value.value).polished());
+            quote! { check_requirement(#joint, #text, #margin, &PARAMETERS, values)?; }
+        })
+        .collect();
+    let constants = writer.constants();
+    // The formulas are written for any scalar; here it is that of the parameters.
+    let scalar = (!constants.is_empty()).then(|| quote! { type T = f64; });
+    quote! { #scalar #constants #(#checks)* }
+}
+
+fn nonzero(derived: &Derived, parameter: &Parameter) -> TokenStream {
+    let joint = &derived.spec.name.value;
+    let (text, field) = (
+        parameter.symbol.name.as_ref(),
+        ident(&parameter.symbol.name),
+    );
+    quote! {
+        if #field == 0.0 {
+            return Err(ParameterError::OutOfRange {
+                joint: #joint,
+                parameter: #text,
+                value: #field,
+                requirement: "other than zero",
+            });
+        }
+    }
+}
+
+fn includes_zero(range: &Interval) -> bool {
+    let zero = Rational::zero();
+    let above = |end: &End| end.value < zero || (end.included && end.value == zero);
+    let below = |end: &End| end.value > zero || (end.included && end.value == zero);
+    range.lower.as_ref().is_none_or(above) && range.upper.as_ref().is_none_or(below)
+}
+
+/// Whether some kernel divides by the parameter.
+fn divides(derived: &Derived, parameter: &Symbol) -> bool {
+    let atom = Atom::Symbol(parameter.clone());
+    let entries = derived
+        .kernels
+        .iter()
+        .flat_map(|kernel| &kernel.outputs)
+        .flat_map(|output| output.entries());
+    let steps = derived
+        .kernels
+        .iter()
+        .flat_map(|kernel| &kernel.steps)
+        .filter_map(|step| match step {
+            Step::Let(_, value) => Some(value),
+            Step::Call { .. } => None,
+        });
+    entries.chain(steps).any(|entry| divides_in(entry, &atom))
+}
+
+fn divides_in(expression: &Expr, atom: &Atom) -> bool {
+    expression
+        .terms()
+        .any(|(monomial, _)| monomial.power(atom) < 0)
+        || expression.atoms().iter().any(|inner| match inner {
+            Atom::Apply(application) => application
+                .arguments
+                .iter()
+                .any(|argument| divides_in(argument, atom)),
+            Atom::Symbol(_) => false,
+        })
+}

@@ -1,0 +1,92 @@
+//! Kernels whose value no formula gives: calls of the runtime's Newton iterations and solves with the kernels that define it.
+
+use crate::derived::{Derived, Kernel, KernelKind, Method};
+use crate::expr::Symbol;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The call that computes the kernel; `None` where its formulas do. A projection begins at the value `start`.
+pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<TokenStream> {
+    if kernel.method == Method::Formula {
+        return None;
+    }
+    let tangents = quote! {
+        let moved = self.retract(q, phi);
+        let tangent = self.retract_tangent(q, phi);
+        let tangent_there = self.retract_tangent(&moved, &SVector::zeros());
+    };
+    Some(match kernel.kind {
+        KernelKind::VelocityMapInverse => quote! {
+            ::hamel::finite::inverse(&self.velocity_map(q))
+        },
+        KernelKind::Local => quote! {
+            ::hamel::finite::local(
+                target,
+                |phi| self.retract(q, phi),
+                |phi| self.retract_tangent(q, phi),
+            )
+        },
+        KernelKind::RetractDifferential => quote! {
+            #tangents
+            ::hamel::finite::differential(&tangent, &tangent_there)
+        },
+        KernelKind::RetractDifferentialInverse => quote! {
+            #tangents
+            ::hamel::finite::differential_inverse(&tangent, &tangent_there, rate)
+        },
+        KernelKind::Project => {
+            let codimension = Literal::usize_unsuffixed(codimension(derived));
+            quote! {
+                ::hamel::finite::project(
+                    #start,
+                    #codimension,
+                    |q| self.relations(q),
+                    |q| self.relation_gradient(q),
+                )
+            }
+        }
+        _ => return None,
+    })
+}
+
+/// Whether a kernel is a method of the joint's type alone: one that only these calls need.
+pub fn is_beside_the_trait(kind: KernelKind) -> bool {
+    matches!(
+        kind,
+        KernelKind::RetractTangent | KernelKind::Relations | KernelKind::RelationGradient
+    )
+}
+
+/// Rank of the derivatives of the relations on the manifold: N − K, without what known factors that no relation names
+/// contribute to it.
+fn codimension(derived: &Derived) -> usize {
+    let relations = derived.kernel(KernelKind::Relations);
+    let entries = relations.iter().flat_map(|kernel| &kernel.outputs);
+    let named: Vec<Symbol> = entries
+        .flat_map(|column| column.entries())
+        .flat_map(|entry| entry.symbols())
+        .collect();
+    let factors = derived.spec.manifold.value.factors().iter();
+    let apart: usize = factors
+        .filter(|factor| !factor.coordinates.iter().any(|q| named.contains(q)))
+        .map(|factor| factor.coordinates.len() - factor.kind.dimension())
+        .sum();
+    derived.shape.configuration - derived.shape.freedoms - apart
+}
+
+/// How the value is found, in a sentence of a doc comment.
+pub fn sentence(kernel: &Kernel) -> Option<&'static str> {
+    match (kernel.method, kernel.kind) {
+        (Method::Formula, _) => None,
+        (Method::Newton, KernelKind::Local) => Some(
+            "By Newton's method from ϕ = 0, in at most [`LOCAL_ITERATIONS`](::hamel::finite::LOCAL_ITERATIONS); NaN where it \
+             does not converge.",
+        ),
+        (Method::Newton, KernelKind::Project) => Some(
+            "By Newton's method, in at most [`PROJECT_ITERATIONS`](::hamel::finite::PROJECT_ITERATIONS); NaN where it does \
+             not converge.",
+        ),
+        (_, KernelKind::VelocityMapInverse) => Some("By a K×K solve with S₀."),
+        _ => Some("By a least-squares solve with ∂Φ/∂ϕ at Q and at Q′."),
+    }
+}

@@ -1,0 +1,248 @@
+//! What is emitted where no formula serves: calls of the runtime's iterations, ranges and requirements of parameters, loci.
+//!
+//! The joints are derived from specs with closed forms and patched, so that these tests need no derivation of other maps.
+
+use super::{Index, file, index};
+use crate::derive;
+use crate::derived::{Derived, Kernel, KernelKind, Method, Structure};
+use crate::emit::{Accuracy, Report, explain_text, page};
+use crate::expr::{Expr, Rational};
+use crate::matrix::Matrix;
+use crate::model::{Declared, End, Interval, Locus, Requirement};
+
+const BALL: &str = "hamel = 1;
+/// Ball joint.
+joint ball {
+    config Q: SO3;
+    basis e1, e2, e3 of so3;
+    velocity in parent;
+    H = pose(Q, [0, 0, 0]);
+}";
+
+const CRANK: &str = "hamel = 1;
+/// Crank.
+joint crank(/** Radius. */ outer: m, inner: m) {
+    config q: R1;
+    H = rot_z(q) * trans_x(outer) * trans_z(q / inner);
+}";
+
+fn derived(source: &str) -> Derived {
+    derive(source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn emitted(derived: &Derived) -> String {
+    let text = file(derived, "joint-specs/test.joint").expect("the emitted tokens are Rust");
+    // Without line breaks: what matters is what is called.
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn assert_contains(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+}
+
+fn by(method: Method, kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
+    Kernel {
+        kind,
+        steps: vec![],
+        outputs,
+        method,
+        structure: Structure::General,
+    }
+}
+
+/// The joint with the kernels in place of its own of the same kinds.
+fn patched(mut derived: Derived, kernels: Vec<Kernel>) -> Derived {
+    derived
+        .kernels
+        .retain(|kernel| kernels.iter().all(|new| new.kind != kernel.kind));
+    derived.kernels.extend(kernels);
+    derived.kernels.sort_by_key(|kernel| kernel.kind);
+    derived
+}
+
+/// The ball joint as if nothing were known of its Φ and its manifold.
+fn numeric_ball() -> Derived {
+    let ball = derived(BALL);
+    let (q, phi) = (
+        Matrix::symbols(&ball.arguments.configuration),
+        &ball.arguments.local,
+    );
+    let relations = Matrix::column_vector(ball.spec.manifold.value.relations());
+    let slopes = |of: &Matrix, symbols: &[crate::expr::Symbol]| {
+        let columns: Vec<Vec<Expr>> = symbols
+            .iter()
+            .map(|symbol| of.derivative(symbol).entries().to_vec())
+            .collect();
+        Matrix::from_columns(of.rows(), &columns)
+    };
+    let gradient = slopes(&relations, &ball.arguments.configuration);
+    let cross = Matrix::tilde(Matrix::symbols(phi).entries());
+    let turned = Matrix::from_fn(3, 3, |i, j| q.at(3 * i + j, 0).clone()).times(&cross);
+    let tangent = slopes(&Matrix::column_vector(turned.entries().to_vec()), phi);
+    patched(
+        ball,
+        vec![
+            by(Method::Solve, KernelKind::VelocityMapInverse, vec![]),
+            by(Method::Newton, KernelKind::Local, vec![]),
+            by(Method::Formula, KernelKind::RetractTangent, vec![tangent]),
+            by(Method::Solve, KernelKind::RetractDifferential, vec![]),
+            by(
+                Method::Solve,
+                KernelKind::RetractDifferentialInverse,
+                vec![],
+            ),
+            by(Method::Formula, KernelKind::Relations, vec![relations]),
+            by(
+                Method::Formula,
+                KernelKind::RelationGradient,
+                vec![gradient],
+            ),
+            by(Method::Newton, KernelKind::Project, vec![q]),
+        ],
+    )
+}
+
+#[test]
+fn maps_without_closed_form_call_the_runtime() {
+    let text = emitted(&numeric_ball());
+    assert_contains(
+        &text,
+        &[
+            "::hamel::finite::inverse(&self.velocity_map(q))",
+            "::hamel::finite::local( target, |phi| self.retract(q, phi), |phi| self.retract_tangent(q, phi), )",
+            "fn retract_differential<T: Scalar>( &self, q: &SVector<T, 9>, phi: &SVector<T, 3>, ) -> SMatrix<T, 3, 3> { \
+             let moved = self.retract(q, phi); let tangent = self.retract_tangent(q, phi); \
+             let tangent_there = self.retract_tangent(&moved, &SVector::zeros()); \
+             ::hamel::finite::differential(&tangent, &tangent_there) }",
+            "::hamel::finite::differential_inverse(&tangent, &tangent_there, rate)",
+            "::hamel::finite::project( q, 6, |q| self.relations(q), |q| self.relation_gradient(q), )",
+            "By Newton's method from ϕ = 0, in at most [`LOCAL_ITERATIONS`]",
+        ],
+    );
+}
+
+#[test]
+fn kernels_beside_the_trait_are_methods_of_the_type() {
+    let text = emitted(&numeric_ball());
+    let (own, of_trait) = text
+        .split_once("impl Joint<9, 3, 3, 0> for Ball {")
+        .expect("the implementation");
+    assert_contains(
+        own,
+        &[
+            "impl Ball {",
+            "pub fn retract_tangent<T: Scalar>(",
+            "pub fn relation_gradient<T: Scalar>(",
+        ],
+    );
+    assert!(!of_trait.contains("fn relations<"), "{of_trait}");
+}
+
+#[test]
+fn a_projection_begins_at_the_value_of_its_formulas() {
+    let ball = numeric_ball();
+    let halved = Matrix::symbols(&ball.arguments.configuration).scale(&Expr::fraction(1, 2));
+    let ball = patched(
+        ball,
+        vec![by(Method::Newton, KernelKind::Project, vec![halved])],
+    );
+    assert_contains(
+        &emitted(&ball),
+        &[
+            "let start: SVector<T, 9> = {",
+            "half * q11",
+            "::hamel::finite::project( &start, 6,",
+        ],
+    );
+}
+
+#[test]
+fn pages_and_the_index_take_kernels_without_formulas() {
+    let ball = numeric_ball();
+    let report = Report::new(&ball);
+    assert!(
+        report
+            .formulas
+            .iter()
+            .all(|formula| !formula.text.trim().is_empty())
+    );
+    explain_text(&ball, &Accuracy::default()).expect("the template holds");
+    page(&ball, "joint-specs/test.joint", &Accuracy::default()).expect("the template holds");
+    index(&[ball], "joint-specs", Index::Nested).expect("the emitted tokens are Rust");
+}
+
+fn declared<T>(value: T) -> Declared<T> {
+    Declared { value, span: 0..0 }
+}
+
+fn end(above: i64, below: i64, included: bool) -> Option<End> {
+    let value = Rational::new(above.into(), below.into());
+    Some(End { value, included })
+}
+
+#[test]
+fn loci_become_a_distance() {
+    assert_contains(
+        &emitted(&derived(BALL)),
+        &[
+            "const SINGULARITIES: &'static [&'static str] = &[];",
+            "fn singularity<T: Scalar>(&self, _q: &SVector<T, 9>) -> T { ::hamel::finite::least_absolute([]) }",
+        ],
+    );
+    let mut ball = derived(BALL);
+    let functions = [0, 4].map(|n| Expr::symbol(&ball.arguments.configuration[n]));
+    for (function, text) in functions.iter().zip(["Q[1, 1]", "Q[2, 2]"]) {
+        ball.spec.loci.push(declared(Locus {
+            function: function.clone(),
+            text: text.into(),
+            docs: String::new(),
+        }));
+    }
+    let column = Matrix::column_vector(functions.to_vec());
+    let ball = patched(
+        ball,
+        vec![by(Method::Formula, KernelKind::Singularity, vec![column])],
+    );
+    assert_contains(
+        &emitted(&ball),
+        &[
+            "const SINGULARITIES: &'static [&'static str] = &[\"Q[1, 1]\", \"Q[2, 2]\"];",
+            "::hamel::finite::least_absolute([q11, q22])",
+        ],
+    );
+}
+
+#[test]
+fn ranges_and_requirements_are_checked() {
+    let mut crank = derived(CRANK);
+    assert_contains(
+        &emitted(&crank),
+        &["lower: None, upper: None", "if inner == 0.0 {"],
+    );
+    crank.spec.parameters[1].range = Interval {
+        lower: end(0, 1, false),
+        upper: end(5, 2, true),
+    };
+    let [outer, inner] = [0, 1].map(|n| Expr::symbol(&crank.spec.parameters[n].symbol));
+    crank.spec.requirements.push(declared(Requirement {
+        value: &outer - &(&Expr::integer(2) * &inner),
+        text: "outer > 2 * inner".into(),
+    }));
+    let text = emitted(&crank);
+    assert_contains(
+        &text,
+        &[
+            "lower: Some(Limit { value: 0.0, included: false, }), upper: Some(Limit { value: 2.5, included: true, })",
+            "It is greater than 0 and at most 2.5.",
+            "They must meet `outer > 2 * inner`.",
+            "type T = f64;",
+            "check_requirement( \"crank\", \"outer > 2 * inner\", outer - two * inner, &PARAMETERS, values, )?;",
+        ],
+    );
+    assert!(
+        !text.contains("if inner == 0.0"),
+        "its range excludes 0: {text}"
+    );
+}

@@ -1,0 +1,293 @@
+//! Binary floating-point numbers of any number of bits.
+
+use crate::expr::{Function, Number, Rational};
+use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
+use num_bigint::{BigInt, Sign as IntegerSign};
+use std::cell::RefCell;
+use std::cmp::Ordering;
+use std::fmt::{Debug, Display, Formatter};
+
+const ROUNDING: RoundingMode = RoundingMode::ToEven;
+
+/// A binary floating-point number of `bits` bits, rounded up to whole words of 64.
+///
+/// Every operation is rounded correctly to the precision of its left operand; functions are within an ulp of it. What has no
+/// value (0/0, the logarithm of a negative number) is NaN, as in `f64`.
+#[derive(Clone)]
+pub struct Precise {
+    value: BigFloat,
+    bits: usize,
+}
+
+/// Runs a function with π and the other constants that this thread has computed so far; `None` where they cannot be had.
+fn with_constants(work: impl FnOnce(&mut Consts) -> BigFloat) -> Option<BigFloat> {
+    thread_local! {
+        static CONSTANTS: RefCell<Option<Consts>> = RefCell::new(Consts::new().ok());
+    }
+    CONSTANTS.with_borrow_mut(|constants| constants.as_mut().map(work))
+}
+
+impl Precise {
+    /// The number `value`, exactly.
+    pub fn from_f64(value: f64, bits: usize) -> Self {
+        // The library reads subnormal doubles as 0; 2²⁰⁰ times as large they are normal.
+        match value.is_subnormal() {
+            true => Self::from_f64(value * f64::powi(2.0, 200), bits).halved(200),
+            false => Self::wrap(BigFloat::from_f64(value, bits), bits),
+        }
+    }
+
+    /// The small integer `value`.
+    pub fn integer(value: i64, bits: usize) -> Self {
+        Self::wrap(BigFloat::from_i64(value, bits), bits)
+    }
+
+    /// `bits` random bits: the words, the first one most significant, as a fraction in [0, 1).
+    pub fn fraction_of_words(words: &[u64], bits: usize) -> Self {
+        let scale = Self::integer(1, bits).halved(64);
+        words
+            .iter()
+            .rev()
+            .fold(Self::integer(0, bits), |sum, word| {
+                let word = Self::wrap(BigFloat::from_u64(*word, bits), bits);
+                &(&sum + &word) * &scale
+            })
+    }
+
+    /// The circle constant.
+    pub fn pi(bits: usize) -> Self {
+        let pi = with_constants(|constants| constants.pi(bits, ROUNDING));
+        Self::wrap(pi.unwrap_or_else(|| BigFloat::nan(None)), bits)
+    }
+
+    fn wrap(value: BigFloat, bits: usize) -> Self {
+        Self { value, bits }
+    }
+
+    fn with(&self, value: BigFloat) -> Self {
+        Self::wrap(value, self.bits)
+    }
+
+    fn by(&self, function: impl FnOnce(&BigFloat, usize, &mut Consts) -> BigFloat) -> Self {
+        let value = with_constants(|constants| function(&self.value, self.bits, constants));
+        self.with(value.unwrap_or_else(|| BigFloat::nan(None)))
+    }
+
+    /// Precision in bits.
+    pub fn bits(&self) -> usize {
+        self.bits
+    }
+
+    /// The same number in another precision, rounded where that is lower.
+    pub fn to_bits(&self, bits: usize) -> Self {
+        let mut value = self.value.clone();
+        match value.set_precision(bits, ROUNDING) {
+            Ok(()) => Self::wrap(value, bits),
+            Err(error) => Self::wrap(BigFloat::nan(Some(error)), bits),
+        }
+    }
+
+    /// The integer as a number of this precision.
+    pub fn same(&self, value: i64) -> Self {
+        Self::integer(value, self.bits)
+    }
+
+    /// Sum.
+    pub fn sum(&self, other: &Self) -> Self {
+        self.with(self.value.add(&other.value, self.bits, ROUNDING))
+    }
+
+    /// Difference.
+    pub fn difference(&self, other: &Self) -> Self {
+        self.with(self.value.sub(&other.value, self.bits, ROUNDING))
+    }
+
+    /// Product.
+    pub fn product(&self, other: &Self) -> Self {
+        self.with(self.value.mul(&other.value, self.bits, ROUNDING))
+    }
+
+    /// Quotient.
+    pub fn quotient(&self, other: &Self) -> Self {
+        self.with(self.value.div(&other.value, self.bits, ROUNDING))
+    }
+
+    /// `−self`.
+    pub fn negative(&self) -> Self {
+        self.with(self.value.neg())
+    }
+
+    /// Absolute value.
+    pub fn abs(&self) -> Self {
+        self.with(self.value.abs())
+    }
+
+    /// `self / 2ⁿ`.
+    pub fn halved(&self, n: i32) -> Self {
+        let mut value = self.value.clone();
+        if let Some(exponent) = value.exponent().filter(|_| !value.is_zero()) {
+            value.set_exponent(exponent - n);
+        }
+        self.with(value)
+    }
+
+    /// Square root.
+    pub fn sqrt(&self) -> Self {
+        self.with(self.value.sqrt(self.bits, ROUNDING))
+    }
+
+    /// Sine.
+    pub fn sin(&self) -> Self {
+        self.by(|x, bits, constants| x.sin(bits, ROUNDING, constants))
+    }
+
+    /// Cosine.
+    pub fn cos(&self) -> Self {
+        self.by(|x, bits, constants| x.cos(bits, ROUNDING, constants))
+    }
+
+    /// Hyperbolic sine.
+    pub fn sinh(&self) -> Self {
+        self.by(|x, bits, constants| x.sinh(bits, ROUNDING, constants))
+    }
+
+    /// Hyperbolic cosine.
+    pub fn cosh(&self) -> Self {
+        self.by(|x, bits, constants| x.cosh(bits, ROUNDING, constants))
+    }
+
+    /// Exponential function.
+    pub fn exp(&self) -> Self {
+        self.by(|x, bits, constants| x.exp(bits, ROUNDING, constants))
+    }
+
+    /// Natural logarithm.
+    pub fn ln(&self) -> Self {
+        self.by(|x, bits, constants| x.ln(bits, ROUNDING, constants))
+    }
+
+    /// Inverse tangent.
+    pub fn atan(&self) -> Self {
+        self.by(|x, bits, constants| x.atan(bits, ROUNDING, constants))
+    }
+
+    /// Whether this is 0.
+    pub fn is_zero(&self) -> bool {
+        self.value.is_zero()
+    }
+
+    /// Whether this is below 0.
+    pub fn is_negative(&self) -> bool {
+        self.value.is_negative() && !self.is_zero()
+    }
+
+    /// Whether this is a number, neither NaN nor infinite.
+    pub fn is_finite(&self) -> bool {
+        !self.value.is_nan() && !self.value.is_inf()
+    }
+
+    /// Order by size; `None` beside NaN.
+    pub fn compare(&self, other: &Self) -> Option<Ordering> {
+        self.value.cmp(&other.value).map(|order| order.cmp(&0))
+    }
+
+    /// The nearest double; infinite beyond its range. Subnormal results are rounded twice.
+    pub fn to_f64(&self) -> f64 {
+        let Some((words, _, sign, exponent, _)) = self.value.as_raw_parts() else {
+            return match (self.value.is_inf_pos(), self.value.is_inf_neg()) {
+                (true, _) => f64::INFINITY,
+                (_, true) => f64::NEG_INFINITY,
+                _ => f64::NAN,
+            };
+        };
+        let Some((last, others)) = words.split_last().filter(|_| !self.is_zero()) else {
+            return 0.0;
+        };
+        // A bit that is never a tie's own stands for all bits below the first 64.
+        let sticky = u64::from(others.iter().any(|word| *word != 0));
+        let size = power_of_two((last | sticky) as f64, exponent - 64);
+        match sign {
+            Sign::Neg => -size,
+            Sign::Pos => size,
+        }
+    }
+}
+
+/// `x · 2ⁿ` without leaving the range on the way.
+fn power_of_two(x: f64, n: i32) -> f64 {
+    // A factor of at most 2^±1000 at a time; after three of them everything has over- or underflowed.
+    let mut left = n.clamp(-3000, 3000);
+    let mut result = x;
+    while left != 0 {
+        let step = left.clamp(-1000, 1000);
+        result *= f64::powi(2.0, step);
+        left -= step;
+    }
+    result
+}
+
+fn integer(value: &BigInt, bits: usize) -> Precise {
+    let shift = Precise::integer(1, bits).halved(-64);
+    let (sign, words) = value.to_u64_digits();
+    let size = words
+        .iter()
+        .rev()
+        .fold(Precise::integer(0, bits), |sum, word| {
+            let word = Precise::wrap(BigFloat::from_u64(*word, bits), bits);
+            &(&sum * &shift) + &word
+        });
+    match sign {
+        IntegerSign::Minus => size.negative(),
+        _ => size,
+    }
+}
+
+impl Number for Precise {
+    fn rational(&self, value: &Rational) -> Self {
+        let numerator = integer(value.numer(), self.bits);
+        match value.is_integer() {
+            true => numerator,
+            false => numerator.quotient(&integer(value.denom(), self.bits)),
+        }
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        self.sum(other)
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        self.product(other)
+    }
+
+    fn over(&self, other: &Self) -> Self {
+        self.quotient(other)
+    }
+
+    fn function(&self, function: Function, arguments: &[Self]) -> Self {
+        match (function, arguments) {
+            (Function::Pi, []) => Self::pi(self.bits),
+            (Function::Cos, [x]) => x.cos(),
+            (Function::Sin, [x]) => x.sin(),
+            (Function::Exp, [x]) => x.exp(),
+            (Function::Ln, [x]) => x.ln(),
+            (Function::Sqrt, [x]) => x.sqrt(),
+            (Function::Recip, [x]) => self.same(1).quotient(x),
+            (Function::Atan2, [y, x]) => y.atan2(x),
+            (Function::Stumpff(order), [s]) => s.stumpff(order.into()),
+            (Function::DexpInverse(derivative), [s]) => s.dexp_inverse(derivative.into()),
+            _ => Self::wrap(BigFloat::nan(None), self.bits),
+        }
+    }
+}
+
+impl Display for Precise {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        Display::fmt(&self.value, f)
+    }
+}
+
+impl Debug for Precise {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({} bits)", self.value, self.bits)
+    }
+}

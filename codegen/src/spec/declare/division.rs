@@ -1,0 +1,93 @@
+//! Division by parameters whose range says that they may be zero.
+
+use super::super::code;
+use crate::diagnostic::Diagnostic;
+use crate::expr::{Atom, Expr, Symbol};
+use crate::model::{JointSpec, Parameter};
+use std::ops::Range;
+
+/// An error for each statement and each parameter that may be zero and divides in it.
+/// `relations` are the bytes of the relations.
+pub(super) fn errors(spec: &JointSpec, relations: Option<Range<usize>>) -> Vec<Diagnostic> {
+    let relations = relations.unwrap_or_else(|| spec.manifold.span.clone());
+    let suspects: Vec<&Parameter> = spec.parameters.iter().filter(|p| p.may_vanish()).collect();
+    let divided = |(span, values): (&Range<usize>, Vec<&Expr>)| {
+        let divides = |parameter: &&&Parameter| {
+            values
+                .iter()
+                .any(|value| has_divisor(value, &parameter.symbol))
+        };
+        let found = suspects.iter().filter(divides);
+        found
+            .map(|parameter| error(parameter, span))
+            .collect::<Vec<_>>()
+    };
+    values(spec, &relations)
+        .into_iter()
+        .flat_map(divided)
+        .collect()
+}
+
+/// What each statement declares; of relations, the basis of their ideal.
+fn values<'a>(
+    spec: &'a JointSpec,
+    relations: &'a Range<usize>,
+) -> Vec<(&'a Range<usize>, Vec<&'a Expr>)> {
+    let (manifold, pose) = (&spec.manifold.value, &spec.pose);
+    let generators = spec.freedoms.value.iter();
+    let mut values = vec![
+        (relations, manifold.ideal().basis().iter().collect()),
+        (
+            &spec.freedoms.span,
+            generators.flat_map(|freedom| &freedom.generator).collect(),
+        ),
+        (
+            &pose.span,
+            pose.value
+                .rotation
+                .entries()
+                .iter()
+                .chain(pose.value.translation.entries())
+                .collect(),
+        ),
+    ];
+    for scalars in [&spec.home, &spec.retract].into_iter().flatten() {
+        values.push((&scalars.span, scalars.value.iter().collect()));
+    }
+    for matrix in [&spec.twist_map, &spec.constraint, &spec.speed_basis]
+        .into_iter()
+        .flatten()
+    {
+        values.push((&matrix.span, matrix.value.entries().iter().collect()));
+    }
+    for locus in &spec.loci {
+        values.push((&locus.span, vec![&locus.value.function]));
+    }
+    for requirement in &spec.requirements {
+        values.push((&requirement.span, vec![&requirement.value.value]));
+    }
+    values
+}
+
+/// Whether a negative power of the symbol occurs, inside functions too.
+fn has_divisor(value: &Expr, symbol: &Symbol) -> bool {
+    let mut factors = value.terms().flat_map(|(monomial, _)| monomial.factors());
+    factors.any(|(atom, power)| match atom {
+        Atom::Symbol(found) => power < 0 && found == symbol,
+        Atom::Apply(application) => application
+            .arguments
+            .iter()
+            .any(|argument| has_divisor(argument, symbol)),
+    })
+}
+
+fn error(parameter: &Parameter, span: &Range<usize>) -> Diagnostic {
+    let name = &parameter.symbol.name;
+    let message = format!("division by `{name}`, which may be zero by its range");
+    Diagnostic::new(code::MAY_VANISH, span.clone(), message)
+        .label(format!("divides by `{name}`"))
+        .help(format!(
+            "leave zero out of its range: `{name}: {} > 0`",
+            parameter.unit
+        ))
+}

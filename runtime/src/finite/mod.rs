@@ -1,0 +1,70 @@
+//! Finite maps of joints that have no closed form: the inverse of Φ, its differential, projection onto relations.
+//!
+//! Generated joints call these functions with their own Φ, ∂Φ/∂ϕ and relations. Everything is generic over [`Scalar`],
+//! allocates nothing, and does the same operations whatever the data: iteration counts are fixed, choices go through
+//! [`Scalar::select`]. What fails comes back as NaN in every entry of the lane that fails.
+
+mod invert;
+mod project;
+mod solve;
+#[cfg(test)]
+mod tests;
+
+pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
+pub use project::{PROJECT_ITERATIONS, project};
+pub use solve::{inverse, least_squares};
+
+use crate::scalar::Scalar;
+use nalgebra::SVector;
+
+/// |x|.
+fn absolute<T: Scalar>(x: T) -> T {
+    T::select(x.less(T::zero()), -x, x)
+}
+
+/// Least absolute value of the numbers: +∞ of none, NaN where one of them is not finite.
+///
+/// This is how emitted kernels tell the distance to a set that a joint must stay away from.
+pub fn least_absolute<T: Scalar, const R: usize>(numbers: [T; R]) -> T {
+    let infinity = T::from_f64(f64::INFINITY);
+    let least = numbers.into_iter().fold(infinity, |least, number| {
+        let size = absolute(number);
+        T::select(size.less(least), size, least)
+    });
+    // A comparison with NaN is false and would pass over it: 0 · x is 0 or NaN.
+    numbers
+        .into_iter()
+        .fold(least, |least, number| least + number * T::zero())
+}
+
+/// Euclidean norm, free of overflow and underflow: ϕ and residuals go down to 1e-300.
+fn norm<T: Scalar, const D: usize>(vector: &SVector<T, D>) -> T {
+    let zero = T::zero();
+    let largest = vector.iter().fold(zero, |largest, &entry| {
+        let size = absolute(entry);
+        T::select(size.less(largest), largest, size)
+    });
+    // The divisor of a zero vector is 1, so that its norm is 0 and has a derivative.
+    let divisor = T::select(zero.less(largest), largest, T::one());
+    let square = vector.iter().fold(zero, |sum, &entry| {
+        let ratio = entry / divisor;
+        sum + ratio * ratio
+    });
+    let positive = zero.less(square);
+    let root = T::select(positive, square, T::one()).sqrt();
+    divisor * T::select(zero.less(largest), root, largest)
+}
+
+/// `value` where `error` is no more than √ε of `scale`, NaN elsewhere.
+///
+/// Newton's method squares its error: a last step of √ε leaves an error of about ε, while a method that has not
+/// converged takes steps far above √ε. The smallest normal `f32` stands for zero.
+fn unless_apart<T: Scalar, const D: usize>(
+    value: &SVector<T, D>,
+    error: T,
+    scale: T,
+) -> SVector<T, D> {
+    let limit = T::epsilon().sqrt() * scale + T::from_f64(f32::MIN_POSITIVE.into());
+    let close = error.less(limit);
+    value.map(|entry| T::select(close, entry, T::from_f64(f64::NAN)))
+}

@@ -1,0 +1,103 @@
+//! Projection onto a manifold that is given by relations, redundant ones among them.
+
+use super::{norm, unless_apart};
+use crate::scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// Bound on the iterations of [`project`]: quadratic convergence needs 5 from an error of a tenth; the others are for
+/// points farther away.
+pub const PROJECT_ITERATIONS: usize = 12;
+
+/// The point of the manifold that is nearest to `start`, to second order in their distance; NaN in every entry where
+/// Newton's method does not converge within [`PROJECT_ITERATIONS`].
+///
+/// `relations` (R) vanish on the manifold, `gradient` (R×N) are their derivatives by the stored scalars, and `codimension`
+/// is the rank of the latter on the manifold. R may exceed it: each step is the shortest that solves the `codimension`
+/// relations whose gradients are most independent (pivoted Gram–Schmidt). All relations must hold in the end, so that a
+/// reflection, say, is not taken for a rotation.
+pub fn project<T: Scalar, const N: usize, const R: usize>(
+    start: &SVector<T, N>,
+    codimension: usize,
+    relations: impl Fn(&SVector<T, N>) -> SVector<T, R>,
+    gradient: impl Fn(&SVector<T, N>) -> SMatrix<T, R, N>,
+) -> SVector<T, N> {
+    let mut q = *start;
+    for _ in 0..PROJECT_ITERATIONS {
+        q += Equations::new(&relations(&q), &gradient(&q)).shortest_solution(codimension);
+    }
+    let left = Equations::new(&relations(&q), &gradient(&q));
+    let apart = norm(&left.values);
+    let step = norm(&left.shortest_solution(codimension));
+    unless_apart(&q, apart + step, norm(&q))
+}
+
+/// `direction_j · δ = −value_j`, one equation a relation, each scaled to a unit direction.
+struct Equations<T, const N: usize, const R: usize> {
+    /// N×R.
+    directions: SMatrix<T, N, R>,
+    values: SVector<T, R>,
+}
+
+impl<T: Scalar, const N: usize, const R: usize> Equations<T, N, R> {
+    fn new(relations: &SVector<T, R>, gradient: &SMatrix<T, R, N>) -> Self {
+        let mut directions = gradient.transpose();
+        let mut values = *relations;
+        for j in 0..R {
+            let length = norm(&directions.column(j).into_owned());
+            // A relation without gradient cannot be mended, but it is still checked.
+            let divisor = T::select(T::zero().less(length), length, T::one());
+            values[j] /= divisor;
+            directions
+                .column_mut(j)
+                .iter_mut()
+                .for_each(|entry| *entry /= divisor);
+        }
+        Self { directions, values }
+    }
+
+    /// The least δ that solves `rank` of the equations, chosen one after the other by what is left of their directions.
+    fn shortest_solution(mut self, rank: usize) -> SVector<T, N> {
+        let mut solution = SVector::zeros();
+        for _ in 0..rank {
+            let (direction, value) = self.most_independent();
+            solution -= direction * value;
+            self.eliminate(&direction, value);
+        }
+        solution
+    }
+
+    /// The longest direction, scaled to 1, and its value.
+    fn most_independent(&self) -> (SVector<T, N>, T) {
+        let zero = T::zero();
+        let mut best = SVector::<T, N>::zeros();
+        let (mut value, mut longest) = (zero, zero);
+        for (column, &candidate) in self.directions.column_iter().zip(self.values.iter()) {
+            let column = column.into_owned();
+            let length = norm(&column);
+            let longer = longest.less(length);
+            best = SVector::from_fn(|i, _| T::select(longer, column[i], best[i]));
+            value = T::select(longer, candidate, value);
+            longest = T::select(longer, length, longest);
+        }
+        let divisor = T::select(zero.less(longest), longest, T::one());
+        (best / divisor, value / divisor)
+    }
+
+    /// Takes `direction` out of every equation.
+    fn eliminate(&mut self, direction: &SVector<T, N>, value: T) {
+        for (mut column, rest) in self
+            .directions
+            .column_iter_mut()
+            .zip(self.values.iter_mut())
+        {
+            let share = direction
+                .iter()
+                .zip(column.iter())
+                .fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+            *rest -= share * value;
+            for (entry, &along) in column.iter_mut().zip(direction.iter()) {
+                *entry -= share * along;
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Linear systems of fixed size by Householder reflections: no pivots, so no branches, and backward stable.
+
+use super::norm;
+use crate::scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// The x (K) with the least ‖F x − r‖₂ for an F of N rows and rank K.
+///
+/// Backward stable, as normal equations are not. Infinite or NaN where F has dependent columns.
+pub fn least_squares<T: Scalar, const N: usize, const K: usize>(
+    matrix: &SMatrix<T, N, K>,
+    side: &SVector<T, N>,
+) -> SVector<T, K> {
+    solve(matrix, side)
+}
+
+/// The inverse of a square matrix; infinite or NaN where it is singular.
+pub fn inverse<T: Scalar, const K: usize>(matrix: &SMatrix<T, K, K>) -> SMatrix<T, K, K> {
+    solve(matrix, &SMatrix::identity())
+}
+
+/// [`least_squares`] for each column of `side`.
+pub(super) fn solve<T: Scalar, const N: usize, const K: usize, const M: usize>(
+    matrix: &SMatrix<T, N, K>,
+    side: &SMatrix<T, N, M>,
+) -> SMatrix<T, K, M> {
+    let (mut triangle, mut side) = (*matrix, *side);
+    for k in 0..K {
+        let mirror = mirror(&triangle, k);
+        reflect(&mut triangle, &mirror);
+        reflect(&mut side, &mirror);
+    }
+    substitute_back(&triangle, &side)
+}
+
+/// The vector u, zero above row `column`, whose reflection `I − 2 u uᵀ` clears that column below the diagonal.
+fn mirror<T: Scalar, const N: usize, const K: usize>(
+    matrix: &SMatrix<T, N, K>,
+    column: usize,
+) -> SVector<T, N> {
+    let zero = T::zero();
+    let mut u = SVector::<T, N>::from_fn(|i, _| {
+        if i < column {
+            zero
+        } else {
+            matrix[(i, column)]
+        }
+    });
+    let length = norm(&u);
+    let pivot = u[column];
+    // Away from the pivot, so that nothing cancels.
+    u[column] = pivot + T::select(pivot.less(zero), -length, length);
+    let length = norm(&u);
+    let divisor = T::select(zero.less(length), length, T::one());
+    u.map(|entry| entry / divisor)
+}
+
+fn reflect<T: Scalar, const N: usize, const M: usize>(
+    matrix: &mut SMatrix<T, N, M>,
+    mirror: &SVector<T, N>,
+) {
+    for mut column in matrix.column_iter_mut() {
+        let share = mirror
+            .iter()
+            .zip(column.iter())
+            .fold(T::zero(), |sum, (&u, &entry)| u.mul_add(entry, sum));
+        let twice = share + share;
+        for (entry, &u) in column.iter_mut().zip(mirror.iter()) {
+            *entry -= twice * u;
+        }
+    }
+}
+
+/// Solves the upper triangle of the first K rows.
+fn substitute_back<T: Scalar, const N: usize, const K: usize, const M: usize>(
+    triangle: &SMatrix<T, N, K>,
+    side: &SMatrix<T, N, M>,
+) -> SMatrix<T, K, M> {
+    let mut solution = SMatrix::<T, K, M>::zeros();
+    for i in (0..K).rev() {
+        for j in 0..M {
+            let known = (i + 1..K).fold(T::zero(), |sum, l| {
+                triangle[(i, l)].mul_add(solution[(l, j)], sum)
+            });
+            solution[(i, j)] = (side[(i, j)] - known) / triangle[(i, i)];
+        }
+    }
+    solution
+}

@@ -1,0 +1,320 @@
+//! Random and extreme arguments of kernels: what a caller can have, rounded to the kernel's type.
+
+use super::Definition;
+use super::tracked::{BITS, Tracked};
+use hamel_codegen::expr::{Atom, Expr, Symbol};
+use hamel_codegen::manifold::Kind;
+use hamel_codegen::model::Freedom;
+use hamel_codegen::precise::{Precise, Sampler};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeSet;
+
+/// A million turns, rad.
+const LARGEST_ANGLE: f64 = 1e6 * std::f64::consts::TAU;
+/// Offsets, m.
+const LARGEST_OFFSET: f64 = 1e8;
+/// How near half a turn ϕ comes.
+const NEAREST_TO_PI: f64 = 1e-12;
+/// Local coordinates without a group have no radius that is known here; their Φ holds near 0.
+const LARGEST_LOCAL: f64 = 0.5;
+/// How near a locus extreme points come.
+const SMALLEST_LOCUS: f64 = 1e-3;
+
+/// The arguments of all kernels.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Q, rounded.
+    pub q: Vec<f64>,
+    /// Q before it was rounded: on the manifold.
+    pub exact: Vec<Tracked>,
+    /// ϕ.
+    pub phi: Vec<f64>,
+    /// v, also p and the rate of ϕ.
+    pub v: Vec<f64>,
+    /// v̄.
+    pub speeds: Vec<f64>,
+    /// h.
+    pub wrench: Vec<f64>,
+}
+
+/// The range of a type of numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Decimal exponent of the smallest numbers.
+    pub smallest: f64,
+    /// Rounds to the type.
+    pub round: fn(f64) -> f64,
+}
+
+/// A source of cases for one joint, the same in every run.
+pub struct Points<'a> {
+    definition: &'a Definition,
+    sampler: Sampler<'a>,
+    random: ChaCha8Rng,
+    range: Range,
+    angles: BTreeSet<Symbol>,
+}
+
+impl<'a> Points<'a> {
+    /// Cases in numbers of that range; `seed` tells batches apart.
+    pub fn new(definition: &'a Definition, range: Range, seed: u64) -> Self {
+        Self {
+            sampler: Sampler::new(&definition.spec, BITS),
+            random: ChaCha8Rng::seed_from_u64(seed),
+            range,
+            angles: angles(definition),
+            definition,
+        }
+    }
+
+    /// The next case: every other one extreme.
+    ///
+    /// # Panics
+    /// Where the manifold has no point that the sampler finds.
+    pub fn case(&mut self, speeds: usize) -> Case {
+        let extreme = self.random.random_bool(0.5);
+        let (exact, q) = loop {
+            let exact = self.configuration(extreme);
+            let q: Vec<f64> = exact.iter().map(|x| self.rounded(x)).collect();
+            if self.is_allowed(&q) {
+                break (exact, q);
+            }
+        };
+        let freedoms = self.definition.freedoms();
+        Case {
+            q,
+            exact: exact
+                .into_iter()
+                .map(|x| Tracked::computed(x, 0.0))
+                .collect(),
+            phi: self.phi(extreme),
+            v: self.numbers(freedoms),
+            speeds: self.numbers(speeds),
+            wrench: self.numbers(6),
+        }
+    }
+
+    fn rounded(&self, value: &Precise) -> f64 {
+        (self.range.round)(value.to_f64())
+    }
+
+    fn numbers(&mut self, count: usize) -> Vec<f64> {
+        let round = self.range.round;
+        (0..count)
+            .map(|_| round(self.random.random_range(-1.0..1.0)))
+            .collect()
+    }
+
+    fn is_allowed(&self, q: &[f64]) -> bool {
+        let loci = &self.definition.spec.loci;
+        let functions: Vec<Expr> = loci.iter().map(|l| l.value.function.clone()).collect();
+        let values = self.definition.evaluate(&functions, q);
+        values
+            .iter()
+            .all(|value| value.value.to_f64().abs() > SMALLEST_LOCUS)
+    }
+
+    /// On the manifold, in high precision.
+    fn configuration(&mut self, extreme: bool) -> Vec<Precise> {
+        let manifold = &self.definition.spec.manifold.value;
+        if extreme && manifold.declared().is_empty() {
+            let factors = manifold.factors().to_vec();
+            return factors
+                .iter()
+                .flat_map(|factor| self.element(factor.kind, &factor.coordinates))
+                .collect();
+        }
+        let point = self.sampler.point().expect("the manifold has points");
+        let coordinates = &self.definition.coordinates;
+        coordinates
+            .iter()
+            .map(|symbol| point.value(symbol))
+            .collect()
+    }
+
+    fn element(&mut self, kind: Kind, coordinates: &[Symbol]) -> Vec<Precise> {
+        match kind {
+            Kind::Real(_) => coordinates
+                .iter()
+                .map(|symbol| self.coordinate(symbol))
+                .collect(),
+            Kind::S1 => self.special_unit(2),
+            Kind::S2 => self.special_unit(3),
+            Kind::S3 => self.special_unit(4),
+            Kind::So2 => planar(&self.special_unit(2), &[]),
+            Kind::Se2 => planar(&self.special_unit(2), &self.offsets(2)),
+            Kind::So3 => rotation(&self.special_unit(4), &[]),
+            Kind::Se3 => rotation(&self.special_unit(4), &self.offsets(3)),
+        }
+    }
+
+    fn coordinate(&mut self, symbol: &Symbol) -> Precise {
+        let largest = match self.angles.contains(symbol) {
+            true => LARGEST_ANGLE,
+            false => LARGEST_OFFSET,
+        };
+        let value = self.spread(largest);
+        precise(value)
+    }
+
+    fn offsets(&mut self, count: usize) -> Vec<Precise> {
+        (0..count)
+            .map(|_| precise(self.spread(LARGEST_OFFSET)))
+            .collect()
+    }
+
+    /// Of either sign; half of them of order `largest`, the others of any order of magnitude down to the smallest numbers.
+    fn spread(&mut self, largest: f64) -> f64 {
+        let exponent = match self.random.random_range(0..4) {
+            0 | 1 => largest.log10() - self.random.random_range(0.0..1.0),
+            2 => self.random.random_range(-3.0..largest.log10()),
+            _ => self
+                .random
+                .random_range(self.range.smallest..largest.log10()),
+        };
+        let size = 10f64.powf(exponent).min(largest);
+        (self.range.round)(if self.random.random_bool(0.5) {
+            size
+        } else {
+            -size
+        })
+    }
+
+    /// A unit vector at or near one of the special ones: an axis, or half-way between axes.
+    fn special_unit(&mut self, size: usize) -> Vec<Precise> {
+        loop {
+            let special: Vec<i32> = (0..size)
+                .map(|_| self.random.random_range(-1..=1))
+                .collect();
+            let kept = self.random.random_range(1..=size);
+            let distance = 10f64.powf(self.random.random_range(-20.0..0.0));
+            let entry = |(i, axis): (usize, &i32)| {
+                let off = self.random.random_range(-1.0..1.0) * distance;
+                f64::from(if i < kept { *axis } else { 0 }) + off
+            };
+            let x: Vec<f64> = special.iter().enumerate().map(entry).collect();
+            if x.iter().map(|x| x * x).sum::<f64>() > 0.25 {
+                return normalised(&x);
+            }
+        }
+    }
+
+    fn phi(&mut self, extreme: bool) -> Vec<f64> {
+        let freedoms = self.definition.spec.freedoms.value.clone();
+        let direction: Vec<f64> = self.numbers(freedoms.len());
+        let group = freedoms.iter().all(|freedom| !freedom.generator.is_empty());
+        let angle = match (extreme, group) {
+            (true, true) => self.extreme_angle(),
+            (false, true) => self.random.random_range(0.0..std::f64::consts::PI),
+            (_, false) => LARGEST_LOCAL * self.random.random_range(0.0..1.0),
+        };
+        let single = self
+            .random
+            .random_bool(0.3)
+            .then(|| self.random.random_range(0..freedoms.len()));
+        let turning: Vec<bool> = freedoms.iter().map(|f| self.turns(f)).collect();
+        let kept = |i: usize| turning[i] && single.is_none_or(|only| only == i);
+        let square: f64 = (0..freedoms.len())
+            .filter(|&i| kept(i))
+            .map(|i| direction[i] * direction[i])
+            .sum();
+        let scale = angle / square.sqrt().max(f64::MIN_POSITIVE);
+        let entry = |i: usize| match (turning[i], kept(i)) {
+            (true, true) => (self.range.round)(direction[i] * scale),
+            (true, false) => 0.0,
+            (false, _) if extreme => self.spread(LARGEST_OFFSET),
+            (false, _) => direction[i],
+        };
+        (0..freedoms.len()).map(entry).collect()
+    }
+
+    /// Log-uniform from the smallest numbers to π, or log-uniformly near π.
+    fn extreme_angle(&mut self) -> f64 {
+        let pi = std::f64::consts::PI;
+        match self.random.random_bool(0.6) {
+            true => 10f64.powf(self.random.random_range(self.range.smallest..pi.log10())),
+            false => {
+                let nearest = NEAREST_TO_PI.max(16.0 * ((self.range.round)(pi) - pi).abs());
+                pi - 10f64.powf(self.random.random_range(nearest.log10()..0.0))
+            }
+        }
+    }
+
+    /// Whether a freedom turns something, or is of unknown kind, so that it must stay within half a turn.
+    fn turns(&self, freedom: &Freedom) -> bool {
+        let kind = self.definition.spec.manifold.value.factors()[freedom.factor].kind;
+        let rotations = match kind {
+            Kind::Real(_) => return freedom.generator.is_empty(),
+            Kind::S1 | Kind::So2 | Kind::Se2 => 1,
+            _ => 3,
+        };
+        freedom.generator.is_empty()
+            || freedom
+                .generator
+                .iter()
+                .take(rotations)
+                .any(|g| !g.is_zero())
+    }
+}
+
+/// Real coordinates that enter H through a function.
+fn angles(definition: &Definition) -> BTreeSet<Symbol> {
+    let pose = &definition.spec.pose.value;
+    let entries = pose
+        .rotation
+        .entries()
+        .iter()
+        .chain(pose.translation.entries());
+    let atoms = entries.flat_map(Expr::atoms);
+    let inside = atoms.filter_map(|atom| match atom {
+        Atom::Apply(application) => Some(application),
+        Atom::Symbol(_) => None,
+    });
+    inside
+        .flat_map(|a| {
+            a.arguments
+                .iter()
+                .flat_map(Expr::symbols)
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+fn precise(value: f64) -> Precise {
+    Precise::from_f64(value, BITS)
+}
+
+fn normalised(x: &[f64]) -> Vec<Precise> {
+    let x: Vec<Precise> = x.iter().map(|x| precise(*x)).collect();
+    let square = x.iter().fold(precise(0.0), |sum, x| sum + x * x);
+    let norm = square.sqrt();
+    x.iter().map(|x| x / &norm).collect()
+}
+
+fn planar(unit: &[Precise], offset: &[Precise]) -> Vec<Precise> {
+    let [c, s] = [&unit[0], &unit[1]];
+    bordered(&[&[c.clone(), -s], &[s.clone(), c.clone()]], offset)
+}
+
+/// The rotation `w² + … ` of a unit quaternion, each entry a sum of products.
+fn rotation(q: &[Precise], offset: &[Precise]) -> Vec<Precise> {
+    let [w, x, y, z] = [&q[0], &q[1], &q[2], &q[3]];
+    let twice = |a: &Precise, b: &Precise, c: &Precise, d: &Precise, sign: i64| {
+        let second = c * d * &c.same(sign);
+        (a * b + second).halved(-1)
+    };
+    let square = |a: &Precise, b: &Precise, c: &Precise| w * w + a * a - b * b - c * c;
+    let rows = [
+        [square(x, y, z), twice(x, y, w, z, -1), twice(x, z, w, y, 1)],
+        [twice(x, y, w, z, 1), square(y, x, z), twice(y, z, w, x, -1)],
+        [twice(x, z, w, y, -1), twice(y, z, w, x, 1), square(z, x, y)],
+    ];
+    bordered(&[&rows[0], &rows[1], &rows[2]], offset)
+}
+
+fn bordered(rows: &[&[Precise]], offset: &[Precise]) -> Vec<Precise> {
+    let row =
+        |(i, row): (usize, &&[Precise])| [*row, offset.get(i..=i).unwrap_or_default()].concat();
+    rows.iter().enumerate().flat_map(row).collect()
+}

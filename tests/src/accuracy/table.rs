@@ -1,0 +1,57 @@
+//! The table of worst errors, kept as a file that pages show.
+
+use super::Worst;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Rows by joint, kernel and type of numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    rows: BTreeMap<(String, String, String), (f64, usize)>,
+}
+
+const HEADER: &str = "joint,kernel,type,worst ulp,points";
+
+impl Table {
+    /// The table in a file; empty where there is none.
+    pub fn read(path: &Path) -> Self {
+        let text = std::fs::read_to_string(path).unwrap_or_default();
+        Self {
+            rows: text.lines().skip(1).filter_map(row).collect(),
+        }
+    }
+
+    /// Takes the errors of a joint in place of those it held.
+    pub fn insert(&mut self, joint: &str, number: &str, worst: &Worst, points: usize) {
+        self.rows.retain(|(j, _, n), _| j != joint || n != number);
+        for (kernel, (error, _)) in &worst.errors {
+            let key = (joint.to_owned(), (*kernel).to_owned(), number.to_owned());
+            self.rows.insert(key, (*error, points));
+        }
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// Where the file cannot be written.
+    pub fn write(&self, path: &Path) -> std::io::Result<()> {
+        let mut text = format!("{HEADER}\n");
+        for ((joint, kernel, number), (error, points)) in &self.rows {
+            text += &format!("{joint},{kernel},{number},{error:.2},{points}\n");
+        }
+        std::fs::write(path, text)
+    }
+}
+
+fn row(line: &str) -> Option<((String, String, String), (f64, usize))> {
+    let fields: Vec<&str> = line.split(',').collect();
+    let [joint, kernel, number, error, points] = fields.as_slice() else {
+        return None;
+    };
+    let key = (
+        (*joint).to_owned(),
+        (*kernel).to_owned(),
+        (*number).to_owned(),
+    );
+    Some((key, (error.parse().ok()?, points.parse().ok()?)))
+}
