@@ -41,7 +41,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(1);
+const _: () = ::hamel::joint::assert_kernel_interface(2);
 
 /// Planar joint in the Euclidean set of coordinates (closing note of Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +69,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [].into_iter()
@@ -271,6 +272,17 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         SVector::from([theta_target - theta, x_target - x, y_target - y])
     }
 
+    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
+    ///
+    /// 3×3. The identity. Operations: none.
+    fn retract_differential<T: Scalar>(
+        &self,
+        _q: &SVector<T, 3>,
+        _phi: &SVector<T, 3>,
+    ) -> SMatrix<T, 3, 3> {
+        SMatrix::identity()
+    }
+
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 3-vector, rad/s, m/s, m/s. The identity. Operations: none.
@@ -301,9 +313,16 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         T::zero()
     }
 
+    /// Least absolute value of the functions whose zeros the joint must stay away from.
+    ///
+    /// A scalar. Independent of Q. Operations: none.
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
+        ::hamel::finite::least_absolute([])
+    }
+
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 2 additions, 6 multiplications, 1 function call.
+    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
     fn bias_acceleration<T: Scalar>(
         &self,
         q: &SVector<T, 3>,
@@ -318,14 +337,14 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
             zero,
             zero,
             speed_theta * (speed_y * cos_theta - speed_x * sin_theta),
-            -speed_theta * (speed_x * cos_theta + speed_y * sin_theta),
+            -speed_theta * speed_x.mul_add(cos_theta, speed_y * sin_theta),
             zero,
         ])
     }
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 3-vector. Operations: 2 additions, 6 multiplications, 1 function call.
+    /// 3-vector. Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
     fn bias_momentum<T: Scalar>(
         &self,
         q: &SVector<T, 3>,
@@ -339,7 +358,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         let (sin_theta, cos_theta) = theta.sin_cos();
         SVector::from([
             zero,
-            -speed_theta * (h4 * sin_theta + h5 * cos_theta),
+            -speed_theta * h4.mul_add(sin_theta, h5 * cos_theta),
             speed_theta * (h4 * cos_theta - h5 * sin_theta),
         ])
     }

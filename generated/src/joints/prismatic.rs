@@ -40,7 +40,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(1);
+const _: () = ::hamel::joint::assert_kernel_interface(2);
 
 /// Prismatic joint: one displacement along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +73,7 @@ impl Joint<1, 1, 1, 0> for Prismatic {
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
     ];
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [].into_iter()
@@ -238,6 +239,17 @@ impl Joint<1, 1, 1, 0> for Prismatic {
         SVector::from([q_target - q])
     }
 
+    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
+    ///
+    /// 1×1. The identity. Operations: none.
+    fn retract_differential<T: Scalar>(
+        &self,
+        _q: &SVector<T, 1>,
+        _phi: &SVector<T, 1>,
+    ) -> SMatrix<T, 1, 1> {
+        SMatrix::identity()
+    }
+
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 1-vector, m/s. The identity. Operations: none.
@@ -266,6 +278,13 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// From `config q: R1;`
     fn residual<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
         T::zero()
+    }
+
+    /// Least absolute value of the functions whose zeros the joint must stay away from.
+    ///
+    /// A scalar. Independent of Q. Operations: none.
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
+        ::hamel::finite::least_absolute([])
     }
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
