@@ -63,6 +63,8 @@ pub struct CountRow {
     pub structure: String,
     /// Its operations: those of its formulas, and what the runtime does besides.
     pub operations: String,
+    /// The operations of its formulas.
+    pub counts: Counts,
 }
 
 pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
@@ -129,6 +131,7 @@ pub(super) fn counts(derived: &Derived) -> Vec<CountRow> {
             kernel: method.name().to_owned(),
             structure: structure_in_words(kernel.structure).to_owned(),
             operations: operations(kernel.method, &method.counts()),
+            counts: method.counts(),
         }
     };
     derived.kernels.iter().map(row).collect()
