@@ -91,7 +91,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// 9-vector. Independent of Q. Operations: none.
     ///
-    /// From `config Q: SO3;`
+    /// From line 8 `config Q: SO3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 9> {
         let zero = T::zero();
         let one = T::one();
@@ -102,7 +102,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// Rotation matrix and translation in m. Operations: none.
     ///
-    /// From `H = pose(Q, [0, 0, 0]);`
+    /// From line 12 `H = pose(Q, [0, 0, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 9>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         Pose {
@@ -115,7 +115,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     ///
-    /// From `X = [I(3); O(3, 3)];`
+    /// From line 10 `velocity`, line 13 `X`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
         let one = T::one();
@@ -132,6 +132,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none.
+    ///
+    /// From line 10 `velocity`, line 12 `H`, line 13 `X`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let zero = T::zero();
@@ -148,6 +150,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 3 slices of 6×3. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -185,6 +189,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 3×3. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn velocity_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         from_rows([[q11, q12, q13], [q21, q22, q23], [q31, q32, q33]])
@@ -193,6 +199,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 3×3. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn velocity_map_inverse<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         from_rows([[q11, q21, q31], [q12, q22, q32], [q13, q23, q33]])
@@ -201,6 +209,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 3 slices of 3×3. Operations: 9 multiplications.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -239,6 +249,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 9>,
@@ -252,6 +264,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 9>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [p_e1, p_e2, p_e3]: [T; 3] = (*p).into();
         let zero = T::zero();
@@ -285,6 +299,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 9-vector. Operations: 9 additions, 18 multiplications.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn configuration_rate<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -309,7 +325,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// 9-vector. Operations: 32 additions, 41 multiplications (21 of each fused), 2 function calls.
     ///
-    /// From `Phi = Q * exp(phi);`
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -356,6 +372,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
     /// 3-vector, rad. Operations: 18 additions, 27 multiplications (18 of each fused), 1 function call.
+    ///
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -388,6 +406,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
     ///
     /// 3×3. Operations: 14 additions, 18 multiplications (9 of each fused), 2 function calls.
+    ///
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
     fn retract_differential<T: Scalar>(
         &self,
         _q: &SVector<T, 9>,
@@ -432,6 +452,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (8 of each fused), 1 function call.
+    ///
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 9>,
@@ -461,7 +483,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// 9-vector. Operations: 1 function call.
     ///
-    /// From `config Q: SO3;`
+    /// From line 8 `config Q: SO3;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 9>) -> SVector<T, 9> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let rotation = nearest_rotation(
@@ -476,7 +498,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// A scalar. Operations: 28 additions, 34 multiplications (22 of each fused), 1 function call.
     ///
-    /// From `config Q: SO3;`
+    /// From line 8 `config Q: SO3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 9>) -> T {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let one = T::one();
@@ -506,6 +528,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 9>,
@@ -517,6 +541,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
     /// 3-vector. Operations: 9 additions, 15 multiplications (6 of each fused).
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn bias_momentum<T: Scalar>(
         &self,
         q: &SVector<T, 9>,

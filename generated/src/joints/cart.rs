@@ -89,7 +89,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// 6-vector. Independent of Q. Operations: none.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn home<T: Scalar>(&self) -> SVector<T, 6> {
         let zero = T::zero();
         let one = T::one();
@@ -100,7 +100,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// Rotation matrix and translation in m. Operations: none.
     ///
-    /// From `H = pose(rot_z(Q), [Q.x, Q.y, 0]);`
+    /// From line 13 `H = pose(rot_z(Q), [Q.x, Q.y, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 6>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let zero = T::zero();
@@ -115,7 +115,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: none.
     ///
-    /// From `velocity in child;`
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let zero = T::zero();
@@ -133,6 +133,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
         let one = T::one();
@@ -149,6 +151,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 3 slices of 6×3. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -159,6 +163,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -166,6 +172,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -173,6 +181,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 3 slices of 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -189,6 +199,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -206,6 +218,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 6>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let (p_forward, p_sideways) = (p[1], p[2]);
         let zero = T::zero();
@@ -220,7 +234,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// 3×1. Independent of Q. Operations: none.
     ///
-    /// From `A = [0; 0; 1];`
+    /// From line 14 `A = [0; 0; 1];`.
     fn constraint<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 1> {
         let zero = T::zero();
         let one = T::one();
@@ -231,7 +245,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// 3×2. Independent of Q. Operations: none.
     ///
-    /// From `S_bar = [1, 0; 0, 1; 0, 0];`
+    /// From line 15 `S_bar = [1, 0; 0, 1; 0, 0];`.
     fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 2> {
         let zero = T::zero();
         let one = T::one();
@@ -241,6 +255,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 3 slices of 3×2. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 12 `Phi`, line 15 `S_bar`.
     fn speed_basis_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -251,6 +267,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 6-vector. Operations: 2 additions, 8 multiplications (2 of each fused).
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn configuration_rate<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -272,7 +290,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// 6-vector. Operations: 11 additions, 20 multiplications (10 of each fused), 2 function calls.
     ///
-    /// From `Phi = Q * exp(phi);`
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -303,6 +321,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
     /// 3-vector, rad, m, m. Operations: 9 additions, 15 multiplications (6 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -333,6 +353,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
     ///
     /// 3×3. Operations: 4 additions, 10 multiplications (3 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -367,6 +389,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 3-vector, rad/s, m/s, m/s. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -393,7 +417,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// 6-vector. Operations: 3 additions, 6 multiplications (1 of each fused), 1 division, 1 function call.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 6>) -> SVector<T, 6> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let half = T::from_f64(0.5);
@@ -418,7 +442,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     ///
     /// A scalar. Operations: 7 additions, 5 multiplications (5 of each fused), 1 function call.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 6>) -> T {
         let [q11, q12, _, q21, q22, _]: [T; 6] = (*q).into();
         let one = T::one();
@@ -439,6 +463,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`, line 15 `S_bar`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -450,6 +476,8 @@ impl Joint<6, 3, 2, 1> for Cart {
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
     /// 2-vector. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`, line 15 `S_bar`.
     fn bias_momentum<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,

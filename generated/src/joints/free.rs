@@ -99,7 +99,7 @@ impl Joint<12, 6, 6, 0> for Free {
     ///
     /// 12-vector. Independent of Q. Operations: none.
     ///
-    /// From `config Q: SE3;`
+    /// From line 9 `config Q: SE3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 12> {
         let zero = T::zero();
         let one = T::one();
@@ -123,7 +123,7 @@ impl Joint<12, 6, 6, 0> for Free {
     ///
     /// Rotation matrix and translation in m. Operations: none.
     ///
-    /// From `H = Q;`
+    /// From line 13 `H = Q;`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 12>) -> Pose<T> {
         let [q11, q12, q13, q14, q21, q22, q23, q24, q31, q32, q33, q34]: [T; 12] = (*q)
             .into();
@@ -137,7 +137,7 @@ impl Joint<12, 6, 6, 0> for Free {
     ///
     /// 6×6, rows rad/s (angular) and m/s (linear), columns by v in rad/s, rad/s, rad/s, m/s, m/s, m/s. Operations: 9 additions, 18 multiplications.
     ///
-    /// From `velocity in child;`
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 12>) -> SMatrix<T, 6, 6> {
         let [q11, q12, q13, q14, q21, q22, q23, q24, q31, q32, q33, q34]: [T; 12] = (*q)
             .into();
@@ -176,6 +176,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×6, rows rad/s (angular) and m/s (linear), columns by v in rad/s, rad/s, rad/s, m/s, m/s, m/s. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 12>) -> SMatrix<T, 6, 6> {
         SMatrix::identity()
     }
@@ -183,6 +185,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 6 slices of 6×6. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,
@@ -193,6 +197,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 6×6. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 12>) -> SMatrix<T, 6, 6> {
         SMatrix::identity()
     }
@@ -200,6 +206,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 6×6. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 12>) -> SMatrix<T, 6, 6> {
         SMatrix::identity()
     }
@@ -207,6 +215,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 6 slices of 6×6. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,
@@ -268,6 +278,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 6×6. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,
@@ -288,6 +300,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 6×6. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn j22<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,
@@ -332,6 +346,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 12-vector. Operations: 15 additions, 27 multiplications (6 of each fused).
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn configuration_rate<T: Scalar>(
         &self,
         q: &SVector<T, 12>,
@@ -360,7 +376,7 @@ impl Joint<12, 6, 6, 0> for Free {
     ///
     /// 12-vector. Operations: 55 additions, 71 multiplications (37 of each fused), 2 function calls.
     ///
-    /// From `Phi = Q * exp(phi);`
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 12>,
@@ -445,6 +461,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
     /// 6-vector, rad, rad, rad, m, m, m. Operations: 41 additions, 57 multiplications (29 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 12>,
@@ -510,6 +528,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
     ///
     /// 6×6. Operations: 210 additions, 255 multiplications (157 of each fused), 5 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,
@@ -1146,6 +1166,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 6-vector, rad/s, rad/s, rad/s, m/s, m/s, m/s. Operations: 69 additions, 94 multiplications (54 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,
@@ -1321,7 +1343,7 @@ impl Joint<12, 6, 6, 0> for Free {
     ///
     /// 12-vector. Operations: 1 function call.
     ///
-    /// From `config Q: SE3;`
+    /// From line 9 `config Q: SE3;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 12>) -> SVector<T, 12> {
         let [q11, q12, q13, q14, q21, q22, q23, q24, q31, q32, q33, q34]: [T; 12] = (*q)
             .into();
@@ -1337,7 +1359,7 @@ impl Joint<12, 6, 6, 0> for Free {
     ///
     /// A scalar. Operations: 28 additions, 34 multiplications (22 of each fused), 1 function call.
     ///
-    /// From `config Q: SE3;`
+    /// From line 9 `config Q: SE3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 12>) -> T {
         let [q11, q12, q13, _, q21, q22, q23, _, q31, q32, q33, _]: [T; 12] = (*q)
             .into();
@@ -1368,6 +1390,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,
@@ -1379,6 +1403,8 @@ impl Joint<12, 6, 6, 0> for Free {
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
     /// 6-vector. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn bias_momentum<T: Scalar>(
         &self,
         _q: &SVector<T, 12>,

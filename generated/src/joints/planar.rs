@@ -85,7 +85,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// 6-vector. Independent of Q. Operations: none.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn home<T: Scalar>(&self) -> SVector<T, 6> {
         let zero = T::zero();
         let one = T::one();
@@ -96,7 +96,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// Rotation matrix and translation in m. Operations: none.
     ///
-    /// From `H = pose(rot_z(Q), [Q.x, Q.y, 0]);`
+    /// From line 13 `H = pose(rot_z(Q), [Q.x, Q.y, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 6>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let zero = T::zero();
@@ -111,7 +111,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: none.
     ///
-    /// From `velocity in child;`
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let zero = T::zero();
@@ -129,6 +129,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
         let one = T::one();
@@ -145,6 +147,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 3 slices of 6×3. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -155,6 +159,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -162,6 +168,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -169,6 +177,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 3 slices of 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -185,6 +195,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -202,6 +214,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 6>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let (p_forward, p_sideways) = (p[1], p[2]);
         let zero = T::zero();
@@ -239,6 +253,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 6-vector. Operations: 2 additions, 8 multiplications (2 of each fused).
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn configuration_rate<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -260,7 +276,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// 6-vector. Operations: 11 additions, 20 multiplications (10 of each fused), 2 function calls.
     ///
-    /// From `Phi = Q * exp(phi);`
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -291,6 +307,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
     /// 3-vector, rad, m, m. Operations: 9 additions, 15 multiplications (6 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -321,6 +339,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
     ///
     /// 3×3. Operations: 4 additions, 10 multiplications (3 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -355,6 +375,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 3-vector, rad/s, m/s, m/s. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -381,7 +403,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// 6-vector. Operations: 3 additions, 6 multiplications (1 of each fused), 1 division, 1 function call.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 6>) -> SVector<T, 6> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let half = T::from_f64(0.5);
@@ -406,7 +428,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// A scalar. Operations: 7 additions, 5 multiplications (5 of each fused), 1 function call.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 6>) -> T {
         let [q11, q12, _, q21, q22, _]: [T; 6] = (*q).into();
         let one = T::one();
@@ -427,6 +449,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -438,6 +462,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
     /// 3-vector. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn bias_momentum<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,

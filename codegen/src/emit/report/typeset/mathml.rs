@@ -82,10 +82,7 @@ fn matrix(columns: usize, entries: &[Math]) -> String {
     };
     let rows = entries.chunks(columns.max(1));
     let rows = rows.map(|row| format!("<mtr>{}</mtr>", row.iter().map(cell).collect::<String>()));
-    format!(
-        "<mtable>{}</mtable>",
-        rows.collect::<String>()
-    )
+    format!("<mtable>{}</mtable>", rows.collect::<String>())
 }
 
 /// Text inside an element.
