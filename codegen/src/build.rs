@@ -77,7 +77,7 @@ impl Build {
     }
 
     /// A table of measured errors for the pages of [`Build::library`], relative to the crate's manifest: comma-separated
-    /// `joint,kernel,type,worst_ulp,points`, with this header. Where the file is absent, pages do without.
+    /// `joint,kernel,type,worst ulp,points`, with this header. Where the file is absent, pages do without.
     #[must_use]
     pub fn accuracy(mut self, file: impl Into<PathBuf>) -> Self {
         self.accuracy = Some(file.into());

@@ -3,8 +3,6 @@
 mod context;
 pub mod drawing;
 mod overview;
-#[cfg(test)]
-mod tests;
 mod text;
 
 pub use overview::overview;

@@ -1,11 +1,11 @@
 //! Measured errors of emitted kernels, from a table that the sweeps of the test suite write.
 //!
-//! The columns are `joint,kernel,type,worst_ulp,points`: the worst error met, in units in the last place of the scalar type, of
+//! The columns are `joint,kernel,type,worst ulp,points`: the worst error met, in units in the last place of the scalar type, of
 //! the largest summand in the expanded definition of an entry, and the number of points evaluated.
 
 use std::fmt::{Display, Formatter};
 
-const HEADER: &str = "joint,kernel,type,worst_ulp,points";
+const HEADER: &str = "joint,kernel,type,worst ulp,points";
 
 /// One measurement.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,16 +2,16 @@
 
 use crate::model::{End, Interval};
 
-/// `> 0`, `0 ≤ · < 1`, or nothing where every value is allowed.
-pub fn in_words(range: &Interval) -> String {
+/// `lead > 0`, `0 ≤ tilt < 1`, or nothing where every value is allowed.
+pub fn in_words(name: &str, range: &Interval) -> String {
     let below = |end: &End| if end.included { "≤" } else { "<" };
     let above = |end: &End| if end.included { "≥" } else { ">" };
     match (&range.lower, &range.upper) {
         (None, None) => String::new(),
-        (Some(lower), None) => format!("{} {}", above(lower), lower.value),
-        (None, Some(upper)) => format!("{} {}", below(upper), upper.value),
+        (Some(lower), None) => format!("{name} {} {}", above(lower), lower.value),
+        (None, Some(upper)) => format!("{name} {} {}", below(upper), upper.value),
         (Some(lower), Some(upper)) => format!(
-            "{} {} · {} {}",
+            "{} {} {name} {} {}",
             lower.value,
             below(lower),
             below(upper),
@@ -32,11 +32,11 @@ mod tests {
             let value = Rational::from_integer(value.into());
             Some(End { value, included })
         };
-        let words = |lower, upper| in_words(&Interval { lower, upper });
+        let words = |lower, upper| in_words("a", &Interval { lower, upper });
         assert_eq!(words(None, None), "");
-        assert_eq!(words(end(0, false), None), "> 0");
-        assert_eq!(words(end(0, true), None), "≥ 0");
-        assert_eq!(words(None, end(2, false)), "< 2");
-        assert_eq!(words(end(0, true), end(2, false)), "0 ≤ · < 2");
+        assert_eq!(words(end(0, false), None), "a > 0");
+        assert_eq!(words(end(0, true), None), "a ≥ 0");
+        assert_eq!(words(None, end(2, false)), "a < 2");
+        assert_eq!(words(end(0, true), end(2, false)), "0 ≤ a < 2");
     }
 }

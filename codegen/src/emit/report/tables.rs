@@ -20,7 +20,7 @@ pub struct ParameterRow {
     pub unit: String,
     /// What it means.
     pub description: String,
-    /// Values that it may take: `> 0`.
+    /// Values that it may take: `lead > 0`.
     pub range: String,
 }
 
@@ -74,7 +74,7 @@ pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
             .split_whitespace()
             .collect::<Vec<_>>()
             .join(" "),
-        range: ranges::in_words(&parameter.range),
+        range: ranges::in_words(&parameter.symbol.name, &parameter.range),
     };
     derived.spec.parameters.iter().map(row).collect()
 }

@@ -42,7 +42,7 @@ pub fn extent(sweep: &Sweep) -> Vec<[f64; 3]> {
 pub fn draw(pen: &mut Pen, sweep: &Sweep, forbidden: bool) {
     let colour = if forbidden { FORBIDDEN } else { ALLOWED };
     for ghost in ghosts(sweep) {
-        block(pen, ghost, Look::surface(colour, 0.1, 0.35));
+        block(pen, ghost, Look::surface(colour, 0.13, 0.5));
     }
     parent(pen);
     if let Some(home) = sweep.frames.get(sweep.home) {
@@ -57,15 +57,11 @@ pub fn draw(pen: &mut Pen, sweep: &Sweep, forbidden: bool) {
     path(pen, sweep, forbidden, colour);
 }
 
-/// The ends of the sweep, and half the way to them.
+/// The ends of the sweep.
 fn ghosts(sweep: &Sweep) -> impl Iterator<Item = &Frame> {
     let last = sweep.frames.len().saturating_sub(1);
-    let behind = sweep.home / 2;
-    let ahead = sweep.home + (last - sweep.home) / 2;
-    [0, last, behind, ahead]
-        .into_iter()
-        .filter(|at| *at != sweep.home)
-        .filter_map(|at| sweep.frames.get(at))
+    let ends = [0, last].into_iter().filter(|at| *at != sweep.home);
+    ends.filter_map(|at| sweep.frames.get(at))
 }
 
 fn parent(pen: &mut Pen) {

@@ -10,7 +10,7 @@ const ELEVATION: f64 = 0.4337;
 /// Free space around what is drawn, in pixels.
 const MARGIN: f64 = 17.0;
 /// Pixels of a metre at most, so that small motions are not drawn larger than frames can be.
-const LARGEST_SCALE: f64 = 88.0;
+const LARGEST_SCALE: f64 = 110.0;
 
 /// A scale and a position of the projection.
 #[derive(Clone, Copy, Debug)]

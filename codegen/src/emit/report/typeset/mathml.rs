@@ -11,7 +11,8 @@ pub(super) fn block(math: &Math) -> String {
 pub(super) fn written(math: &Math) -> String {
     match math {
         Math::Row(parts) => format!("<mrow>{}</mrow>", all(parts)),
-        Math::Letter(letter) if "∂Σ′".contains(*letter) => operator(*letter, ""),
+        Math::Letter('Σ') => operator('∑', ""),
+        Math::Letter(letter @ ('∂' | '′')) => operator(*letter, ""),
         Math::Letter(letter) => format!("<mi>{letter}</mi>"),
         Math::Word(word) => format!("<mi mathvariant=\"normal\">{}</mi>", escaped(word)),
         Math::Number(value) if value.denom().is_one() => format!("<mn>{value}</mn>"),
@@ -81,10 +82,7 @@ fn matrix(columns: usize, entries: &[Math]) -> String {
     };
     let rows = entries.chunks(columns.max(1));
     let rows = rows.map(|row| format!("<mtr>{}</mtr>", row.iter().map(cell).collect::<String>()));
-    format!(
-        "<mrow><mo>[</mo><mtable>{}</mtable><mo>]</mo></mrow>",
-        rows.collect::<String>()
-    )
+    format!("<mtable>{}</mtable>", rows.collect::<String>())
 }
 
 /// Text inside an element.
