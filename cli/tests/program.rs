@@ -145,3 +145,16 @@ fn mistakes_are_told_in_words() {
         assert!(stderr.contains(told), "{arguments:?}: {stderr}");
     }
 }
+
+#[test]
+fn error_codes_are_explained() {
+    let page = stdout(&["joints", "explain-error", "E0305"]);
+    assert!(page.starts_with("E0305: "), "{page}");
+    assert!(page.contains("Wrong:\n```joint\n"), "{page}");
+    let list = stdout(&["joints", "explain-error"]);
+    assert!(list.contains("E0305  A basis that does not close under the bracket.\n"));
+    let unknown = hamel(&["joints", "explain-error", "E0350"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
+    assert!(message.contains("did you mean `E0305`?"), "{message}");
+}

@@ -53,6 +53,15 @@ fn stated_operations_are_those_of_the_code() {
     );
 }
 
+#[test]
+fn sums_shared_between_entries_keep_long_kernels_small() {
+    let derived = derive(HARDER[0], "ellipsoid.joint").unwrap_or_else(|errors| panic!("{errors}"));
+    let report = emit::Report::new(&derived);
+    let total: usize = report.counts.iter().map(|row| row.operations.total()).sum();
+    // Entries factored one by one take 8860 operations; shared sums took 2794 when this was written.
+    assert!(total < 3200, "{total} operations");
+}
+
 fn library() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../joint-specs");
     let files = fs::read_dir(folder).expect("the library is there");

@@ -12,12 +12,21 @@ fn examples() -> impl Iterator<Item = &'static str> {
 
 #[test]
 fn every_example_is_read() {
-    assert!(examples().count() >= 5, "the tour has examples");
+    assert!(examples().count() >= 10, "the tour has examples");
     for example in examples() {
         if let Err(errors) = spec::parse(example, "README.md") {
             panic!("{errors}");
         }
     }
+}
+
+#[test]
+fn every_example_is_derived_and_proved() {
+    let derived = |example| hamel_codegen::derive(example, "README.md");
+    let refused: Vec<String> = examples()
+        .filter_map(|example| Some(derived(example).err()?.render()))
+        .collect();
+    assert!(refused.is_empty(), "{}", refused.join("\n\n"));
 }
 
 #[test]

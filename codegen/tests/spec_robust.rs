@@ -5,6 +5,22 @@ use std::time::{Duration, Instant};
 
 const CART: &str = include_str!("../../joint-specs/cart.joint");
 const PLANAR_EUCLIDEAN: &str = include_str!("../../joint-specs/planar_euclidean.joint");
+const DECLARED: &str = "hamel = 1;
+/// Everything that a declared manifold has.
+joint on_sphere(radius: m > 0 <= 5, height: m in 0..=1/2) {
+    require radius > 2 * height;
+    config  n: R3, R: SO3;
+    relation dot(n, n) = radius * radius;
+    relation R[3, 1] = n.x * n.y / radius;
+    home  = [0, 0, radius], I(3);
+    basis   u = e1 of so3;
+    local   a, b;
+    /// The equator.
+    except  n.z = 0;
+    Phi   = radius * (n + [phi.a, phi.b, 0]) / norm(n + [phi.a, phi.b, 0]), R * exp(phi.R) * exp(tilde([0, phi.a, 0]));
+    H     = pose(R, n + [0, 0, atan(height * n.x)]);
+}
+";
 const HEAD: &str = "hamel = 1;\njoint long {\n    config q: R1;\n";
 
 /// Far above what any input takes on a slow machine, far below what an unbounded one would.
@@ -244,6 +260,19 @@ const SCRAPS: &[&str] = &[
     "Q.x",
     "[1, 2; 3]",
     "R2",
+    "R12",
+    "relation ",
+    "relation Q * Q = 1;",
+    "except ",
+    "home = ",
+    "require ",
+    "> 0",
+    "< ",
+    "in 0..",
+    "..=",
+    "pow(n.x, 9)",
+    " * n.y * n.y",
+    "asin(",
 ];
 
 fn mutated(source: &str, random: &mut Random) -> String {
@@ -265,9 +294,46 @@ fn mutated(source: &str, random: &mut Random) -> String {
 }
 
 #[test]
+fn a_declared_manifold_is_read() {
+    assert_eq!(codes(DECLARED), [""; 0]);
+}
+
+/// Random relations: sums of a few terms of low degree, whose Gröbner bases are often beyond the bound.
+#[test]
+fn relations_without_end_are_refused_in_time() {
+    let mut random = Random(7);
+    let mut refused = 0;
+    for _ in 0..60 {
+        let size = 2 + random.below(7);
+        let mut text = format!("hamel = 1;\njoint dense {{\n    config q: R{size};\n");
+        for _ in 0..1 + random.below(size) {
+            let mut terms = vec![];
+            for _ in 0..2 + random.below(4) {
+                let factors: Vec<String> = (0..1 + random.below(3))
+                    .map(|_| {
+                        format!(
+                            "pow(q[{}], {})",
+                            1 + random.below(size),
+                            1 + random.below(5)
+                        )
+                    })
+                    .collect();
+                terms.push(format!("{} * {}", 1 + random.below(9), factors.join(" * ")));
+            }
+            text += &format!("    relation {} = 0;\n", terms.join(" - "));
+        }
+        text += "    home = O(1, 1);\n    local a;\n    Phi = q;\n    H = trans_z(q[1]);\n}\n";
+        let start = Instant::now();
+        refused += usize::from(codes(&text).contains(&code::TOO_LARGE));
+        assert!(start.elapsed() < PATIENCE, "{:?}: {text}", start.elapsed());
+    }
+    assert!(refused > 5, "{refused} of them were beyond the bound");
+}
+
+#[test]
 fn mutations_of_specs_are_survived() {
     let mut random = Random(1);
-    for source in [CART, PLANAR_EUCLIDEAN] {
+    for source in [CART, PLANAR_EUCLIDEAN, DECLARED] {
         for _ in 0..1500 {
             codes(&mutated(source, &mut random));
         }

@@ -28,7 +28,8 @@ fn assert_lanes(found: F64x4, expected: [f64; 4], what: &str) {
 
 #[test]
 fn functions_are_those_of_doubles() {
-    let unary: [(&str, fn(F64x4) -> F64x4, fn(f64) -> f64); 9] = [
+    type Unary<T> = fn(T) -> T;
+    let unary: [(&str, Unary<F64x4>, Unary<f64>); 9] = [
         ("sqrt", Scalar::sqrt, Scalar::sqrt),
         ("sin", |x| Scalar::sin_cos(x).0, |x| Scalar::sin_cos(x).0),
         ("cos", |x| Scalar::sin_cos(x).1, |x| Scalar::sin_cos(x).1),

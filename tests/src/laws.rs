@@ -47,6 +47,7 @@ pub fn check_all<
         at.speed_laws(&vector(&mut random, 2.0), &vector(&mut random, 2.0));
         at.manifold_laws(&vector(&mut random, 1e-6));
         at.imperceptible_laws(&vector(&mut random, 1.0));
+        at.singular_sets();
         for phi in at.sizes(&vector(&mut random, 1.0)) {
             at.finite_laws(&phi, &vector(&mut random, 2.0));
         }
@@ -334,6 +335,15 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         }
     }
 
+    /// A joint that names no singular set is at no distance from one; any other is off its own here.
+    fn singular_sets(&self) {
+        let distance: f64 = self.joint.singularity(&self.q);
+        match J::SINGULARITIES.is_empty() {
+            true => assert_eq!(distance, f64::INFINITY, "{}", J::NAME),
+            false => assert!(distance > 0.0 && distance.is_finite(), "{}", J::NAME),
+        }
+    }
+
     /// Laws at finite ϕ: Φ, its inverse, its differential, and S(Q, ϕ) with it.
     fn finite_laws(&self, phi: &SVector<f64, K>, v: &SVector<f64, K>) {
         let (joint, q) = (self.joint, &self.q);
@@ -347,7 +357,16 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         close("Φ⁻¹(Q, Φ(Q, ϕ)) = ϕ", J::NAME, &joint.local(q, &moved), phi);
         let u = joint.velocity_map_inverse(&moved) * v;
         let rate = joint.retract_differential_inverse(q, phi, &u);
+        let differential = joint.retract_differential(q, phi);
+        close("D D⁻¹ = I", J::NAME, &(differential * rate), &u);
         let path = joint.retract(&constant(q), &moving(phi, &rate));
+        let from_there = joint.local(&constant(&moved), &path);
+        close(
+            "Φ(Q, ϕ + δ) = Φ(Q′, D δ)",
+            J::NAME,
+            &slopes(&from_there),
+            &u,
+        );
         close(
             "X(Φ) v = J ϕ̇ at finite ϕ",
             J::NAME,

@@ -3,10 +3,12 @@
 pub mod accuracy;
 pub mod differences;
 pub mod figures;
+pub mod fuzz;
 pub mod laws;
 pub mod oracle;
 pub mod random;
 pub mod scenes;
+pub mod specs;
 
 use hamel::registry::JointRegistry;
 use hamel_codegen::derived::Derived;

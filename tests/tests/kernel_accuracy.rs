@@ -12,9 +12,14 @@ const BOUND: f64 = 16.0;
 
 /// Points of a plain test run.
 const FEW: usize = 100;
+/// Bundles of four points in lanes, and points in dual numbers.
+const LANES: usize = 200;
+const DUALS: usize = 50;
 /// Points of the sweep, and how many of them make a batch with a seed of its own.
 const SWEEP: usize = 100_000;
 const BATCH: usize = 250;
+/// Points between lines of progress.
+const PROGRESS: usize = 10_000;
 
 /// The worst errors at `count` points.
 fn sweep<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
@@ -34,6 +39,10 @@ where
             seed,
             BATCH.min(count),
         ));
+        let done = (seed as usize + 1) * BATCH;
+        if done.is_multiple_of(PROGRESS) {
+            eprintln!("{} {}: {done} of {count} points", J::NAME, T::NAME);
+        }
         worst
     })
 }
@@ -67,6 +76,8 @@ where
 macro_rules! accuracy_test {
     ($module:ident, $joint:ty, $example:expr, $n:literal, $k:literal, $s:literal, $c:literal) => {
         mod $module {
+            use hamel_tests::accuracy::{check_lanes, measure_duals};
+
             #[test]
             fn double_precision() {
                 let worst = super::sweep::<f64, $joint, $n, $k, $s, $c>(&$example, super::FEW);
@@ -76,6 +87,20 @@ macro_rules! accuracy_test {
             #[test]
             fn single_precision() {
                 let worst = super::sweep::<f32, $joint, $n, $k, $s, $c>(&$example, super::FEW);
+                super::check(stringify!($module), &worst, super::BOUND);
+            }
+
+            #[test]
+            fn lanes() {
+                let derived = hamel_tests::derived(stringify!($module));
+                check_lanes::<$joint, $n, $k, $s, $c>(&$example, &derived, super::LANES);
+            }
+
+            #[test]
+            fn dual_numbers() {
+                let derived = hamel_tests::derived(stringify!($module));
+                let worst =
+                    measure_duals::<$joint, $n, $k, $s, $c>(&$example, &derived, super::DUALS);
                 super::check(stringify!($module), &worst, super::BOUND);
             }
 

@@ -2,6 +2,7 @@
 
 mod check;
 mod explain;
+mod explain_error;
 mod list;
 mod new;
 mod source;
@@ -19,6 +20,8 @@ Examples:
       the same as a page for a browser, with drawings
   hamel joints check my_joint.joint
       derives and proves a spec of your own; errors are shown where they stand
+  hamel joints explain-error E0305
+      why a spec is refused, with a wrong and a right one
   hamel joints new cylindrical
       writes joint-specs/cylindrical.joint to start from
 
@@ -37,6 +40,7 @@ enum Command {
     List(list::Args),
     Check(check::Args),
     Explain(explain::Args),
+    ExplainError(explain_error::Args),
     New(new::Args),
 }
 
@@ -46,6 +50,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         Command::List(args) => list::run(args),
         Command::Check(args) => check::run(args),
         Command::Explain(args) => explain::run(args),
+        Command::ExplainError(args) => explain_error::run(args),
         Command::New(args) => new::run(args),
     }
 }

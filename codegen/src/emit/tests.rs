@@ -26,6 +26,14 @@ joint pose(v: m, h: m) {
     H = rot_z(p) * trans_z(half) * trans_x(q) * trans_x(v / h);
 }";
 
+/// Two turns about axes that cross: H and X are declared, both with functions.
+const ELBOW: &str = "hamel = 1;
+joint elbow {
+    config a: R1, b: R1;
+    H = rot_z(a) * rot_x(b);
+    X = [0, cos(a); 0, sin(a); 1, 0; O(3, 2)];
+}";
+
 fn derived(source: &str) -> Derived {
     derive(source, "test").unwrap_or_else(|errors| panic!("{errors}"))
 }
@@ -91,12 +99,36 @@ fn emitted_code_is_formatted_apart_from_blank_lines() {
     let parsed = syn::parse_file(&text).expect("the emitted text is Rust");
     let dense = |text: &str| {
         text.lines()
-            .filter(|line| !line.trim().is_empty())
+            .filter(|line| !line.trim().is_empty() && !line.trim_start().starts_with("// "))
             .map(str::to_owned)
             .collect::<Vec<_>>()
     };
-    // The parser drops the header, an ordinary comment.
-    assert_eq!(dense(&prettyplease::unparse(&parsed)), dense(&text)[1..]);
+    // The parser drops ordinary comments.
+    assert_eq!(dense(&prettyplease::unparse(&parsed)), dense(&text));
+}
+
+#[test]
+fn kernels_name_the_lines_they_come_from() {
+    let text = emitted(BALL);
+    let all = "    /// From line 5 `basis`, line 6 `velocity`, line 7 `Phi`, line 8 `H`, line 9 `X`.\n    fn gamma";
+    assert!(text.contains(all), "{text}");
+    let one = "    /// From line 8 `H = pose(Q, [0, 0, 0]);`.\n    fn pose";
+    assert!(text.contains(one), "{text}");
+}
+
+#[test]
+fn functions_in_bodies_name_the_line_that_holds_them() {
+    let text = emitted(ELBOW);
+    let comment = "        // line 4 `H`: sin_b, cos_b\n        let (sin_b, cos_b) = b.sin_cos();";
+    assert!(text.contains(comment), "{text}");
+}
+
+#[test]
+fn modules_in_one_file_keep_blank_lines_and_the_text_of_their_spec() {
+    let joints = [derived(BALL), derived(ELBOW)];
+    let text = index(&joints, "joints", Index::Nested).expect("the emitted tokens are Rust");
+    assert!(text.contains("        }\n\n        /// X(Q)"), "{text}");
+    assert!(text.contains(&format!("r#\"{BALL}\"#")), "{text}");
 }
 
 #[test]

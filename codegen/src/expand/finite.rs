@@ -369,7 +369,8 @@ pub fn residual(spec: &JointSpec) -> Matrix {
     )
 }
 
-fn residual_of_factor(factor: &Factor) -> Vec<Expr> {
+/// The relations of one factor: enough of them, none twice.
+pub fn residual_of_factor(factor: &Factor) -> Vec<Expr> {
     match factor.kind {
         Kind::So3 | Kind::Se3 => {
             let r = factor.matrix().block(0, 0, 3, 3);

@@ -1,9 +1,11 @@
 //! Finite maps of a joint whose Φ is any map: Φ as declared and its derivatives, the rest by the runtime's Newton method.
 
+use super::finite::residual_of_factor;
 use super::motion::exponential;
-use crate::expr::Expr;
+use crate::expr::{Expr, Symbol};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
+use std::collections::BTreeSet;
 
 /// Whether Φ is Q exp(ϕ) on every factor, so that its finite maps have closed forms.
 pub fn is_exponential(spec: &JointSpec) -> bool {
@@ -41,16 +43,23 @@ pub fn retract_tangent(spec: &JointSpec) -> Option<Matrix> {
     }))
 }
 
-/// The declared relations, and their derivatives by the stored scalars.
+/// The declared relations with those of the known manifolds that they touch, and their derivatives by the stored scalars.
 pub fn relations(spec: &JointSpec) -> Option<(Matrix, Matrix)> {
     let manifold = &spec.manifold.value;
     let declared: &[Expr] = manifold.declared();
     if declared.is_empty() {
         return None;
     }
+    let named: BTreeSet<Symbol> = declared.iter().flat_map(Expr::symbols).collect();
+    let touched = manifold
+        .factors()
+        .iter()
+        .filter(|factor| factor.coordinates.iter().any(|q| named.contains(q)));
+    let own = touched.flat_map(residual_of_factor);
+    let all: Vec<Expr> = own.chain(declared.iter().cloned()).collect();
     let coordinates = manifold.coordinates();
-    let gradient = Matrix::from_fn(declared.len(), coordinates.len(), |i, j| {
-        declared[i].derivative(&coordinates[j])
+    let gradient = Matrix::from_fn(all.len(), coordinates.len(), |i, j| {
+        all[i].derivative(&coordinates[j])
     });
-    Some((Matrix::column_vector(declared.to_vec()), gradient))
+    Some((Matrix::column_vector(all), gradient))
 }

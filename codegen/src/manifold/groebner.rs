@@ -66,7 +66,11 @@ pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
             .iter()
             .find_map(|g| Some((g, monomial.divided_by(g.leading()?.0)?)));
         match step {
-            Some((g, quotient)) => rest.add_scaled(&-coefficient, &quotient, g),
+            Some((g, quotient)) => {
+                // Coefficients of a basis that does not end soon grow to thousands of digits, at a cost of their own.
+                budget::spend(weight(&coefficient) * g.terms().len() as u64);
+                rest.add_scaled(&-coefficient, &quotient, g);
+            }
             None => {
                 let term = Expr::term(coefficient, monomial);
                 rest -= &term;
@@ -75,6 +79,11 @@ pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
         }
     }
     normal
+}
+
+/// Work of an operation on the number beyond that on a small one: reducing a fraction takes some 64 steps for each machine word.
+fn weight(number: &Rational) -> u64 {
+    8 * ((number.numer().bits() + number.denom().bits()) / 64)
 }
 
 fn pairs_up_to(count: usize) -> Vec<(usize, usize)> {
@@ -89,6 +98,7 @@ fn take_smallest(pairs: &mut Vec<(usize, usize)>, basis: &[Expr]) -> Option<(usi
         let (a, b) = (basis[i].leading()?.0, basis[j].leading()?.0);
         Some(a.lcm(b))
     };
+    budget::spend(pairs.len() as u64 / 4);
     let position = (0..pairs.len()).min_by_key(|&n| multiple(&pairs[n]))?;
     Some(pairs.swap_remove(position))
 }

@@ -1,10 +1,15 @@
 //! The stable codes of errors in a spec. A code keeps its meaning for ever; a new error takes a new number.
+//!
+//! Each code has a page `codes/E….md`: why that is an error, the smallest spec that has it, and one that has not.
 
 macro_rules! codes {
     ($($name:ident $code:literal $meaning:literal)*) => {
         $(#[doc = $meaning] pub const $name: &str = $code;)*
         /// Every code with its meaning, ascending.
         pub const ALL: &[(&str, &str)] = &[$(($code, $meaning)),*];
+
+        /// The pages of all codes, in the same order.
+        const PAGES: &[&str] = &[$(include_str!(concat!("codes/", $code, ".md"))),*];
     };
 }
 
@@ -77,4 +82,26 @@ codes! {
     WORK "E0418" "The derivation takes more work than the bound allows."
     TWIST_MAP_FRAME "E0419" "X is not the velocity in the declared frame."
     NOT_DEFINED "E0420" "A quotient, root or logarithm that is not defined everywhere."
+}
+
+/// What a code means: a title, why that is an error, a wrong and a right spec. `e305` and `305` are other spellings.
+///
+/// # Errors
+/// The known code that is most like an unknown one.
+pub fn explain(code: &str) -> Result<String, &'static str> {
+    let digits = code.trim_start_matches(['E', 'e']);
+    let padded = format!("E{digits:0>4}");
+    let position = ALL.iter().position(|(known, _)| *known == padded);
+    match position {
+        Some(n) => Ok(format!("{}: {}\n\n{}", ALL[n].0, ALL[n].1, PAGES[n])),
+        None => Err(nearest(&padded)),
+    }
+}
+
+fn nearest(code: &str) -> &'static str {
+    let distance = |known: &str| strsim::damerau_levenshtein(known, code);
+    let codes = ALL.iter().map(|(known, _)| *known);
+    codes
+        .min_by_key(|known| distance(known))
+        .unwrap_or_default()
 }

@@ -43,7 +43,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(1);
+const _: () = ::hamel::joint::assert_kernel_interface(2);
 
 /// Ball joint: three rotations about the common origin of both frames (Examples 1 and 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +81,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     ];
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [].into_iter()
@@ -90,7 +91,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// 9-vector. Independent of Q. Operations: none.
     ///
-    /// From `config Q: SO3;`
+    /// From line 8 `config Q: SO3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 9> {
         let zero = T::zero();
         let one = T::one();
@@ -101,7 +102,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// Rotation matrix and translation in m. Operations: none.
     ///
-    /// From `H = pose(Q, [0, 0, 0]);`
+    /// From line 12 `H = pose(Q, [0, 0, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 9>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         Pose {
@@ -114,7 +115,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     ///
-    /// From `X = [I(3); O(3, 3)];`
+    /// From line 10 `velocity`, line 13 `X`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
         let one = T::one();
@@ -131,6 +132,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none.
+    ///
+    /// From line 10 `velocity`, line 12 `H`, line 13 `X`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let zero = T::zero();
@@ -147,6 +150,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 3 slices of 6×3. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -184,6 +189,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 3×3. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn velocity_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         from_rows([[q11, q12, q13], [q21, q22, q23], [q31, q32, q33]])
@@ -192,6 +199,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 3×3. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn velocity_map_inverse<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         from_rows([[q11, q21, q31], [q12, q22, q32], [q13, q23, q33]])
@@ -200,6 +209,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 3 slices of 3×3. Operations: 9 multiplications.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -238,6 +249,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 9>,
@@ -251,6 +264,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 9>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [p_e1, p_e2, p_e3]: [T; 3] = (*p).into();
         let zero = T::zero();
@@ -284,6 +299,8 @@ impl Joint<9, 3, 3, 0> for Ball {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 9-vector. Operations: 9 additions, 18 multiplications.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn configuration_rate<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -306,9 +323,9 @@ impl Joint<9, 3, 3, 0> for Ball {
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
     ///
-    /// 9-vector. Operations: 32 additions, 41 multiplications, 2 function calls.
+    /// 9-vector. Operations: 32 additions, 41 multiplications (21 of each fused), 2 function calls.
     ///
-    /// From `Phi = Q * exp(phi);`
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -323,7 +340,7 @@ impl Joint<9, 3, 3, 0> for Ball {
         let theta_squared = phi_e1_squared + phi_e2_squared + phi_e3_squared;
         let c1 = theta_squared.stumpff(1);
         let c2 = theta_squared.stumpff(2);
-        let e11 = one - c2 * (phi_e2_squared + phi_e3_squared);
+        let e11 = c2.mul_add(-(phi_e2_squared + phi_e3_squared), one);
         let phi_e3_c1 = phi_e3 * c1;
         let phi_e1_c2 = phi_e1 * c2;
         let phi_e1_c2_phi_e2 = phi_e1_c2 * phi_e2;
@@ -332,29 +349,31 @@ impl Joint<9, 3, 3, 0> for Ball {
         let phi_e1_c2_phi_e3 = phi_e1_c2 * phi_e3;
         let e13 = phi_e2_c1 + phi_e1_c2_phi_e3;
         let e21 = phi_e3_c1 + phi_e1_c2_phi_e2;
-        let e22 = one - c2 * (phi_e1_squared + phi_e3_squared);
+        let e22 = c2.mul_add(-(phi_e1_squared + phi_e3_squared), one);
         let phi_e1_c1 = phi_e1 * c1;
         let phi_e2_phi_e3_c2 = phi_e2 * phi_e3 * c2;
         let e23 = phi_e2_phi_e3_c2 - phi_e1_c1;
         let e31 = phi_e1_c2_phi_e3 - phi_e2_c1;
         let e32 = phi_e1_c1 + phi_e2_phi_e3_c2;
-        let e33 = one - c2 * (phi_e1_squared + phi_e2_squared);
+        let e33 = c2.mul_add(-(phi_e1_squared + phi_e2_squared), one);
         SVector::from([
-            q11 * e11 + q12 * e21 + q13 * e31,
-            q11 * e12 + q12 * e22 + q13 * e32,
-            q11 * e13 + q12 * e23 + q13 * e33,
-            q21 * e11 + q22 * e21 + q23 * e31,
-            q21 * e12 + q22 * e22 + q23 * e32,
-            q21 * e13 + q22 * e23 + q23 * e33,
-            q31 * e11 + q32 * e21 + q33 * e31,
-            q31 * e12 + q32 * e22 + q33 * e32,
-            q31 * e13 + q32 * e23 + q33 * e33,
+            q11.mul_add(e11, q12.mul_add(e21, q13 * e31)),
+            q11.mul_add(e12, q12.mul_add(e22, q13 * e32)),
+            q11.mul_add(e13, q12.mul_add(e23, q13 * e33)),
+            q21.mul_add(e11, q22.mul_add(e21, q23 * e31)),
+            q21.mul_add(e12, q22.mul_add(e22, q23 * e32)),
+            q21.mul_add(e13, q22.mul_add(e23, q23 * e33)),
+            q31.mul_add(e11, q32.mul_add(e21, q33 * e31)),
+            q31.mul_add(e12, q32.mul_add(e22, q33 * e32)),
+            q31.mul_add(e13, q32.mul_add(e23, q33 * e33)),
         ])
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
-    /// 3-vector, rad. Operations: 18 additions, 27 multiplications, 1 function call.
+    /// 3-vector, rad. Operations: 18 additions, 27 multiplications (18 of each fused), 1 function call.
+    ///
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -365,28 +384,76 @@ impl Joint<9, 3, 3, 0> for Ball {
         q31_target, q32_target, q33_target]: [T; 9] = (*target).into();
         let rotation = from_rows([
             [
-                q11 * q11_target + q21 * q21_target + q31 * q31_target,
-                q11 * q12_target + q21 * q22_target + q31 * q32_target,
-                q11 * q13_target + q21 * q23_target + q31 * q33_target,
+                q11.mul_add(q11_target, q21.mul_add(q21_target, q31 * q31_target)),
+                q11.mul_add(q12_target, q21.mul_add(q22_target, q31 * q32_target)),
+                q11.mul_add(q13_target, q21.mul_add(q23_target, q31 * q33_target)),
             ],
             [
-                q12 * q11_target + q22 * q21_target + q32 * q31_target,
-                q12 * q12_target + q22 * q22_target + q32 * q32_target,
-                q12 * q13_target + q22 * q23_target + q32 * q33_target,
+                q12.mul_add(q11_target, q22.mul_add(q21_target, q32 * q31_target)),
+                q12.mul_add(q12_target, q22.mul_add(q22_target, q32 * q32_target)),
+                q12.mul_add(q13_target, q22.mul_add(q23_target, q32 * q33_target)),
             ],
             [
-                q13 * q11_target + q23 * q21_target + q33 * q31_target,
-                q13 * q12_target + q23 * q22_target + q33 * q32_target,
-                q13 * q13_target + q23 * q23_target + q33 * q33_target,
+                q13.mul_add(q11_target, q23.mul_add(q21_target, q33 * q31_target)),
+                q13.mul_add(q12_target, q23.mul_add(q22_target, q33 * q32_target)),
+                q13.mul_add(q13_target, q23.mul_add(q23_target, q33 * q33_target)),
             ],
         ]);
         let [r1, r2, r3]: [T; 3] = T::rotation_vector(&rotation).into();
         SVector::from([r1, r2, r3])
     }
 
+    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
+    ///
+    /// 3×3. Operations: 14 additions, 18 multiplications (9 of each fused), 2 function calls.
+    ///
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
+    fn retract_differential<T: Scalar>(
+        &self,
+        _q: &SVector<T, 9>,
+        phi: &SVector<T, 3>,
+    ) -> SMatrix<T, 3, 3> {
+        let [phi_e1, phi_e2, phi_e3]: [T; 3] = (*phi).into();
+        let one = T::one();
+        let phi_e2_squared = phi_e2 * phi_e2;
+        let phi_e3_squared = phi_e3 * phi_e3;
+        let ad_squared11 = -(phi_e2_squared + phi_e3_squared);
+        let ad_squared12 = phi_e1 * phi_e2;
+        let ad_squared13 = phi_e1 * phi_e3;
+        let phi_e1_squared = phi_e1 * phi_e1;
+        let ad_squared22 = -(phi_e1_squared + phi_e3_squared);
+        let ad_squared23 = phi_e2 * phi_e3;
+        let ad_squared33 = -(phi_e1_squared + phi_e2_squared);
+        let theta_squared = phi_e1_squared + phi_e2_squared + phi_e3_squared;
+        let c2 = theta_squared.stumpff(2);
+        let c3 = theta_squared.stumpff(3);
+        let phi_e3_c2 = phi_e3 * c2;
+        let phi_e2_c2 = phi_e2 * c2;
+        let phi_e1_c2 = phi_e1 * c2;
+        from_rows([
+            [
+                ad_squared11.mul_add(c3, one),
+                ad_squared12.mul_add(c3, phi_e3_c2),
+                ad_squared13.mul_add(c3, -phi_e2_c2),
+            ],
+            [
+                ad_squared12.mul_add(c3, -phi_e3_c2),
+                ad_squared22.mul_add(c3, one),
+                ad_squared23.mul_add(c3, phi_e1_c2),
+            ],
+            [
+                ad_squared13.mul_add(c3, phi_e2_c2),
+                ad_squared23.mul_add(c3, -phi_e1_c2),
+                ad_squared33.mul_add(c3, one),
+            ],
+        ])
+    }
+
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
-    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications, 1 function call.
+    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (8 of each fused), 1 function call.
+    ///
+    /// From line 8 `config`, line 9 `basis`, line 11 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 9>,
@@ -399,15 +466,16 @@ impl Joint<9, 3, 3, 0> for Ball {
         let bracket1 = phi_e2 * v_e3 - phi_e3 * v_e2;
         let bracket2 = phi_e3 * v_e1 - phi_e1 * v_e3;
         let bracket3 = phi_e1 * v_e2 - phi_e2 * v_e1;
-        let theta_squared = phi_e1 * phi_e1 + phi_e2 * phi_e2 + phi_e3 * phi_e3;
+        let theta_squared = phi_e1
+            .mul_add(phi_e1, phi_e2.mul_add(phi_e2, phi_e3 * phi_e3));
         let g = theta_squared.dexp_inverse(0);
         let double_bracket1 = phi_e2 * bracket3 - phi_e3 * bracket2;
         let double_bracket2 = phi_e3 * bracket1 - phi_e1 * bracket3;
         let double_bracket3 = phi_e1 * bracket2 - phi_e2 * bracket1;
         SVector::from([
-            v_e1 + half * bracket1 + g * double_bracket1,
-            v_e2 + half * bracket2 + g * double_bracket2,
-            v_e3 + half * bracket3 + g * double_bracket3,
+            half.mul_add(bracket1, g.mul_add(double_bracket1, v_e1)),
+            half.mul_add(bracket2, g.mul_add(double_bracket2, v_e2)),
+            half.mul_add(bracket3, g.mul_add(double_bracket3, v_e3)),
         ])
     }
 
@@ -415,7 +483,7 @@ impl Joint<9, 3, 3, 0> for Ball {
     ///
     /// 9-vector. Operations: 1 function call.
     ///
-    /// From `config Q: SO3;`
+    /// From line 8 `config Q: SO3;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 9>) -> SVector<T, 9> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let rotation = nearest_rotation(
@@ -428,31 +496,40 @@ impl Joint<9, 3, 3, 0> for Ball {
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
     ///
-    /// A scalar. Operations: 28 additions, 34 multiplications, 1 function call.
+    /// A scalar. Operations: 28 additions, 34 multiplications (22 of each fused), 1 function call.
     ///
-    /// From `config Q: SO3;`
+    /// From line 8 `config Q: SO3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 9>) -> T {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let one = T::one();
         let relations = [
-            q11 * q11 + q21 * q21 + q31 * q31 - one,
-            q11 * q12 + q21 * q22 + q31 * q32,
-            q11 * q13 + q21 * q23 + q31 * q33,
-            q12 * q12 + q22 * q22 + q32 * q32 - one,
-            q12 * q13 + q22 * q23 + q32 * q33,
-            q13 * q13 + q23 * q23 + q33 * q33 - one,
+            q11.mul_add(q11, q21.mul_add(q21, q31.mul_add(q31, -one))),
+            q11.mul_add(q12, q21.mul_add(q22, q31 * q32)),
+            q11.mul_add(q13, q21.mul_add(q23, q31 * q33)),
+            q12.mul_add(q12, q22.mul_add(q22, q32.mul_add(q32, -one))),
+            q12.mul_add(q13, q22.mul_add(q23, q32 * q33)),
+            q13.mul_add(q13, q23.mul_add(q23, q33.mul_add(q33, -one))),
             q11 * (q22 * q33 - q23 * q32) - q12 * (q21 * q33 - q23 * q31)
                 + q13 * (q21 * q32 - q22 * q31) - one,
         ];
         let sum = relations
             .into_iter()
-            .fold(T::zero(), |sum, relation| sum + relation * relation);
+            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
+    }
+
+    /// Least absolute value of the functions whose zeros the joint must stay away from.
+    ///
+    /// A scalar. Independent of Q. Operations: none.
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, 9>) -> T {
+        ::hamel::finite::least_absolute([])
     }
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 9>,
@@ -463,7 +540,9 @@ impl Joint<9, 3, 3, 0> for Ball {
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 3-vector. Operations: 9 additions, 15 multiplications.
+    /// 3-vector. Operations: 9 additions, 15 multiplications (6 of each fused).
+    ///
+    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
     fn bias_momentum<T: Scalar>(
         &self,
         q: &SVector<T, 9>,
@@ -473,9 +552,9 @@ impl Joint<9, 3, 3, 0> for Ball {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let [speed_e1, speed_e2, speed_e3]: [T; 3] = (*speeds).into();
         let (h1, h2, h3) = (h[0], h[1], h[2]);
-        let q21_h1_plus_q22_h2_plus_q23_h3 = q21 * h1 + q22 * h2 + q23 * h3;
-        let q31_h1_plus_q32_h2_plus_q33_h3 = q31 * h1 + q32 * h2 + q33 * h3;
-        let q11_h1_plus_q12_h2_plus_q13_h3 = q11 * h1 + q12 * h2 + q13 * h3;
+        let q21_h1_plus_q22_h2_plus_q23_h3 = q21.mul_add(h1, q22.mul_add(h2, q23 * h3));
+        let q31_h1_plus_q32_h2_plus_q33_h3 = q31.mul_add(h1, q32.mul_add(h2, q33 * h3));
+        let q11_h1_plus_q12_h2_plus_q13_h3 = q11.mul_add(h1, q12.mul_add(h2, q13 * h3));
         SVector::from([
             speed_e2 * q31_h1_plus_q32_h2_plus_q33_h3
                 - speed_e3 * q21_h1_plus_q22_h2_plus_q23_h3,

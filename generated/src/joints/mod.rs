@@ -2,41 +2,113 @@
 //! The joint library: one module a joint, generated from its spec.
 
 pub mod ball;
+pub mod ball_child;
+pub mod ball_on_plane;
+pub mod ball_quaternion;
+pub mod ball_quaternion_child;
 pub mod cart;
+pub mod cylindrical;
+pub mod ellipse;
+pub mod ellipsoid;
+pub mod falling_disk;
 pub mod free;
+pub mod gimbal;
+pub mod knife_edge;
+pub mod offset_sleigh;
 pub mod planar;
 pub mod planar_euclidean;
+pub mod pointing;
 pub mod prismatic;
 pub mod revolute;
+pub mod revolute_circle;
+pub mod screw;
+pub mod torus;
+pub mod translation;
+pub mod universal;
+pub mod upright_wheel;
 
 pub use ball::Ball;
+pub use ball_child::BallChild;
+pub use ball_on_plane::BallOnPlane;
+pub use ball_quaternion::BallQuaternion;
+pub use ball_quaternion_child::BallQuaternionChild;
 pub use cart::Cart;
+pub use cylindrical::Cylindrical;
+pub use ellipse::Ellipse;
+pub use ellipsoid::Ellipsoid;
+pub use falling_disk::FallingDisk;
 pub use free::Free;
+pub use gimbal::Gimbal;
+pub use knife_edge::KnifeEdge;
+pub use offset_sleigh::OffsetSleigh;
 pub use planar::Planar;
 pub use planar_euclidean::PlanarEuclidean;
+pub use pointing::Pointing;
 pub use prismatic::Prismatic;
 pub use revolute::Revolute;
+pub use revolute_circle::RevoluteCircle;
+pub use screw::Screw;
+pub use torus::Torus;
+pub use translation::Translation;
+pub use universal::Universal;
+pub use upright_wheel::UprightWheel;
 
 /// Registry entries of all joints, in alphabetic order.
 pub const ENTRIES: &[::hamel::registry::JointEntry] = &[
     ball::ENTRY,
+    ball_child::ENTRY,
+    ball_on_plane::ENTRY,
+    ball_quaternion::ENTRY,
+    ball_quaternion_child::ENTRY,
     cart::ENTRY,
+    cylindrical::ENTRY,
+    ellipse::ENTRY,
+    ellipsoid::ENTRY,
+    falling_disk::ENTRY,
     free::ENTRY,
+    gimbal::ENTRY,
+    knife_edge::ENTRY,
+    offset_sleigh::ENTRY,
     planar::ENTRY,
     planar_euclidean::ENTRY,
+    pointing::ENTRY,
     prismatic::ENTRY,
     revolute::ENTRY,
+    revolute_circle::ENTRY,
+    screw::ENTRY,
+    torus::ENTRY,
+    translation::ENTRY,
+    universal::ENTRY,
+    upright_wheel::ENTRY,
 ];
 
 /// Name and text of every spec, in alphabetic order.
 pub const SPECS: &[(&str, &str)] = &[
     ("ball", ball::SPEC),
+    ("ball_child", ball_child::SPEC),
+    ("ball_on_plane", ball_on_plane::SPEC),
+    ("ball_quaternion", ball_quaternion::SPEC),
+    ("ball_quaternion_child", ball_quaternion_child::SPEC),
     ("cart", cart::SPEC),
+    ("cylindrical", cylindrical::SPEC),
+    ("ellipse", ellipse::SPEC),
+    ("ellipsoid", ellipsoid::SPEC),
+    ("falling_disk", falling_disk::SPEC),
     ("free", free::SPEC),
+    ("gimbal", gimbal::SPEC),
+    ("knife_edge", knife_edge::SPEC),
+    ("offset_sleigh", offset_sleigh::SPEC),
     ("planar", planar::SPEC),
     ("planar_euclidean", planar_euclidean::SPEC),
+    ("pointing", pointing::SPEC),
     ("prismatic", prismatic::SPEC),
     ("revolute", revolute::SPEC),
+    ("revolute_circle", revolute_circle::SPEC),
+    ("screw", screw::SPEC),
+    ("torus", torus::SPEC),
+    ("translation", translation::SPEC),
+    ("universal", universal::SPEC),
+    ("upright_wheel", upright_wheel::SPEC),
 ];
 
 /// Calls the macro `$callback` once for each joint with
@@ -45,11 +117,29 @@ pub const SPECS: &[(&str, &str)] = &[
 macro_rules! for_each_joint {
     ($callback:path) => {
         $callback!(ball, $crate::joints::Ball, $crate::joints::Ball, 9, 3, 3, 0);
+        $callback!(ball_child, $crate::joints::BallChild, $crate::joints::BallChild, 9, 3, 3, 0);
+        $callback!(ball_on_plane, $crate::joints::BallOnPlane, $crate::joints::BallOnPlane::new(0.7), 11, 5, 3, 2);
+        $callback!(ball_quaternion, $crate::joints::BallQuaternion, $crate::joints::BallQuaternion, 4, 3, 3, 0);
+        $callback!(ball_quaternion_child, $crate::joints::BallQuaternionChild, $crate::joints::BallQuaternionChild, 4, 3, 3, 0);
         $callback!(cart, $crate::joints::Cart, $crate::joints::Cart, 6, 3, 2, 1);
+        $callback!(cylindrical, $crate::joints::Cylindrical, $crate::joints::Cylindrical, 2, 2, 2, 0);
+        $callback!(ellipse, $crate::joints::Ellipse, $crate::joints::Ellipse::new(0.7, 0.7), 2, 1, 1, 0);
+        $callback!(ellipsoid, $crate::joints::Ellipsoid, $crate::joints::Ellipsoid::new(0.7, 0.7, 0.7), 9, 3, 3, 0);
+        $callback!(falling_disk, $crate::joints::FallingDisk, $crate::joints::FallingDisk::new(0.7), 11, 5, 3, 2);
         $callback!(free, $crate::joints::Free, $crate::joints::Free, 12, 6, 6, 0);
+        $callback!(gimbal, $crate::joints::Gimbal, $crate::joints::Gimbal, 3, 3, 3, 0);
+        $callback!(knife_edge, $crate::joints::KnifeEdge, $crate::joints::KnifeEdge, 3, 3, 2, 1);
+        $callback!(offset_sleigh, $crate::joints::OffsetSleigh, $crate::joints::OffsetSleigh::new(0.7), 6, 3, 2, 1);
         $callback!(planar, $crate::joints::Planar, $crate::joints::Planar, 6, 3, 3, 0);
         $callback!(planar_euclidean, $crate::joints::PlanarEuclidean, $crate::joints::PlanarEuclidean, 3, 3, 3, 0);
+        $callback!(pointing, $crate::joints::Pointing, $crate::joints::Pointing, 9, 3, 2, 1);
         $callback!(prismatic, $crate::joints::Prismatic, $crate::joints::Prismatic, 1, 1, 1, 0);
         $callback!(revolute, $crate::joints::Revolute, $crate::joints::Revolute, 1, 1, 1, 0);
+        $callback!(revolute_circle, $crate::joints::RevoluteCircle, $crate::joints::RevoluteCircle, 2, 1, 1, 0);
+        $callback!(screw, $crate::joints::Screw, $crate::joints::Screw::new(0.7), 1, 1, 1, 0);
+        $callback!(torus, $crate::joints::Torus, $crate::joints::Torus::new(0.7, 0.7), 4, 2, 2, 0);
+        $callback!(translation, $crate::joints::Translation, $crate::joints::Translation, 3, 3, 3, 0);
+        $callback!(universal, $crate::joints::Universal, $crate::joints::Universal, 2, 2, 2, 0);
+        $callback!(upright_wheel, $crate::joints::UprightWheel, $crate::joints::UprightWheel::new(0.7), 7, 4, 2, 2);
     };
 }

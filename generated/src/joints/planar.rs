@@ -47,7 +47,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(1);
+const _: () = ::hamel::joint::assert_kernel_interface(2);
 
 /// Planar joint: the child turns about z and slides in the plane z = 0 of the parent (Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +75,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [].into_iter()
@@ -84,7 +85,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// 6-vector. Independent of Q. Operations: none.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn home<T: Scalar>(&self) -> SVector<T, 6> {
         let zero = T::zero();
         let one = T::one();
@@ -95,7 +96,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// Rotation matrix and translation in m. Operations: none.
     ///
-    /// From `H = pose(rot_z(Q), [Q.x, Q.y, 0]);`
+    /// From line 13 `H = pose(rot_z(Q), [Q.x, Q.y, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 6>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let zero = T::zero();
@@ -110,7 +111,7 @@ impl Joint<6, 3, 3, 0> for Planar {
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: none.
     ///
-    /// From `velocity in child;`
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let zero = T::zero();
@@ -128,6 +129,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
         let one = T::one();
@@ -144,6 +147,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 3 slices of 6×3. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -154,6 +159,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -161,6 +168,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -168,6 +177,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 3 slices of 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -184,6 +195,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -201,6 +214,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 3×3. Independent of Q. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 6>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let (p_forward, p_sideways) = (p[1], p[2]);
         let zero = T::zero();
@@ -237,7 +252,9 @@ impl Joint<6, 3, 3, 0> for Planar {
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
-    /// 6-vector. Operations: 2 additions, 8 multiplications.
+    /// 6-vector. Operations: 2 additions, 8 multiplications (2 of each fused).
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn configuration_rate<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -248,18 +265,18 @@ impl Joint<6, 3, 3, 0> for Planar {
         SVector::from([
             q12 * v_turn,
             -q11 * v_turn,
-            q11 * v_forward + q12 * v_sideways,
+            q11.mul_add(v_forward, q12 * v_sideways),
             q22 * v_turn,
             -q21 * v_turn,
-            q21 * v_forward + q22 * v_sideways,
+            q21.mul_add(v_forward, q22 * v_sideways),
         ])
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
     ///
-    /// 6-vector. Operations: 11 additions, 20 multiplications, 2 function calls.
+    /// 6-vector. Operations: 11 additions, 20 multiplications (10 of each fused), 2 function calls.
     ///
-    /// From `Phi = Q * exp(phi);`
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -272,24 +289,26 @@ impl Joint<6, 3, 3, 0> for Planar {
         let c1 = theta_squared.stumpff(1);
         let c2 = theta_squared.stumpff(2);
         let phi_turn_c2 = phi_turn * c2;
-        let e11 = one - phi_turn_c2 * phi_turn;
+        let e11 = phi_turn_c2.mul_add(-phi_turn, one);
         let phi_turn_c1 = phi_turn * c1;
         let e12 = -phi_turn_c1;
         let e13 = phi_forward * c1 - phi_turn_c2 * phi_sideways;
-        let e23 = phi_sideways * c1 + phi_turn_c2 * phi_forward;
+        let e23 = phi_sideways.mul_add(c1, phi_turn_c2 * phi_forward);
         SVector::from([
-            q11 * e11 + q12 * phi_turn_c1,
-            q11 * e12 + q12 * e11,
-            q13 + q11 * e13 + q12 * e23,
-            q21 * e11 + q22 * phi_turn_c1,
-            q21 * e12 + q22 * e11,
-            q23 + q21 * e13 + q22 * e23,
+            q11.mul_add(e11, q12 * phi_turn_c1),
+            q11.mul_add(e12, q12 * e11),
+            q11.mul_add(e13, q12.mul_add(e23, q13)),
+            q21.mul_add(e11, q22 * phi_turn_c1),
+            q21.mul_add(e12, q22 * e11),
+            q21.mul_add(e13, q22.mul_add(e23, q23)),
         ])
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
-    /// 3-vector, rad, m, m. Operations: 9 additions, 15 multiplications, 2 function calls.
+    /// 3-vector, rad, m, m. Operations: 9 additions, 15 multiplications (6 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 6>,
@@ -300,25 +319,64 @@ impl Joint<6, 3, 3, 0> for Planar {
             .into();
         let half = T::from_f64(0.5);
         let one = T::one();
-        let angle = (q12 * q11_target + q22 * q21_target)
-            .atan2(q11 * q11_target + q21 * q21_target);
+        let angle = q12
+            .mul_add(q11_target, q22 * q21_target)
+            .atan2(q11.mul_add(q11_target, q21 * q21_target));
         let q13_minus_q13_target = q13 - q13_target;
         let q23_minus_q23_target = q23 - q23_target;
-        let t1 = -(q11 * q13_minus_q13_target + q21 * q23_minus_q23_target);
-        let t2 = -(q12 * q13_minus_q13_target + q22 * q23_minus_q23_target);
+        let t1 = -q11.mul_add(q13_minus_q13_target, q21 * q23_minus_q23_target);
+        let t2 = -q12.mul_add(q13_minus_q13_target, q22 * q23_minus_q23_target);
         let theta_squared = angle * angle;
-        let half_cotangent = one - theta_squared * theta_squared.dexp_inverse(0);
+        let half_cotangent = theta_squared.mul_add(-theta_squared.dexp_inverse(0), one);
         let half_angle = half * angle;
         SVector::from([
             angle,
-            t1 * half_cotangent + t2 * half_angle,
+            t1.mul_add(half_cotangent, t2 * half_angle),
             t2 * half_cotangent - t1 * half_angle,
+        ])
+    }
+
+    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
+    ///
+    /// 3×3. Operations: 4 additions, 10 multiplications (3 of each fused), 2 function calls.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
+    fn retract_differential<T: Scalar>(
+        &self,
+        _q: &SVector<T, 6>,
+        phi: &SVector<T, 3>,
+    ) -> SMatrix<T, 3, 3> {
+        let [phi_turn, phi_forward, phi_sideways]: [T; 3] = (*phi).into();
+        let zero = T::zero();
+        let one = T::one();
+        let ad_squared21 = phi_turn * phi_forward;
+        let phi_turn_squared = phi_turn * phi_turn;
+        let ad_squared22 = -phi_turn_squared;
+        let ad_squared31 = phi_turn * phi_sideways;
+        let ad_squared33 = -phi_turn_squared;
+        let c2 = phi_turn_squared.stumpff(2);
+        let c3 = phi_turn_squared.stumpff(3);
+        let phi_turn_c2 = phi_turn * c2;
+        from_rows([
+            [one, zero, zero],
+            [
+                ad_squared21 * c3 - phi_sideways * c2,
+                ad_squared22.mul_add(c3, one),
+                phi_turn_c2,
+            ],
+            [
+                phi_forward.mul_add(c2, ad_squared31 * c3),
+                -phi_turn_c2,
+                ad_squared33.mul_add(c3, one),
+            ],
         ])
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
-    /// 3-vector, rad/s, m/s, m/s. Operations: 6 additions, 11 multiplications, 1 function call.
+    /// 3-vector, rad/s, m/s, m/s. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
+    ///
+    /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -336,23 +394,23 @@ impl Joint<6, 3, 3, 0> for Planar {
         let double_bracket3 = phi_turn * bracket2;
         SVector::from([
             v_turn,
-            v_forward + half * bracket2 + g * double_bracket2,
-            v_sideways + half * bracket3 + g * double_bracket3,
+            half.mul_add(bracket2, g.mul_add(double_bracket2, v_forward)),
+            half.mul_add(bracket3, g.mul_add(double_bracket3, v_sideways)),
         ])
     }
 
     /// The configuration on the manifold that is nearest to `q`.
     ///
-    /// 6-vector. Operations: 3 additions, 6 multiplications, 1 division, 1 function call.
+    /// 6-vector. Operations: 3 additions, 6 multiplications (1 of each fused), 1 division, 1 function call.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 6>) -> SVector<T, 6> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
         let half = T::from_f64(0.5);
         let one = T::one();
         let cos = half * (q11 + q22);
         let sin = half * (q21 - q12);
-        let norm = (cos * cos + sin * sin).sqrt();
+        let norm = cos.mul_add(cos, sin * sin).sqrt();
         let inverse_norm = one / norm;
         let cos_inverse_norm = cos * inverse_norm;
         let sin_inverse_norm = sin * inverse_norm;
@@ -368,22 +426,31 @@ impl Joint<6, 3, 3, 0> for Planar {
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
     ///
-    /// A scalar. Operations: 7 additions, 5 multiplications, 1 function call.
+    /// A scalar. Operations: 7 additions, 5 multiplications (5 of each fused), 1 function call.
     ///
-    /// From `config Q: SE2;`
+    /// From line 9 `config Q: SE2;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 6>) -> T {
         let [q11, q12, _, q21, q22, _]: [T; 6] = (*q).into();
         let one = T::one();
-        let relations = [q22 - q11, q12 + q21, q11 * q11 + q21 * q21 - one];
+        let relations = [q22 - q11, q12 + q21, q11.mul_add(q11, q21.mul_add(q21, -one))];
         let sum = relations
             .into_iter()
-            .fold(T::zero(), |sum, relation| sum + relation * relation);
+            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
+    }
+
+    /// Least absolute value of the functions whose zeros the joint must stay away from.
+    ///
+    /// A scalar. Independent of Q. Operations: none.
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, 6>) -> T {
+        ::hamel::finite::least_absolute([])
     }
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,
@@ -395,6 +462,8 @@ impl Joint<6, 3, 3, 0> for Planar {
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
     /// 3-vector. Zero. Operations: none.
+    ///
+    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn bias_momentum<T: Scalar>(
         &self,
         _q: &SVector<T, 6>,

@@ -41,7 +41,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(1);
+const _: () = ::hamel::joint::assert_kernel_interface(2);
 
 /// Planar joint in the Euclidean set of coordinates (closing note of Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +69,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [].into_iter()
@@ -78,7 +79,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     ///
     /// 3-vector. Zero. Operations: none.
     ///
-    /// From `config theta: R1, x: R1, y: R1;`
+    /// From line 8 `config theta: R1, x: R1, y: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 3> {
         SVector::zeros()
     }
@@ -87,7 +88,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     ///
     /// Rotation matrix and translation in m. Operations: 1 function call.
     ///
-    /// From `H = pose(rot_z(theta), [x, y, 0]);`
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 3>) -> Pose<T> {
         let [theta, x, y]: [T; 3] = (*q).into();
         let zero = T::zero();
@@ -106,6 +107,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: none.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let (x, y) = (q[1], q[2]);
         let zero = T::zero();
@@ -123,6 +126,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: 1 function call.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let theta = q[0];
         let zero = T::zero();
@@ -141,6 +146,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 3 slices of 6×3. Operations: 1 function call.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         q: &SVector<T, 3>,
@@ -165,6 +172,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -172,6 +181,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         SMatrix::identity()
     }
@@ -179,6 +190,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 3 slices of 3×3. Zero. Operations: none.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 3>,
@@ -189,6 +202,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 3×3. Zero. Operations: none.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 3>,
@@ -200,6 +215,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 3×3. Zero. Operations: none.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn j22<T: Scalar>(
         &self,
         _q: &SVector<T, 3>,
@@ -235,6 +252,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 3-vector. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn configuration_rate<T: Scalar>(
         &self,
         _q: &SVector<T, 3>,
@@ -247,7 +266,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     ///
     /// 3-vector. Operations: 3 additions.
     ///
-    /// From `config theta: R1, x: R1, y: R1;`
+    /// From line 8 `config theta: R1, x: R1, y: R1;`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 3>,
@@ -261,6 +280,8 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
     /// 3-vector, rad, m, m. Operations: 3 additions.
+    ///
+    /// From line 8 `config theta: R1, x: R1, y: R1;`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 3>,
@@ -271,9 +292,24 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         SVector::from([theta_target - theta, x_target - x, y_target - y])
     }
 
+    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
+    ///
+    /// 3×3. The identity. Operations: none.
+    ///
+    /// From line 8 `config theta: R1, x: R1, y: R1;`.
+    fn retract_differential<T: Scalar>(
+        &self,
+        _q: &SVector<T, 3>,
+        _phi: &SVector<T, 3>,
+    ) -> SMatrix<T, 3, 3> {
+        SMatrix::identity()
+    }
+
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 3-vector, rad/s, m/s, m/s. The identity. Operations: none.
+    ///
+    /// From line 8 `config theta: R1, x: R1, y: R1;`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 3>,
@@ -287,7 +323,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     ///
     /// 3-vector. The identity. Operations: none.
     ///
-    /// From `config theta: R1, x: R1, y: R1;`
+    /// From line 8 `config theta: R1, x: R1, y: R1;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 3>) -> SVector<T, 3> {
         *q
     }
@@ -296,14 +332,23 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     ///
     /// A scalar. Zero. Operations: none.
     ///
-    /// From `config theta: R1, x: R1, y: R1;`
+    /// From line 8 `config theta: R1, x: R1, y: R1;`.
     fn residual<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
         T::zero()
     }
 
+    /// Least absolute value of the functions whose zeros the joint must stay away from.
+    ///
+    /// A scalar. Independent of Q. Operations: none.
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
+        ::hamel::finite::least_absolute([])
+    }
+
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 2 additions, 6 multiplications, 1 function call.
+    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn bias_acceleration<T: Scalar>(
         &self,
         q: &SVector<T, 3>,
@@ -318,14 +363,16 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
             zero,
             zero,
             speed_theta * (speed_y * cos_theta - speed_x * sin_theta),
-            -speed_theta * (speed_x * cos_theta + speed_y * sin_theta),
+            -speed_theta * speed_x.mul_add(cos_theta, speed_y * sin_theta),
             zero,
         ])
     }
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 3-vector. Operations: 2 additions, 6 multiplications, 1 function call.
+    /// 3-vector. Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
+    ///
+    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn bias_momentum<T: Scalar>(
         &self,
         q: &SVector<T, 3>,
@@ -339,7 +386,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         let (sin_theta, cos_theta) = theta.sin_cos();
         SVector::from([
             zero,
-            -speed_theta * (h4 * sin_theta + h5 * cos_theta),
+            -speed_theta * h4.mul_add(sin_theta, h5 * cos_theta),
             speed_theta * (h4 * cos_theta - h5 * sin_theta),
         ])
     }

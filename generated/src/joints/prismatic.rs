@@ -40,7 +40,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(1);
+const _: () = ::hamel::joint::assert_kernel_interface(2);
 
 /// Prismatic joint: one displacement along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +73,7 @@ impl Joint<1, 1, 1, 0> for Prismatic {
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
     ];
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [].into_iter()
@@ -82,7 +83,7 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     ///
     /// 1-vector. Zero. Operations: none.
     ///
-    /// From `config q: R1;`
+    /// From line 7 `config q: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 1> {
         SVector::zeros()
     }
@@ -91,7 +92,7 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     ///
     /// Rotation matrix and translation in m. Operations: none.
     ///
-    /// From `H = trans_z(q);`
+    /// From line 8 `H = trans_z(q);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 1>) -> Pose<T> {
         let q = q[0];
         let zero = T::zero();
@@ -104,6 +105,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in m/s. Independent of Q. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
         let one = T::one();
@@ -113,6 +116,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in m/s. Independent of Q. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
         let one = T::one();
@@ -122,6 +127,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 1 slices of 6×1. Zero. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -132,6 +139,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 1×1. The identity. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
         SMatrix::identity()
     }
@@ -139,6 +148,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 1×1. The identity. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
         SMatrix::identity()
     }
@@ -146,6 +157,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 1 slices of 1×1. Zero. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -156,6 +169,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 1×1. Zero. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -167,6 +182,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 1×1. Zero. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn j22<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -202,6 +219,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 1-vector. Independent of Q. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn configuration_rate<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -214,7 +233,7 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     ///
     /// 1-vector. Operations: 1 addition.
     ///
-    /// From `config q: R1;`
+    /// From line 7 `config q: R1;`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 1>,
@@ -228,6 +247,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
     /// 1-vector, m. Operations: 1 addition.
+    ///
+    /// From line 7 `config q: R1;`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 1>,
@@ -238,9 +259,24 @@ impl Joint<1, 1, 1, 0> for Prismatic {
         SVector::from([q_target - q])
     }
 
+    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
+    ///
+    /// 1×1. The identity. Operations: none.
+    ///
+    /// From line 7 `config q: R1;`.
+    fn retract_differential<T: Scalar>(
+        &self,
+        _q: &SVector<T, 1>,
+        _phi: &SVector<T, 1>,
+    ) -> SMatrix<T, 1, 1> {
+        SMatrix::identity()
+    }
+
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 1-vector, m/s. The identity. Operations: none.
+    ///
+    /// From line 7 `config q: R1;`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -254,7 +290,7 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     ///
     /// 1-vector. The identity. Operations: none.
     ///
-    /// From `config q: R1;`
+    /// From line 7 `config q: R1;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 1>) -> SVector<T, 1> {
         *q
     }
@@ -263,14 +299,23 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     ///
     /// A scalar. Zero. Operations: none.
     ///
-    /// From `config q: R1;`
+    /// From line 7 `config q: R1;`.
     fn residual<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
         T::zero()
+    }
+
+    /// Least absolute value of the functions whose zeros the joint must stay away from.
+    ///
+    /// A scalar. Independent of Q. Operations: none.
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
+        ::hamel::finite::least_absolute([])
     }
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -282,6 +327,8 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
     /// 1-vector. Zero. Operations: none.
+    ///
+    /// From line 8 `H = trans_z(q);`.
     fn bias_momentum<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,

@@ -41,7 +41,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(1);
+const _: () = ::hamel::joint::assert_kernel_interface(2);
 
 /// Revolute joint: one turn about the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +71,7 @@ impl Joint<1, 1, 1, 0> for Revolute {
         [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
+    const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [].into_iter()
@@ -80,7 +81,7 @@ impl Joint<1, 1, 1, 0> for Revolute {
     ///
     /// 1-vector. Zero. Operations: none.
     ///
-    /// From `config q: R1;`
+    /// From line 8 `config q: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 1> {
         SVector::zeros()
     }
@@ -89,7 +90,7 @@ impl Joint<1, 1, 1, 0> for Revolute {
     ///
     /// Rotation matrix and translation in m. Operations: 1 function call.
     ///
-    /// From `H = rot_z(q);`
+    /// From line 9 `H = rot_z(q);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 1>) -> Pose<T> {
         let q = q[0];
         let zero = T::zero();
@@ -108,6 +109,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
         let one = T::one();
@@ -117,6 +120,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
         let one = T::one();
@@ -126,6 +131,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
     /// 1 slices of 6×1. Zero. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn twist_map_child_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -136,6 +143,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
     ///
     /// 1×1. The identity. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
         SMatrix::identity()
     }
@@ -143,6 +152,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
     ///
     /// 1×1. The identity. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
         SMatrix::identity()
     }
@@ -150,6 +161,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
     ///
     /// 1 slices of 1×1. Zero. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn velocity_map_gradient<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -160,6 +173,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// Σ_k γ_k v_k (17): stands on the left of (24).
     ///
     /// 1×1. Zero. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn gamma<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -171,6 +186,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// J22(Q, p) (28): stands on the right of (27).
     ///
     /// 1×1. Zero. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn j22<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -206,6 +223,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     ///
     /// 1-vector. Independent of Q. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn configuration_rate<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -218,7 +237,7 @@ impl Joint<1, 1, 1, 0> for Revolute {
     ///
     /// 1-vector. Operations: 1 addition.
     ///
-    /// From `config q: R1;`
+    /// From line 8 `config q: R1;`.
     fn retract<T: Scalar>(
         &self,
         q: &SVector<T, 1>,
@@ -232,6 +251,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
     /// 1-vector, rad. Operations: 1 addition.
+    ///
+    /// From line 8 `config q: R1;`.
     fn local<T: Scalar>(
         &self,
         q: &SVector<T, 1>,
@@ -242,9 +263,24 @@ impl Joint<1, 1, 1, 0> for Revolute {
         SVector::from([q_target - q])
     }
 
+    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
+    ///
+    /// 1×1. The identity. Operations: none.
+    ///
+    /// From line 8 `config q: R1;`.
+    fn retract_differential<T: Scalar>(
+        &self,
+        _q: &SVector<T, 1>,
+        _phi: &SVector<T, 1>,
+    ) -> SMatrix<T, 1, 1> {
+        SMatrix::identity()
+    }
+
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
     /// 1-vector, rad/s. The identity. Operations: none.
+    ///
+    /// From line 8 `config q: R1;`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -258,7 +294,7 @@ impl Joint<1, 1, 1, 0> for Revolute {
     ///
     /// 1-vector. The identity. Operations: none.
     ///
-    /// From `config q: R1;`
+    /// From line 8 `config q: R1;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 1>) -> SVector<T, 1> {
         *q
     }
@@ -267,14 +303,23 @@ impl Joint<1, 1, 1, 0> for Revolute {
     ///
     /// A scalar. Zero. Operations: none.
     ///
-    /// From `config q: R1;`
+    /// From line 8 `config q: R1;`.
     fn residual<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
         T::zero()
+    }
+
+    /// Least absolute value of the functions whose zeros the joint must stay away from.
+    ///
+    /// A scalar. Independent of Q. Operations: none.
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
+        ::hamel::finite::least_absolute([])
     }
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
     /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn bias_acceleration<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,
@@ -286,6 +331,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
     /// 1-vector. Zero. Operations: none.
+    ///
+    /// From line 9 `H = rot_z(q);`.
     fn bias_momentum<T: Scalar>(
         &self,
         _q: &SVector<T, 1>,

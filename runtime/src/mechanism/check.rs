@@ -68,8 +68,7 @@ impl Body {
         )?;
         self.check_finite("configuration", self.joint().coordinates(), q)?;
         let residual = self.joint().residual(q);
-        // A comparison that NaN fails as well.
-        if !(residual <= CONFIGURATION_TOLERANCE) {
+        if residual.is_nan() || residual > CONFIGURATION_TOLERANCE {
             return Err(StateError::OffManifold {
                 joint: self.joint_name().into(),
                 residual,

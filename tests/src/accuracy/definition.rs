@@ -26,13 +26,13 @@ pub(super) type Pose = (Grid<Jet>, Grid<Jet>);
 /// Everything at one Q.
 #[derive(Clone, Debug)]
 pub struct AtZero {
-    /// R of H(Q).
-    pub rotation: Grid<Tracked>,
-    /// p of H(Q).
-    pub translation: Grid<Tracked>,
-    /// X(Q).
-    pub twist_map: Grid<Tracked>,
-    /// X^c(Q), with its derivatives along ϕ.
+    /// R of H(Q), with its derivatives along ϕ.
+    pub rotation: Grid<Jet>,
+    /// p of H(Q), likewise.
+    pub translation: Grid<Jet>,
+    /// X(Q), likewise.
+    pub twist_map: Grid<Jet>,
+    /// X^c(Q), likewise.
     pub twist_map_child: Grid<Jet>,
     /// S₀(Q).
     pub velocity_map: Grid<Tracked>,
@@ -182,15 +182,15 @@ impl Definition {
         let constraint = self.spec.constraint.as_ref();
         AtZero {
             twist_map_child: to_child(&pose, &x),
-            twist_map: values(&x),
+            twist_map: x,
             inverse: velocity_map.inverse(),
             velocity_map,
             slopes: slices,
             constraint: constraint.map(|a| values(&self.at(&base).matrix(&a.value))),
             speed_basis: self.speed_basis(&moving),
             tangent: Grid::from_fn(q.len(), self.freedoms(), |i, k| moving[i].slope(k)),
-            rotation: values(&pose.0),
-            translation: values(&pose.1),
+            rotation: pose.0,
+            translation: pose.1,
         }
     }
 

@@ -4,7 +4,8 @@ use super::definition::Definition;
 use super::jet::ONCE;
 use super::tracked::larger;
 use super::{Grid, Jet, Tracked};
-use hamel_codegen::expr::Number;
+use hamel_codegen::expr::{Expr, Number};
+use hamel_codegen::precise::Precise;
 
 /// Φ(Q, ϕ) with its derivatives.
 #[derive(Clone, Debug)]
@@ -20,8 +21,10 @@ pub struct AtPhi {
 }
 
 /// Corrections of ϕ towards Φ(Q, ϕ) = Q′: from an error of 1e-8 at most (doubles 1e-16, single precision 1e-7), where ∂Φ/∂ϕ is kept,
-/// each leaves its own size times the error. Eight leave less than 2⁻¹⁸⁰ of it.
+/// each leaves its own size times the error. Eight leave less than 2⁻¹⁸⁰ of it; fewer do for doubles.
 const CORRECTIONS: usize = 8;
+/// A correction below this part of what it corrects is the last: the next one would be below 1e-35.
+const LAST: f64 = 1e-28;
 
 fn numbers(values: &[f64]) -> Vec<Tracked> {
     values.iter().map(|value| Tracked::input(*value)).collect()
@@ -29,6 +32,11 @@ fn numbers(values: &[f64]) -> Vec<Tracked> {
 
 fn constants(values: &[Tracked]) -> Vec<Jet> {
     values.iter().cloned().map(Jet::constant).collect()
+}
+
+/// The largest size of an entry.
+fn size(values: &[Precise]) -> f64 {
+    values.iter().map(|x| x.to_f64().abs()).fold(0.0, larger)
 }
 
 impl Definition {
@@ -68,6 +76,9 @@ impl Definition {
             for (k, value) in phi.iter_mut().enumerate() {
                 *value = Tracked::computed(&value.value + step.at(k, 0), 0.0);
             }
+            if size(step.entries()) <= LAST * phi.iter().map(|x| x.scale).fold(0.0, larger) {
+                break;
+            }
         }
         Grid::from_fn(phi.len(), 1, |k, _| {
             let moves = |i: usize| left.at(k, i).to_f64().abs() * moved[i].scale;
@@ -86,6 +97,9 @@ impl Definition {
                 &Tracked::input(q[i]).value - &point[i].value
             });
             let step = tangent.values().left_inverse().times(&rest);
+            if size(step.entries()) <= LAST * q.iter().copied().map(f64::abs).fold(0.0, larger) {
+                break;
+            }
             let step: Vec<Tracked> = step
                 .entries()
                 .iter()
@@ -107,8 +121,20 @@ impl Definition {
         point.into_iter().enumerate().map(scaled).collect()
     }
 
+    /// The least size of a function of a locus at Q; nothing where there is none.
+    pub fn singularity(&self, q: &[f64]) -> Option<Tracked> {
+        let loci = &self.spec.loci;
+        let functions: Vec<Expr> = loci.iter().map(|l| l.value.function.clone()).collect();
+        let values = self.evaluate(&functions, q).into_iter();
+        let sizes = values.map(|x| Tracked::computed(x.value.abs(), x.scale));
+        sizes.reduce(|a, b| match a.value.compare(&b.value) {
+            Some(std::cmp::Ordering::Greater) => b,
+            _ => a,
+        })
+    }
+
     /// The root of the sum of squares of the relations at Q, with the scale of the largest summand of a relation.
-    pub fn residual(&self, relations: &[hamel_codegen::expr::Expr], q: &[f64]) -> Tracked {
+    pub fn residual(&self, relations: &[Expr], q: &[f64]) -> Tracked {
         let values = self.evaluate(relations, q);
         let zero = Tracked::input(0.0);
         let sum = values

@@ -106,9 +106,14 @@ impl<J> Subject<'_, J> {
         let (joint, q) = (self.joint, vector::<T, N>(&case.q));
         let place = || format!("Q = {:?}", case.q);
         let pose = joint.pose(&q);
-        worst.matrix("pose", &pose.rotation, &at.rotation, &place);
-        worst.matrix("pose", &pose.translation, &at.translation, &place);
-        worst.matrix("twist_map", &joint.twist_map(&q), &at.twist_map, &place);
+        worst.matrix("pose", &pose.rotation, &values(&at.rotation), &place);
+        worst.matrix("pose", &pose.translation, &values(&at.translation), &place);
+        worst.matrix(
+            "twist_map",
+            &joint.twist_map(&q),
+            &values(&at.twist_map),
+            &place,
+        );
         worst.matrix(
             "twist_map_child",
             &joint.twist_map_child(&q),
@@ -255,6 +260,13 @@ impl<J> Subject<'_, J> {
         let at = self.definition.at_phi(&case.q, &case.phi);
         let moved = joint.retract(&q, &phi);
         worst.matrix("retract", &moved, &Grid::column(at.moved.clone()), &place);
+        let differential = joint.retract_differential(&q, &phi);
+        worst.matrix(
+            "retract_differential",
+            &differential,
+            &at.differential,
+            &place,
+        );
         let rate = joint.retract_differential_inverse(&q, &phi, &vector::<T, K>(&case.v));
         worst.matrix(
             "retract_differential_inverse",
@@ -280,6 +292,9 @@ impl<J> Subject<'_, J> {
         let place = || format!("Q = {:?}", case.q);
         let residual = self.definition.residual(self.relations, &case.q);
         worst.meet("residual", joint.residual(&q), &residual, &place);
+        if let Some(least) = self.definition.singularity(&case.q) {
+            worst.meet("singularity", joint.singularity(&q), &least, &place);
+        }
         let nearest = self.definition.nearest(&case.q, &case.exact);
         worst.matrix(
             "project",

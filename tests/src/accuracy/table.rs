@@ -10,7 +10,7 @@ pub struct Table {
     rows: BTreeMap<(String, String, String), (f64, usize)>,
 }
 
-const HEADER: &str = "joint,kernel,type,worst ulp,points";
+const HEADER: &str = "joint,kernel,type,worst_ulp,points";
 
 impl Table {
     /// The table in a file; empty where there is none.

@@ -251,3 +251,93 @@ fn the_opposite_of_a_difference_is_written_as_a_difference() {
     let scaled = factored(&(&Expr::fraction(1, 2) * &(&b - &a))).polished();
     assert!(matches!(scaled, Node::Product(_)), "{scaled:?}");
 }
+
+/// Pseudorandom numbers below a bound, the same in each run (Numerical Recipes' linear congruential generator).
+struct Random(u32);
+
+impl Random {
+    fn below(&mut self, bound: u32) -> usize {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        ((self.0 >> 16) % bound) as usize
+    }
+
+    /// A sum of products of symbols and functions, with a few coefficients.
+    fn expression(&mut self) -> Expr {
+        let [a, b, c, d] = x();
+        let root = (&a + &b).sqrt();
+        let inverse = (&b.square() + &(&c * &d)).recip().expect("not zero");
+        let atoms = [a.clone(), b.clone(), c, d, a.sin(), a.cos(), root, inverse];
+        let mut sum = Expr::zero();
+        for _ in 0..=self.below(9) {
+            let coefficient = [-3, -2, -1, -1, 1, 1, 2, 5][self.below(8)];
+            let mut term = Expr::fraction(coefficient, 1 + self.below(2) as i64);
+            for _ in 0..=self.below(4) {
+                term = &term * &atoms[self.below(8)];
+            }
+            sum += &term;
+        }
+        sum
+    }
+}
+
+#[test]
+fn programs_of_random_sums_keep_their_values() {
+    let mut random = Random(1);
+    for _ in 0..300 {
+        let expressions: Vec<Expr> = (0..6).map(|_| random.expression()).collect();
+        let found = run(&program(vec![], expressions.clone()));
+        for (expression, found) in expressions.iter().zip(found) {
+            let exact = evaluate_f64(expression, &value_of_symbol);
+            let terms = expression.terms().map(|(monomial, coefficient)| {
+                evaluate_f64(
+                    &Expr::term(coefficient.clone(), monomial.clone()),
+                    &value_of_symbol,
+                )
+            });
+            let largest = terms.map(f64::abs).fold(0.0, f64::max);
+            // 64 ulp of the largest term: ten terms of five factors, some of them rounded functions, on both sides.
+            let bound = 64.0 * f64::EPSILON * largest;
+            assert!(
+                (found - exact).abs() <= bound,
+                "{expression}: {found} for {exact}"
+            );
+        }
+    }
+}
+
+#[test]
+fn sums_are_shared_across_entries_and_factors() {
+    let [a, b, c, d] = x();
+    let sum = |factor: &Expr, rest: &Expr| &(&(&a * factor) + &(&b * factor)) + rest;
+    // a + b is hidden in each entry behind another factor and another term that holds a.
+    let entries = vec![
+        sum(&c, &(&a * &d)),
+        sum(&d, &(&a * &c)),
+        sum(&(&c * &d), &(&a * &b)),
+    ];
+    let counts = Counts::of_program(&program(vec![], entries));
+    // a + b, and one addition for each entry.
+    assert_eq!(counts.additions, 4);
+}
+
+#[test]
+fn from_three_quotients_on_one_reciprocal_serves() {
+    let [a, b, c, d] = x();
+    let inverse = (&a + &b).sqrt().recip().expect("not zero");
+    let divisions = |entries: Vec<Expr>| Counts::of_program(&program(vec![], entries)).divisions;
+    assert_eq!(divisions(vec![&a * &inverse, &b * &inverse]), 2);
+    assert_eq!(
+        divisions(vec![&a * &inverse, &c * &inverse, &d * &inverse]),
+        1
+    );
+}
+
+#[test]
+fn products_in_sums_are_fused_and_differences_of_two_products_are_not() {
+    let [a, b, c, d] = x();
+    let fused = |expression: &Expr| Counts::of(&factored(expression)).fused;
+    assert_eq!(fused(&(&(&a * &b) + &(&c * &d))), 1);
+    assert_eq!(fused(&(&(&a * &b) - &(&c * &d))), 0);
+    assert_eq!(fused(&(&Expr::one() - &(&c * &d))), 1);
+    assert_eq!(fused(&(&a - &b)), 0);
+}

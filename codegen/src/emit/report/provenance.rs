@@ -1,8 +1,140 @@
 //! The lines of a spec that a kernel comes from.
 
+mod statements;
+
+pub use statements::Statement;
+
 use crate::derived::KernelKind;
 use crate::model::{JointSpec, VelocityFrame};
 use std::ops::Range;
+
+/// All statements that the values of a kernel depend on, in the order of the spec, `let` among them.
+pub fn sources(spec: &JointSpec, kind: KernelKind) -> Vec<Statement> {
+    let all = statements::statements(&spec.source);
+    let mut used: Vec<bool> = all.iter().map(|_| false).collect();
+    for part in parts(spec, kind) {
+        let spans = part.spans(spec);
+        for (statement, used) in all.iter().zip(&mut used) {
+            let holds =
+                |span: &Range<usize>| !span.is_empty() && statement.span.contains(&span.start);
+            *used |=
+                spans.iter().any(holds) || part.keywords().contains(&statement.keyword.as_str());
+        }
+    }
+    // A `let` sees those above it: one pass from below finds all that are used.
+    for i in (0..all.len()).rev() {
+        let name = all[i].defines();
+        used[i] |=
+            name.is_some_and(|name| (i + 1..all.len()).any(|j| used[j] && all[j].mentions(name)));
+    }
+    let chosen = all.into_iter().zip(used).filter(|(_, used)| *used);
+    chosen.map(|(statement, _)| statement).collect()
+}
+
+/// What a kernel is derived from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Manifold,
+    Home,
+    Loci,
+    /// What ϕ means: Φ, and the directions of the freedoms.
+    Motion,
+    Pose,
+    /// What v means: X, or the frame in which v is read.
+    Velocity,
+    Constraint,
+    SpeedBasis,
+}
+
+impl Part {
+    /// Where the spec declares it, as far as its model says.
+    fn spans(self, spec: &JointSpec) -> Vec<Range<usize>> {
+        let of = |declared: Option<Range<usize>>| declared.into_iter().collect::<Vec<_>>();
+        match self {
+            Self::Manifold => vec![spec.manifold.span.clone()],
+            Self::Home => of(spec.home.as_ref().map(|declared| declared.span.clone())),
+            Self::Loci => spec.loci.iter().map(|locus| locus.span.clone()).collect(),
+            Self::Motion => of(spec.retract.as_ref().map(|declared| declared.span.clone())),
+            Self::Pose => vec![spec.pose.span.clone()],
+            Self::Velocity => of(spec
+                .twist_map
+                .as_ref()
+                .map(|declared| declared.span.clone())),
+            Self::Constraint => of(spec
+                .constraint
+                .as_ref()
+                .map(|declared| declared.span.clone())),
+            Self::SpeedBasis => of(spec
+                .speed_basis
+                .as_ref()
+                .map(|declared| declared.span.clone())),
+        }
+    }
+
+    /// Statements that belong to it wherever they stand.
+    fn keywords(self) -> &'static [&'static str] {
+        match self {
+            Self::Manifold => &["config"],
+            Self::Motion => &["basis", "local"],
+            Self::Velocity => &["velocity"],
+            _ => &[],
+        }
+    }
+}
+
+/// The parts that a kernel is derived from.
+fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
+    use Part::{Constraint, Home, Loci, Manifold, Motion, Pose, SpeedBasis, Velocity};
+    // Without a declared X, its columns are the twists of H along ϕ.
+    let twist: &[Part] = match (&spec.twist_map, spec.velocity.value) {
+        (Some(_), _) => &[Velocity],
+        (None, _) => &[Velocity, Pose, Motion],
+    };
+    let speeds: &[Part] = match (&spec.speed_basis, &spec.constraint) {
+        (Some(_), _) => &[SpeedBasis],
+        (None, Some(_)) => &[Constraint],
+        (None, None) => &[],
+    };
+    let constraint: &[Part] = match &spec.constraint {
+        Some(_) => &[Constraint],
+        None => speeds,
+    };
+    let groups: Vec<&[Part]> = match kind {
+        KernelKind::Home => vec![if spec.home.is_some() {
+            &[Home]
+        } else {
+            &[Manifold]
+        }],
+        KernelKind::Pose => vec![&[Pose]],
+        KernelKind::TwistMap => vec![twist],
+        KernelKind::TwistMapChild => vec![twist, &[Pose]],
+        KernelKind::TwistMapChildGradient
+        | KernelKind::VelocityMap
+        | KernelKind::VelocityMapInverse
+        | KernelKind::VelocityMapGradient
+        | KernelKind::Gamma
+        | KernelKind::J22
+        | KernelKind::ConfigurationRate => vec![twist, &[Pose, Motion]],
+        KernelKind::Constraint => vec![constraint],
+        KernelKind::SpeedBasis => vec![speeds],
+        KernelKind::SpeedBasisGradient if speeds.is_empty() => vec![],
+        KernelKind::SpeedBasisGradient => vec![speeds, &[Motion]],
+        KernelKind::Retract
+        | KernelKind::Local
+        | KernelKind::RetractTangent
+        | KernelKind::RetractDifferential
+        | KernelKind::RetractDifferentialInverse => vec![&[Manifold, Motion]],
+        KernelKind::Relations
+        | KernelKind::RelationGradient
+        | KernelKind::Project
+        | KernelKind::Residual => vec![&[Manifold]],
+        KernelKind::Singularity => vec![&[Loci]],
+        KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
+            vec![twist, speeds, &[Pose, Motion]]
+        }
+    };
+    groups.concat()
+}
 
 /// The statements that a kernel comes from directly, as written; nothing for kernels that follow from several.
 pub fn statement(spec: &JointSpec, kind: KernelKind) -> Option<String> {
@@ -48,4 +180,55 @@ fn lines_around(source: &str, span: Range<usize>) -> Option<String> {
         .collect::<Vec<_>>()
         .join(" ");
     (!one_line.is_empty()).then_some(one_line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sources;
+    use crate::derive;
+    use crate::derived::KernelKind;
+
+    const SPEC: &str = "hamel = 1;
+/// Doc; with a semicolon.
+joint slider(lead: m) {
+    config  q: R1;          // an angle; in rad
+    let unused = lead;
+    let pitch = lead
+        / (2 * pi);
+    let travel = pitch * q + 0 * unused;
+    H = rot_z(q) * trans_z(travel);
+}";
+
+    #[test]
+    fn sources_are_found_with_their_lines_through_lets() {
+        let derived = derive(SPEC, "test.joint").unwrap_or_else(|errors| panic!("{errors}"));
+        let lines = |kind| -> Vec<usize> {
+            let sources = sources(&derived.spec, kind);
+            sources.iter().map(|statement| statement.line).collect()
+        };
+        assert_eq!(lines(KernelKind::Pose), [5, 6, 8, 9]);
+        assert_eq!(lines(KernelKind::Home), [4]);
+        assert_eq!(lines(KernelKind::SpeedBasis), [0; 0]);
+        let pose = sources(&derived.spec, KernelKind::Pose);
+        assert_eq!(pose[1].text, "let pitch = lead / (2 * pi);");
+    }
+
+    #[test]
+    fn kernels_name_what_they_are_derived_from() {
+        let source = include_str!("../../../../joint-specs/cart.joint");
+        let derived = derive(source, "cart.joint").unwrap_or_else(|errors| panic!("{errors}"));
+        let keywords = |kind| -> Vec<String> {
+            let sources = sources(&derived.spec, kind);
+            sources
+                .into_iter()
+                .map(|statement| statement.keyword)
+                .collect()
+        };
+        assert_eq!(keywords(KernelKind::Constraint), ["A"]);
+        assert_eq!(keywords(KernelKind::Retract), ["config", "basis", "Phi"]);
+        assert_eq!(
+            keywords(KernelKind::BiasMomentum),
+            ["basis", "velocity", "Phi", "H", "S_bar"]
+        );
+    }
 }

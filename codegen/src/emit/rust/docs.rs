@@ -5,10 +5,14 @@ use super::numeric;
 use super::signature::{Output, Signature};
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
 use crate::emit::report::{
-    ClaimRow, FreedomRow, Report, main_formulas, manifold, statement, units, velocity_frame,
+    ClaimRow, FreedomRow, Report, Statement, main_formulas, manifold, sources, units,
+    velocity_frame,
 };
 use proc_macro2::TokenStream;
 use quote::quote;
+
+/// Longest statement that documentation quotes in full, in characters; of a longer one the line number says the rest.
+const LONGEST_STATEMENT: usize = 100;
 
 /// Lines of outer documentation.
 pub fn outer<S: AsRef<str>>(lines: &[S]) -> TokenStream {
@@ -98,10 +102,29 @@ pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenS
         None => format!("Operations: {}.", method.counts()),
     };
     lines.push(format!("{shape}{} {cost}", constancy(kernel.structure)));
-    if let Some(statement) = statement(&derived.spec, kernel.kind) {
-        lines.extend([String::new(), format!("From `{statement}`")]);
-    }
+    lines.extend(origin(&sources(&derived.spec, kernel.kind)));
     outer(&lines)
+}
+
+/// The statements of the spec that a kernel comes from: one in full, several by line and first word.
+fn origin(sources: &[Statement]) -> Vec<String> {
+    let text = match sources {
+        [] => return vec![],
+        [only] => {
+            let text: String = only.text.chars().take(LONGEST_STATEMENT).collect();
+            let more = if text.len() < only.text.len() {
+                " …"
+            } else {
+                ""
+            };
+            format!("line {} `{text}{more}`", only.line)
+        }
+        several => {
+            let short = |source: &Statement| format!("line {} `{}`", source.line, source.keyword);
+            several.iter().map(short).collect::<Vec<_>>().join(", ")
+        }
+    };
+    vec![String::new(), format!("From {text}.")]
 }
 
 fn constancy(structure: Structure) -> &'static str {

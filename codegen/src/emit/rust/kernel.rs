@@ -1,6 +1,8 @@
 //! One kernel as a method of the trait `Joint`.
 
+use super::comment::comment;
 use super::numeric;
+use super::origin::Origins;
 use super::result;
 use super::signature::{Argument, Signature};
 use super::tokens::{Writer, ident};
@@ -176,15 +178,35 @@ impl<'a> Method<'a> {
             .arguments
             .iter()
             .map(|argument| self.read(*argument));
-        let bindings: Vec<_> = self
-            .program
-            .bindings
-            .iter()
-            .map(|binding| self.binding(&writer, binding))
-            .collect();
+        let bindings = self.bindings(&writer);
         let result = result::tokens(&writer, self.kernel, &self.signature, &self.program.outputs);
         let constants = writer.constants();
-        quote! { #(#parameters)* #(#arguments)* #constants #(#bindings)* #result }
+        quote! { #(#parameters)* #(#arguments)* #constants #bindings #result }
+    }
+
+    /// The lines before the result; above those that compute functions of one statement, where it stands in the spec.
+    fn bindings(&self, writer: &Writer<'_>) -> TokenStream {
+        let bindings = &self.program.bindings;
+        let origins = Origins::new(self.derived, self.kernel.kind);
+        let origins = origins.of(bindings);
+        let lines = bindings.iter().enumerate().map(|(i, binding)| {
+            let line = self.binding(writer, binding);
+            let begins = i == 0 || origins[i - 1] != origins[i];
+            match origins[i].filter(|_| begins) {
+                Some(origin) => {
+                    let group = bindings[i..].iter().zip(&origins[i..]);
+                    let group = group.take_while(|(_, other)| **other == Some(origin));
+                    let names: Vec<&str> = group
+                        .flat_map(|(binding, _)| binding.names())
+                        .map(|name| self.names.get(name))
+                        .collect();
+                    let comment = comment(&format!("{origin}: {}", names.join(", ")));
+                    quote! { #comment #line }
+                }
+                None => line,
+            }
+        });
+        lines.collect()
     }
 
     /// Reads from an argument the scalars that are used.

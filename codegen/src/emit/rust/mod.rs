@@ -1,5 +1,6 @@
 //! Rust source of a joint: one module with its type, its kernels and its registry entry.
 
+mod comment;
 mod docs;
 mod entry;
 mod index;
@@ -7,6 +8,7 @@ mod joint;
 mod kernel;
 mod limits;
 mod numeric;
+mod origin;
 mod result;
 mod signature;
 mod spacing;
@@ -131,7 +133,8 @@ fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, Malform
         joint: joint.to_owned(),
         reason: error.to_string(),
     })?;
-    Ok(format!("// {header}\n{}", spacing::spaced(&file)))
+    let text = comment::with_comments(&spacing::spaced(&file));
+    Ok(format!("// {header}\n{text}"))
 }
 
 /// Emitted tokens that are no Rust.

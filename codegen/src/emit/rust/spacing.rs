@@ -1,24 +1,68 @@
-//! Blank lines between items and methods: what the printer of tokens leaves out.
+//! Blank lines between items and methods, in modules as well: what the printer of tokens leaves out.
 
-use syn::{Attribute, File, Item};
+use syn::{Attribute, Expr, File, Item, ItemMod};
 
 /// The file as text, items and methods apart from each other.
 pub fn spaced(file: &File) -> String {
-    let mut text = prettyplease::unparse(&file_of(file.attrs.clone(), vec![]));
+    let text = prettyplease::unparse(&file_of(file.attrs.clone(), vec![]));
+    text + &items(&file.items, &|_, text| text.to_owned())
+}
+
+/// Items apart from each other, each as `place` puts it.
+fn items(items: &[Item], place: &dyn Fn(&Item, &str) -> String) -> String {
+    let mut text = String::new();
     let mut before: Option<&Item> = None;
-    for item in &file.items {
+    for item in items {
         if before.is_none_or(|before| !belong_together(before, item)) {
             text += "\n";
         }
         let alone = prettyplease::unparse(&file_of(vec![], vec![item.clone()]));
-        text += &match item {
+        let alone = match item {
             Item::Impl(_) => apart(&alone),
+            Item::Mod(module) => nested(module),
             Item::Macro(_) => one_call_a_line(&alone),
             _ => alone,
         };
+        text += &place(item, &alone);
         before = Some(item);
     }
     text
+}
+
+/// A module with its items apart from each other; one without a body as it is.
+fn nested(module: &ItemMod) -> String {
+    let mut shell = module.clone();
+    let inner = shell
+        .content
+        .as_mut()
+        .map(|(_, items)| std::mem::take(items));
+    let text = prettyplease::unparse(&file_of(vec![], vec![Item::Mod(shell)]));
+    match inner {
+        Some(inner) => {
+            let head = text.trim_end().trim_end_matches('}').trim_end();
+            format!("{head}\n{}}}\n", items(&inner, &deeper))
+        }
+        None => text,
+    }
+}
+
+/// An item's lines one level deeper.
+fn deeper(item: &Item, text: &str) -> String {
+    let is_text = matches!(item, Item::Const(constant) if matches!(*constant.expr, Expr::Lit(_)));
+    let mut moved = String::with_capacity(text.len());
+    let mut in_literal = false;
+    for line in text.lines() {
+        // The lines of a literal are its value, whatever their indent.
+        moved += if in_literal || line.is_empty() {
+            ""
+        } else {
+            "    "
+        };
+        moved += line;
+        moved += "\n";
+        in_literal |= is_text && line.contains("const ");
+    }
+    moved
 }
 
 fn file_of(attrs: Vec<Attribute>, items: Vec<Item>) -> File {

@@ -1,0 +1,113 @@
+//! A run over many inputs: what breaks, what is slow, how much memory is used.
+
+use super::target::Outcome;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// After this an input is taken to hang, and the run is given up.
+const HANG: Duration = Duration::from_secs(120);
+
+/// What a run found.
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    /// Inputs.
+    pub count: u64,
+    /// Inputs that were accepted.
+    pub accepted: u64,
+    /// The longest time of an input, and which.
+    pub slowest: (Duration, u64),
+    /// Inputs that broke something, and what.
+    pub broken: Vec<(u64, String)>,
+}
+
+/// Runs `target` on the inputs of these numbers. An input that takes long is taken again: the machine may have been busy.
+pub fn run(
+    numbers: std::ops::Range<u64>,
+    input: impl Fn(u64) -> Option<String>,
+    target: impl Fn(&str) -> Outcome,
+) -> Figures {
+    let watch = Watch::default();
+    let mut figures = Figures::default();
+    std::thread::scope(|scope| {
+        scope.spawn(|| watch.guard());
+        for number in numbers {
+            let Some(text) = input(number) else { continue };
+            watch.begin(number);
+            let (outcome, time) = timed(&text, &target, figures.slowest.0);
+            figures.count += 1;
+            figures.accepted += u64::from(outcome == Outcome::Accepted);
+            if time > figures.slowest.0 {
+                figures.slowest = (time, number);
+            }
+            if let Outcome::Broken(why) = outcome {
+                figures.broken.push((number, why));
+            }
+        }
+        watch.done.store(true, Ordering::Relaxed);
+    });
+    figures
+}
+
+/// The time that this thread has computed: other programs on the machine do not count. Where the system does not tell, the clock.
+fn now(start: Instant) -> Duration {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let nanoseconds = text.split(' ').next().and_then(|field| field.parse().ok());
+    nanoseconds.map_or_else(|| start.elapsed(), Duration::from_nanos)
+}
+
+/// The outcome and its time: the least of three where that is a record.
+fn timed(text: &str, target: &impl Fn(&str) -> Outcome, record: Duration) -> (Outcome, Duration) {
+    let once = || {
+        let clock = Instant::now();
+        let start = now(clock);
+        let outcome = target(text);
+        (outcome, now(clock).saturating_sub(start))
+    };
+    let (outcome, mut time) = once();
+    for _ in 0..2 {
+        if time > record {
+            time = time.min(once().1);
+        }
+    }
+    (outcome, time)
+}
+
+/// Ends the process where an input hangs: nothing else ends a loop.
+#[derive(Default)]
+struct Watch {
+    number: AtomicU64,
+    begun: AtomicU64,
+    done: AtomicBool,
+}
+
+impl Watch {
+    fn begin(&self, number: u64) {
+        self.number.store(number, Ordering::Relaxed);
+        self.begun.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn guard(&self) {
+        let mut last = (u64::MAX, Instant::now());
+        while !self.done.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_millis(20));
+            let begun = self.begun.load(Ordering::Relaxed);
+            if begun != last.0 {
+                last = (begun, Instant::now());
+            }
+            if begun > 0 && last.1.elapsed() > HANG {
+                eprintln!("input {} hangs", self.number.load(Ordering::Relaxed));
+                std::process::exit(1);
+            }
+        }
+    }
+}
+
+/// The most memory that this process has held, bytes; `None` where the system does not say.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}
