@@ -47,11 +47,11 @@ fn joint(file: &Path, by_kernel: bool) -> io::Result<Counts> {
     let report = Report::new(&derived);
     let mut sum = Counts::default();
     for kernel in &report.counts {
-        sum += kernel.counts;
+        sum += kernel.operations;
         if by_kernel {
             row(
                 &format!("{}::{}", report.name, kernel.kernel),
-                &kernel.counts,
+                &kernel.operations,
             );
         }
     }
