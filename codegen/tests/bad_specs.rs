@@ -79,5 +79,8 @@ fn every_code_occurs() {
         .map(|(code, _)| *code)
         .filter(|code| !messages.contains(&format!("[{code}]")))
         .collect();
-    assert_eq!(missing, BTreeSet::from([code::SIZE, code::NO_CLOSED_FORM, code::WORK]));
+    assert_eq!(
+        missing,
+        BTreeSet::from([code::SIZE, code::NO_CLOSED_FORM, code::WORK])
+    );
 }

@@ -26,7 +26,7 @@ pub fn check(text: &str) -> Outcome {
 /// Derives a spec, and writes its Rust and its page.
 pub fn pipeline(text: &str) -> Outcome {
     guarded(|| {
-        let joint = match hamel_codegen::derive(text, "input.joint") {
+        let joint = match hamel_codegen::derive(text, "input") {
             Ok(joint) => joint,
             Err(errors) => return refused(text, &errors),
         };
