@@ -217,7 +217,7 @@ fn counts(report: &Report) -> Vec<Row> {
         row([
             ("kernel", &c.kernel),
             ("structure", &c.structure),
-            ("operations", &c.operations),
+            ("operations", &c.work()),
         ])
     });
     rows.collect()

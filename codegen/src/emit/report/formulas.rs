@@ -86,7 +86,7 @@ fn velocity_map(derived: &Derived, notation: &Notation) -> Formula {
     let right = match gradient.is_some_and(all_zero) {
         true => series.product,
         false => {
-            let square = Math::Letter('ϕ').sup(Math::integer(2)).grouped();
+            let square = Math::Letter('ϕ').raised_to(Math::integer(2)).grouped();
             let higher = Math::Row(vec![Math::Letter('O'), square]);
             Math::Row(vec![series.product, Math::Sign('+'), higher])
         }
@@ -152,23 +152,23 @@ fn heading(kind: KernelKind) -> Option<(Math, &'static str)> {
         KernelKind::Pose => (letter('H'), "Pose: child coordinates to parent coordinates"),
         KernelKind::TwistMap => (letter('X'), "v to twist, in the parent frame"),
         KernelKind::TwistMapChild => {
-            let adjoint = Math::Word("Ad".into()).sub(letter('H').inverse());
+            let adjoint = Math::Word("Ad".into()).with_index(letter('H').inverse());
             let product = Math::product([adjoint, letter('X')]);
             (product, "v to twist, in the child frame")
         }
         KernelKind::VelocityMapInverse => {
-            let inverse = letter('S').sub(Math::integer(0)).inverse();
+            let inverse = letter('S').with_index(Math::integer(0)).inverse();
             (inverse, "v to ϕ̇ at ϕ = 0")
         }
         KernelKind::VelocityMapGradient => (partial(letter('S')), "Derivatives of S at ϕ = 0"),
         KernelKind::Gamma => (
             summed(Math::product(
-                ['γ', 'v'].map(|c| letter(c).sub(letter('k'))),
+                ['γ', 'v'].map(|c| letter(c).with_index(letter('k'))),
             )),
             "Boltzmann–Hamel term of the Lagrangian form, (17)",
         ),
         KernelKind::J22 => (
-            letter('J').sub(Math::integer(22)),
+            letter('J').with_index(Math::integer(22)),
             "Gyroscopic matrix of the Hamiltonian form, (28)",
         ),
         KernelKind::Constraint => (letter('A'), "Constraint: Aᵀ v = 0"),
@@ -232,9 +232,10 @@ fn gradient(
         return vec![notation.equation(name.clone(), &zero)];
     }
     let along = |index: Math| match name {
-        Math::Partial(above, below) => {
-            Math::Partial(above.clone(), Box::new(below.as_ref().clone().sub(index)))
-        }
+        Math::Partial(above, below) => Math::Partial(
+            above.clone(),
+            Box::new(below.as_ref().clone().with_index(index)),
+        ),
         other => other.clone(),
     };
     if slices.len() <= FEW {
@@ -250,7 +251,7 @@ fn gradient(
     let sum = terms.fold(first, |sum, (slice, local)| {
         sum.plus(&slice.scale(&Expr::symbol(local)))
     });
-    let term = Math::product([Math::Letter('ϕ').sub(k.clone()), along(k)]);
+    let term = Math::product([Math::Letter('ϕ').with_index(k.clone()), along(k)]);
     vec![notation.equation(summed(term), &sum)]
 }
 

@@ -25,7 +25,7 @@ impl Notation {
             by_symbol.insert(symbol.clone(), name.clone());
         }
         for (symbol, name) in arguments.target.iter().zip(&names) {
-            by_symbol.insert(symbol.clone(), name.clone().sup(Math::Letter('′')));
+            by_symbol.insert(symbol.clone(), name.clone().raised_to(Math::Letter('′')));
         }
         let numbered = [
             (&arguments.local, Math::Letter('ϕ')),
@@ -39,7 +39,7 @@ impl Notation {
             for (i, symbol) in symbols.iter().enumerate() {
                 let name = match alone {
                     true => letter.clone(),
-                    false => letter.clone().sub(Math::integer(i + 1)),
+                    false => letter.clone().with_index(Math::integer(i + 1)),
                 };
                 by_symbol.insert(symbol.clone(), name);
             }
@@ -89,7 +89,7 @@ fn names_of_factor(factor: &Factor) -> Vec<Math> {
     let entries = |rows: usize, columns: usize| -> Vec<Math> {
         let index = |n: usize| {
             let (i, j) = (n / columns + 1, n % columns + 1);
-            name.clone().sub(Math::integer(10 * i + j))
+            name.clone().with_index(Math::integer(10 * i + j))
         };
         (0..rows * columns).map(index).collect()
     };
@@ -100,7 +100,7 @@ fn names_of_factor(factor: &Factor) -> Vec<Math> {
     match factor.kind {
         Kind::Real(1) => vec![name],
         Kind::Real(size) => (1..=size)
-            .map(|n| name.clone().sub(Math::integer(n)))
+            .map(|n| name.clone().with_index(Math::integer(n)))
             .collect(),
         Kind::S1 => parts("cs"),
         Kind::S3 => parts("wxyz"),

@@ -24,7 +24,7 @@ pub fn series(derived: &Derived, notation: &Notation) -> Series {
     let mut factors = vec![];
     if !left.is_identity() {
         factors.push(known_matrix(derived, left).unwrap_or_else(|| {
-            let name = Math::Letter('S').sub(Math::integer(0));
+            let name = Math::Letter('S').with_index(Math::integer(0));
             parts.push((name.clone(), left.clone()));
             name
         }));
@@ -69,7 +69,7 @@ fn linear_factor(
     }
     let ad = adjoint(derived, &local);
     if let Some((ratio, ad)) = ad.and_then(|ad| Some((multiple_of(&linear, &ad)?, ad))) {
-        let name = Math::Word("ad".into()).sub(Math::Letter('ϕ'));
+        let name = Math::Word("ad".into()).with_index(Math::Letter('ϕ'));
         parts.push((name.clone(), ad));
         return identity_plus(&ratio, notation, name);
     }

@@ -61,8 +61,21 @@ pub struct CountRow {
     pub kernel: String,
     /// What is known at compile time.
     pub structure: String,
-    /// Its operations: those of its formulas, and what the runtime does besides.
-    pub operations: String,
+    /// The operations of its formulas.
+    pub operations: Counts,
+    /// What the runtime does besides: a solve, an iteration, or nothing.
+    pub besides: Option<&'static str>,
+}
+
+impl CountRow {
+    /// The operations of its formulas, and what the runtime does besides.
+    pub fn work(&self) -> String {
+        match (self.besides, self.operations.total()) {
+            (None, _) => self.operations.to_string(),
+            (Some(besides), 0) => besides.to_owned(),
+            (Some(besides), _) => format!("{}, and {besides}", self.operations),
+        }
+    }
 }
 
 pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
@@ -128,21 +141,18 @@ pub(super) fn counts(derived: &Derived) -> Vec<CountRow> {
         CountRow {
             kernel: method.name().to_owned(),
             structure: structure_in_words(kernel.structure).to_owned(),
-            operations: operations(kernel.method, &method.counts()),
+            operations: method.counts(),
+            besides: besides(kernel.method),
         }
     };
     derived.kernels.iter().map(row).collect()
 }
 
-fn operations(found: FoundBy, counts: &Counts) -> String {
-    let besides = match found {
-        FoundBy::Formula => return counts.to_string(),
-        FoundBy::Solve => "a K×K solve",
-        FoundBy::Newton => "Newton's method",
-    };
-    match counts.total() {
-        0 => besides.to_owned(),
-        _ => format!("{counts}, and {besides}"),
+fn besides(found: FoundBy) -> Option<&'static str> {
+    match found {
+        FoundBy::Formula => None,
+        FoundBy::Solve => Some("a K×K solve"),
+        FoundBy::Newton => Some("Newton's method"),
     }
 }
 

@@ -56,9 +56,9 @@ fn raised(base: Math, exponent: usize) -> Math {
     match (exponent, base) {
         (1, base) => base,
         (_, base @ (Math::Part(..) | Math::Script(_, _, Some(_)))) => {
-            base.grouped().sup(Math::integer(exponent))
+            base.grouped().raised_to(Math::integer(exponent))
         }
-        (_, base) => base.sup(Math::integer(exponent)),
+        (_, base) => base.raised_to(Math::integer(exponent)),
     }
 }
 
@@ -121,16 +121,17 @@ fn call(
         Function::Recip => {
             return raised(Math::Fraction(Box::new(one()), first()).grouped(), exponent);
         }
+        Function::Group => return raised(first().grouped(), exponent),
         Function::Cos => Math::Word("cos".into()),
         Function::Sin => Math::Word("sin".into()),
         Function::Exp => Math::Word("exp".into()),
         Function::Ln => Math::Word("ln".into()),
         Function::Atan2 => Math::Word("atan2".into()),
-        Function::Stumpff(order) => Math::Letter('c').sub(Math::integer(order.into())),
+        Function::Stumpff(order) => Math::Letter('c').with_index(Math::integer(order.into())),
         Function::DexpInverse(0) => Math::Letter('G'),
         Function::DexpInverse(order) => {
             let primes = vec![Math::Letter('′'); order.into()];
-            Math::Letter('G').sup(Math::Row(primes))
+            Math::Letter('G').raised_to(Math::Row(primes))
         }
     };
     let bare = matches!(

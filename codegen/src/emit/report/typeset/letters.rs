@@ -37,7 +37,7 @@ pub fn named(name: &str) -> Math {
     match (stem, index) {
         (_, "") => word(name),
         ("", _) => Math::Word(name.to_owned()),
-        (stem, index) => word(stem).sub(word(index)),
+        (stem, index) => word(stem).with_index(word(index)),
     }
 }
 

@@ -50,14 +50,15 @@ fn operator(sign: char, attributes: &str) -> String {
     format!("<mo{attributes}>{}</mo>", escaped(&sign.to_string()))
 }
 
+/// Not declared an accent: fonts without tables for mathematics would set it into the letter.
 fn marked(mark: Mark, inner: &Math) -> String {
     let sign = match mark {
-        Mark::Bar => '¯',
+        Mark::Bar => '‾',
         Mark::Dot => '˙',
-        Mark::Tilde => '~',
+        Mark::Tilde => '˜',
     };
     format!(
-        "<mover accent=\"true\">{}<mo stretchy=\"false\">{sign}</mo></mover>",
+        "<mover>{}<mo stretchy=\"false\">{sign}</mo></mover>",
         written(inner)
     )
 }

@@ -74,7 +74,7 @@ impl Math {
 
     /// With an index below.
     #[must_use]
-    pub fn sub(self, below: Self) -> Self {
+    pub fn with_index(self, below: Self) -> Self {
         match self {
             Self::Script(base, None, above) => Self::Script(base, Some(Box::new(below)), above),
             other => Self::Script(Box::new(other), Some(Box::new(below)), None),
@@ -83,7 +83,7 @@ impl Math {
 
     /// With an exponent or the like.
     #[must_use]
-    pub fn sup(self, above: Self) -> Self {
+    pub fn raised_to(self, above: Self) -> Self {
         match self {
             Self::Script(base, below, None) => Self::Script(base, below, Some(Box::new(above))),
             other => Self::Script(Box::new(other), None, Some(Box::new(above))),
@@ -93,13 +93,13 @@ impl Math {
     /// With an exponent −1.
     #[must_use]
     pub fn inverse(self) -> Self {
-        self.sup(Self::Row(vec![Self::Minus, Self::integer(1)]))
+        self.raised_to(Self::Row(vec![Self::Minus, Self::integer(1)]))
     }
 
     /// Transposed.
     #[must_use]
     pub fn transposed(self) -> Self {
-        self.sup(Self::Letter('T'))
+        self.raised_to(Self::Letter('T'))
     }
 
     /// In parentheses.

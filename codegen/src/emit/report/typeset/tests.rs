@@ -104,10 +104,10 @@ fn mathml_shows_the_same_structure() {
 fn indices_and_marks_stay_apart() {
     let speed = Math::Letter('v')
         .marked(super::Mark::Bar)
-        .sub(Math::integer(2));
+        .with_index(Math::integer(2));
     assert_eq!(speed.text(), "v\u{304}₂");
     assert_eq!(speed.latex(), r"{\bar{v}}_{2}");
-    let inverse = Math::Letter('S').sub(Math::integer(0)).inverse();
+    let inverse = Math::Letter('S').with_index(Math::integer(0)).inverse();
     assert_eq!(inverse.text(), "S₀⁻¹");
     assert_eq!(inverse.latex(), "{S}_{0}^{-1}");
     assert_eq!(named("x_dot").text(), "x_dot");
