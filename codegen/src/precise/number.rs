@@ -272,6 +272,7 @@ impl Number for Precise {
             (Function::Ln, [x]) => x.ln(),
             (Function::Sqrt, [x]) => x.sqrt(),
             (Function::Recip, [x]) => self.same(1).quotient(x),
+            (Function::Group, [x]) => x.clone(),
             (Function::Atan2, [y, x]) => y.atan2(x),
             (Function::Stumpff(order), [s]) => s.stumpff(order.into()),
             (Function::DexpInverse(derivative), [s]) => s.dexp_inverse(derivative.into()),

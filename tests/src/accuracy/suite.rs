@@ -227,8 +227,10 @@ impl<J> Subject<'_, J> {
         basis: &SMatrix<T, K, S>,
         worst: &mut Worst,
     ) {
-        let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, |m: f64, x| larger(m, x.abs()));
-        let sizes = largest(&mut a.iter().map(|x| x.wide())) * largest(&mut basis.iter().map(|x| x.wide()));
+        let largest =
+            |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, |m: f64, x| larger(m, x.abs()));
+        let sizes =
+            largest(&mut a.iter().map(|x| x.wide())) * largest(&mut basis.iter().map(|x| x.wide()));
         for c in 0..C {
             for s in 0..S {
                 let product = |k: usize| a[(k, c)].wide() * basis[(k, s)].wide();

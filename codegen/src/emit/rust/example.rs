@@ -17,7 +17,9 @@ pub fn parameters(spec: &JointSpec) -> Vec<f64> {
     };
     let values = |place: &dyn Fn(usize) -> usize| -> Vec<f64> {
         let ranges = spec.parameters.iter().map(|parameter| &parameter.range);
-        let inside = ranges.enumerate().map(|(i, range)| within(range, of_place(place(i))));
+        let inside = ranges
+            .enumerate()
+            .map(|(i, range)| within(range, of_place(place(i))));
         inside.collect()
     };
     let ascending = values(&|i| i);
@@ -40,8 +42,13 @@ fn within(range: &Interval, size: f64) -> f64 {
 
 fn is_allowed(spec: &JointSpec, values: &[f64]) -> bool {
     let value = |symbol: &crate::expr::Symbol| {
-        values.get(usize::from(symbol.index)).copied().unwrap_or(f64::NAN)
+        values
+            .get(usize::from(symbol.index))
+            .copied()
+            .unwrap_or(f64::NAN)
     };
     let holds = |margin: &crate::expr::Expr| evaluate_f64(margin, &value) > 0.0;
-    spec.requirements.iter().all(|requirement| holds(&requirement.value.value))
+    spec.requirements
+        .iter()
+        .all(|requirement| holds(&requirement.value.value))
 }
