@@ -220,7 +220,8 @@ fn power_of_two(x: f64, n: i32) -> f64 {
     let mut result = x;
     while left != 0 {
         let step = left.clamp(-1000, 1000);
-        result *= f64::powi(2.0, step);
+        // 2^step by its exponent bits: powi would multiply its way there.
+        result *= f64::from_bits(((1023 + step) as u64) << 52);
         left -= step;
     }
     result
