@@ -57,6 +57,8 @@ fn misnamed(spec: &JointSpec, file: &str) -> Option<Diagnostic> {
 
 fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     expand::confine(&mut spec);
+    let positive = crate::domain::positive_parameters(&spec);
+    spec.manifold.value = spec.manifold.value.clone().with_positive(positive);
     let expansion = expand::expand(&spec)?;
     let claims = prove::prove(&spec, &expansion)?;
     let kernels = expand::kernels(&spec, &expansion)?;

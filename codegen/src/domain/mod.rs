@@ -6,11 +6,14 @@
 
 mod sign;
 
+pub use self::sign::positive_parameters;
+
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
 use crate::manifold::Ideal;
 use crate::model::JointSpec;
 use num_traits::One;
+use std::collections::BTreeSet;
 
 /// Most term operations that one search for a certificate may take.
 const CERTIFICATE_LIMIT: u64 = 60_000;
@@ -21,6 +24,8 @@ pub struct Domain<'a> {
     ideal: &'a Ideal,
     loci: Vec<Expr>,
     signs: Signs,
+    /// Parameters of which the range holds 0.
+    vanishing: BTreeSet<Symbol>,
 }
 
 /// Why some functions have no common zero.
@@ -74,6 +79,12 @@ impl<'a> Domain<'a> {
                 .map(|locus| locus.value.function.clone())
                 .collect(),
             signs: Signs::new(spec),
+            vanishing: spec
+                .parameters
+                .iter()
+                .filter(|parameter| parameter.may_vanish())
+                .map(|parameter| parameter.symbol.clone())
+                .collect(),
         }
     }
 
@@ -94,6 +105,11 @@ impl<'a> Domain<'a> {
         self.no_common_zero(std::slice::from_ref(expression))
     }
 
+    /// Whether the expression is one term of a rational and parameters that are never 0.
+    pub fn is_unit(&self, e: &Expr) -> bool {
+        is_unit(e) && e.symbols().is_disjoint(&self.vanishing)
+    }
+
     /// Whether the expression is positive everywhere.
     pub fn is_positive(&self, expression: &Expr) -> bool {
         let normal = self.ideal.normal_form(expression);
@@ -107,7 +123,7 @@ impl<'a> Domain<'a> {
             .map(normal)
             .filter(|e| !e.is_zero())
             .collect();
-        if let Some(unit) = all.iter().find(|e| is_unit(e)) {
+        if let Some(unit) = all.iter().find(|e| self.is_unit(e)) {
             return Some(Certificate::Constant(unit.clone()));
         }
         let of_one_sign = |e: &&Expr| self.signs.is_positive(e) || self.signs.is_positive(&-*e);
@@ -153,7 +169,7 @@ fn away_from((index, locus): (usize, &Expr)) -> Expr {
     &Expr::one() - &(&Expr::symbol(&t) * locus)
 }
 
-/// Whether the expression is one term of a rational and parameters: never zero.
+/// Whether the expression is one term of a rational and parameters.
 pub fn is_unit(e: &Expr) -> bool {
     e.terms().len() == 1 && e.leading().is_some_and(|(monomial, _)| monomial.is_unit())
 }

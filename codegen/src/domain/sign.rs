@@ -28,13 +28,9 @@ enum Sign {
 impl Signs {
     /// What the spec says.
     pub fn new(spec: &JointSpec) -> Self {
-        let positive = spec
-            .parameters
-            .iter()
-            .filter(|p| is_positive_range(&p.range));
         let factors = spec.manifold.value.factors();
         Self {
-            positive_parameters: positive.map(|p| p.symbol.clone()).collect(),
+            positive_parameters: positive_parameters(spec),
             requirements: spec
                 .requirements
                 .iter()
@@ -191,6 +187,15 @@ fn sign_of_atom(atom: &Atom) -> Sign {
             }
         }
     }
+}
+
+/// The parameters that are positive.
+pub fn positive_parameters(spec: &JointSpec) -> BTreeSet<Symbol> {
+    let positive = spec
+        .parameters
+        .iter()
+        .filter(|p| is_positive_range(&p.range) && !p.may_vanish());
+    positive.map(|p| p.symbol.clone()).collect()
 }
 
 /// A parameter that is not negative is positive: parameters are never 0.

@@ -5,7 +5,7 @@
 //! a minor that is nowhere 0, the other rows being free.
 
 use super::rank;
-use crate::domain::{Domain, is_unit};
+use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::matrix::Matrix;
 
@@ -86,7 +86,7 @@ fn of_part(part: &Matrix, domain: &Domain<'_>) -> Result<Matrix, NoComplement> {
     let Some(first) = choices.first() else {
         return Err(NoComplement { case: None });
     };
-    if let Some((chosen, minor)) = choices.iter().find(|(_, minor)| is_unit(minor)) {
+    if let Some((chosen, minor)) = choices.iter().find(|(_, minor)| domain.is_unit(minor)) {
         return Ok(solved(part, chosen, minor, domain).unwrap_or_else(|| Matrix::zeros(rows, 0)));
     }
     if rows == count + 1 {

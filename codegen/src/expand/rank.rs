@@ -1,6 +1,6 @@
 //! Certificates that a matrix has full rank at every configuration.
 
-use crate::domain::{Domain, is_unit};
+use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::matrix::Matrix;
 use num_traits::Signed;
@@ -28,7 +28,7 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
     let mut minors = vec![];
     for rows in combinations(m.rows(), m.columns()) {
         let minor = m.select_rows(&rows).determinant(&simplify);
-        if is_unit(&minor) {
+        if domain.is_unit(&minor) {
             let rows: Vec<String> = rows.iter().map(|row| (row + 1).to_string()).collect();
             return Ok(format!("the minor of rows {} is {minor}", rows.join(", ")));
         }
@@ -38,7 +38,7 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
     }
     // Cauchy–Binet: det(MᵀM) is the sum of the squares of the minors.
     let gram = simplify(&minors.iter().map(Expr::square).sum());
-    if is_unit(&gram) && gram.leading().is_some_and(|(_, c)| c.is_positive()) {
+    if domain.is_unit(&gram) && gram.leading().is_some_and(|(_, c)| c.is_positive()) {
         return Ok(format!("det(MᵀM) = {gram}"));
     }
     match minors.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::motion::Motion;
 use super::rank;
-use crate::domain::{Domain, is_unit};
+use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
@@ -176,7 +176,7 @@ impl Solver<'_, '_> {
     /// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
     /// constant of one term; from rows whose determinant is short and never 0; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
     fn left_inverse(&self) -> Option<Matrix> {
-        let constant = |determinant: &Expr| is_unit(determinant);
+        let constant = |determinant: &Expr| self.domain.is_unit(determinant);
         let short = |determinant: &Expr| {
             determinant.terms().len() <= LONGEST_PIVOT && self.domain.nonzero(determinant).is_some()
         };

@@ -1,7 +1,7 @@
 //! Equality on a manifold: normal forms modulo its relations and those of the functions that occur.
 
 use super::reduction::Reduction;
-use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, budget};
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::matrix::Matrix;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,6 +13,8 @@ const SIMPLIFICATION_LIMIT: u64 = 10_000;
 #[derive(Clone, Debug, Default)]
 pub struct Ideal {
     own: Reduction,
+    /// Parameters that are positive, so that the root of their square is the parameter itself.
+    positive: BTreeSet<Symbol>,
     /// Bases extended by the relations of the functions that an expression holds, by those functions.
     extended: RefCell<BTreeMap<BTreeSet<Atom>, Reduction>>,
 }
@@ -22,8 +24,17 @@ impl Ideal {
     pub fn new(relations: &[Expr]) -> Self {
         Self {
             own: Reduction::new(relations),
+            positive: BTreeSet::new(),
             extended: RefCell::default(),
         }
+    }
+
+    /// The same ideal where these parameters are known to be positive.
+    #[must_use]
+    pub fn with_positive(mut self, parameters: BTreeSet<Symbol>) -> Self {
+        self.positive = parameters;
+        self.extended = RefCell::default();
+        self
     }
 
     /// The reduced Gröbner basis of the manifold's own relations.
@@ -73,8 +84,10 @@ impl Ideal {
             .arguments
             .iter()
             .map(|argument| self.normal_form(argument));
-        if application.function == Function::Group {
-            return arguments.sum();
+        match application.function {
+            Function::Group => return arguments.sum(),
+            Function::Sqrt => return self.root(&arguments.sum()),
+            _ => {}
         }
         Expr::applied(application.function, &arguments.collect::<Vec<_>>())
     }
@@ -98,6 +111,33 @@ impl Ideal {
             numerator = cleared(&numerator, &atom, &denominator);
         }
         numerator
+    }
+
+    /// The square root: taken where the argument is the square of positive parameters.
+    fn root(&self, argument: &Expr) -> Expr {
+        let of_square = || {
+            let (monomial, coefficient) =
+                argument.leading().filter(|_| argument.terms().len() == 1)?;
+            let root = Expr::rational(coefficient.clone()).sqrt().as_rational()?;
+            monomial
+                .units()
+                .iter()
+                .try_fold(Expr::rational(root), |product, (atom, power)| {
+                    let known =
+                        matches!(atom, Atom::Symbol(symbol) if self.positive.contains(symbol));
+                    let base = Expr::atom(atom.clone());
+                    let base = if *power < 0 { base.recip()? } else { base };
+                    (known && power % 2 == 0)
+                        .then(|| &product * &base.pow(power.unsigned_abs() / 2))
+                })
+        };
+        let is_unit = argument
+            .leading()
+            .is_some_and(|(monomial, _)| monomial.is_unit());
+        is_unit
+            .then(of_square)
+            .flatten()
+            .unwrap_or_else(|| argument.sqrt())
     }
 
     /// Entry by entry.

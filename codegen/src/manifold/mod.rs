@@ -11,6 +11,7 @@ pub use factor::{Factor, Kind, LARGEST_CONSTRAINED_REAL, LARGEST_REAL};
 pub use ideal::Ideal;
 
 use crate::expr::{Expr, Role, Symbol};
+use std::collections::BTreeSet;
 
 /// A product of known manifolds, or the part of it where declared relations hold, with the ideal of all relations.
 #[derive(Clone, Debug)]
@@ -41,6 +42,13 @@ impl Manifold {
             declared: [self.declared, declared].concat(),
             factors: self.factors,
         }
+    }
+
+    /// The same manifold where these parameters are known to be positive.
+    #[must_use]
+    pub fn with_positive(mut self, parameters: BTreeSet<Symbol>) -> Self {
+        self.ideal = self.ideal.with_positive(parameters);
+        self
     }
 
     /// The relations that the spec declares.

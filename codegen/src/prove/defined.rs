@@ -43,10 +43,20 @@ impl Prover<'_> {
     fn is_regular(&self, function: Function, argument: &Expr) -> bool {
         let nonzero = || self.domain.nonzero(argument).is_some();
         match function {
-            // Where it is not 0 it keeps its sign on the component of home; the spec's functions are evaluated there.
-            Function::Recip | Function::Sqrt => nonzero(),
-            _ => self.domain.is_positive(argument),
+            Function::Recip => nonzero(),
+            // Where it is not 0 it keeps its sign on the component of home.
+            _ => {
+                self.domain.is_positive(argument)
+                    || (nonzero() && self.domain.is_positive(&self.at_home(argument)))
+            }
         }
+    }
+
+    fn at_home(&self, argument: &Expr) -> Expr {
+        let manifold = &self.spec.manifold.value;
+        let home = self.spec.home.as_ref().map(|home| home.value.clone());
+        let home = home.unwrap_or_else(|| manifold.home());
+        argument.substitute(&manifold.coordinates().into_iter().zip(home).collect())
     }
 
     /// Functions with a singular argument, with that argument, in all that is evaluated at a configuration.

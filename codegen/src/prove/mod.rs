@@ -1,11 +1,13 @@
 //! The claims of a spec, proved: everything declared or derived is substituted back into what defines it.
 //!
-//! Identities hold when their difference has normal form 0 modulo the manifold's relations. Ranks and invertibility need a
+//! Identities hold when their difference has normal form 0 modulo the manifold's relations, or, where functions without such
+//! relations remain, by evaluation in high precision. Ranks and invertibility need a
 //! certificate that holds at every configuration; random points never serve for them.
 
 mod defined;
 mod fibres;
 mod nonholonomic;
+mod numeric;
 mod retract;
 mod twist;
 
@@ -18,6 +20,7 @@ use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use crate::spec::code;
+use numeric::Evaluation;
 use std::ops::Range;
 
 /// All claims, or every one that fails.
@@ -94,14 +97,28 @@ impl Prover<'_> {
             true => Expr::zero(),
             false => self.ideal.normal_form(entry),
         });
-        match residual.is_zero() {
-            true => Ok(Some(symbolic(
+        if residual.is_zero() {
+            return Ok(Some(symbolic(
                 name,
                 statement,
                 Proof::NormalForm,
                 "the difference of both sides has normal form 0",
-            ))),
-            false => Err(Box::new(refuted(residual))),
+            )));
+        }
+        match self.evaluate(difference, &residual) {
+            Evaluation::Agrees { residual } => Ok(Some(Claim {
+                residual,
+                points: numeric::EFFORT.0,
+                bits: numeric::EFFORT.1,
+                ..symbolic(name, statement, Proof::Numeric, numeric::DETAIL)
+            })),
+            Evaluation::Differs { value } => {
+                let error = refuted(residual);
+                Err(Box::new(error.note(format!(
+                    "at a random configuration the difference is {value:.3e}"
+                ))))
+            }
+            Evaluation::Undecided => Err(Box::new(refuted(residual))),
         }
     }
 
