@@ -9,7 +9,7 @@ use crate::emit::rust::Method;
 use crate::expr::Symbol;
 
 /// Parts of a formula that a reader takes in as a whole: longer ones are written with names for what they share.
-const LONGEST: usize = 500;
+const LONGEST: usize = 300;
 
 /// Whether the equations are too long to be read as they stand.
 pub fn is_long(equations: &[Equation]) -> bool {
