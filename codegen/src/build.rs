@@ -12,6 +12,7 @@
 
 mod error;
 mod library;
+mod parallel;
 #[cfg(test)]
 mod tests;
 
@@ -121,7 +122,7 @@ impl Build {
             Target::Library { modules, pages } => {
                 println!("cargo::rerun-if-env-changed={GENERATE_VARIABLE}");
                 let accuracy = self.read_accuracy()?;
-                library::generate(&joints, &self.label(), (modules, pages), &accuracy, check)
+                library::generate(joints, &self.label(), (modules, pages), &accuracy, check)
             }
         }
     }
@@ -154,15 +155,22 @@ impl Build {
 
     /// Every spec of the folder, in the order of file names, derived; all errors at once.
     fn derive_all(&self) -> Result<Vec<(String, Derived)>, BuildError> {
-        let (mut joints, mut errors) = (vec![], vec![]);
+        let mut sources = vec![];
         for path in spec_files(&self.specs)? {
             watch(&path);
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let label = format!("{}/{name}", self.label());
             let source =
                 std::fs::read_to_string(&path).map_err(|source| BuildError::read(&path, source))?;
-            match derive(&source, &label) {
-                Ok(derived) => joints.push((label, derived)),
+            sources.push((label, source));
+        }
+        let derived = parallel::map(sources, |(label, source)| {
+            derive(&source, &label).map(|joint| (label, joint))
+        });
+        let (mut joints, mut errors) = (vec![], vec![]);
+        for result in derived {
+            match result {
+                Ok(joint) => joints.push(joint),
                 Err(diagnostics) => errors.push(diagnostics),
             }
         }

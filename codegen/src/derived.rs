@@ -1,8 +1,10 @@
 //! What is derived from a spec: kernels in symbols, and the claims that were proved. The border between derivation and output.
 
+use crate::emit::formula::Program;
 use crate::expr::{Expr, Rational, Symbol};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The kernels of a joint, in the order in which they are emitted: one method each of the runtime's `Joint` trait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -111,7 +113,7 @@ pub enum Method {
 }
 
 /// One kernel.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kernel {
     /// Which one.
     pub kind: KernelKind,
@@ -219,6 +221,32 @@ pub struct Derived {
     pub imperceptible: Vec<[Rational; 10]>,
     /// All that was proved.
     pub claims: Vec<Claim>,
+    /// Formulas of kernels that were simplified already: Rust and pages are written from the same.
+    pub(crate) programs: Programs,
+}
+
+/// Simplified formulas by kernel, kept while nothing changes the kernels.
+#[derive(Debug, Default)]
+pub(crate) struct Programs(Mutex<Vec<(Kernel, Arc<Program>)>>);
+
+impl Clone for Programs {
+    /// A copy starts empty: whoever clones a joint may change its kernels.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Programs {
+    /// The formulas of a kernel; `make` simplifies them where that has not been done.
+    pub(crate) fn get(&self, kernel: &Kernel, make: impl FnOnce() -> Program) -> Arc<Program> {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, program)) = known.iter().find(|(other, _)| other == kernel) {
+            return program.clone();
+        }
+        let program = Arc::new(make());
+        known.push((kernel.clone(), program.clone()));
+        program
+    }
 }
 
 impl Derived {

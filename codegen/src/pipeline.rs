@@ -1,6 +1,6 @@
 //! The whole pipeline: text in, proven kernels out.
 
-use crate::derived::Derived;
+use crate::derived::{Derived, Programs};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expand::{self, Expansion};
 use crate::expr::{Expr, budget};
@@ -68,6 +68,7 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
         imperceptible: expansion.imperceptible,
         kernels,
         claims,
+        programs: Programs::default(),
         spec,
     })
 }

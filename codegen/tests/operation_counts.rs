@@ -34,7 +34,7 @@ const HARDER: [&str; 3] = [
 fn stated_operations_are_those_of_the_code() {
     let mut kernels = 0;
     for source in library().iter().map(String::as_str).chain(HARDER) {
-        let derived = derive(source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"));
+        let derived = derive(source, "test").unwrap_or_else(|errors| panic!("{errors}"));
         let text = emit::rust::file(&derived, "test.joint").expect("the emitted tokens are Rust");
         let file = syn::parse_file(&text).expect("the emitted text is Rust");
         for method in methods(&file) {

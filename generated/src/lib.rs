@@ -12,9 +12,11 @@ pub mod joints;
 
 pub use joints::*;
 
+#[cfg(feature = "alloc")]
 use hamel::registry::JointRegistry;
 
 /// A registry of every joint of the library.
+#[cfg(feature = "alloc")]
 pub fn registry() -> JointRegistry {
     let mut registry = JointRegistry::new();
     for entry in ENTRIES {

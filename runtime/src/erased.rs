@@ -126,10 +126,11 @@ fn check_finite(
     }
 }
 
+/// A joint of any type, shared: what an entry of a registry builds.
+pub type Shared = Arc<dyn AnyJoint>;
+
 /// Puts a joint behind [`AnyJoint`].
-pub fn erase<J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: J,
-) -> Arc<dyn AnyJoint>
+pub fn erase<J, const N: usize, const K: usize, const S: usize, const C: usize>(joint: J) -> Shared
 where
     J: Joint<N, K, S, C>,
 {

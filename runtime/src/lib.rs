@@ -3,18 +3,29 @@
 //! A joint type implements [`joint::Joint`]; the generator `hamel-codegen` writes such implementations from `.joint`
 //! files. A [`mechanism::Mechanism`] is a tree of bodies on such joints; [`dynamics`] evaluates its equations of motion in
 //! Lagrangian and port-Hamiltonian form; [`integrate`] advances the state on the joints' manifolds.
+//!
+//! Without default features the crate is `no_std`; mechanisms and what is built on them need the feature `alloc`, joints and
+//! their kernels do not.
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "alloc")]
 extern crate alloc;
 
 pub use nalgebra;
 
+#[cfg(feature = "alloc")]
 pub mod dynamics;
+#[cfg(feature = "alloc")]
+pub mod erased;
+#[cfg(not(feature = "alloc"))]
+#[path = "unshared.rs"]
 pub mod erased;
 pub mod finite;
+#[cfg(feature = "alloc")]
 pub mod integrate;
 pub mod joint;
+#[cfg(feature = "alloc")]
 pub mod mechanism;
 pub mod registry;
 pub mod scalar;

@@ -1,14 +1,12 @@
 //! Joint types by name: what a scene file can ask for.
 
-use crate::erased::AnyJoint;
+use crate::erased::Shared;
+#[cfg(feature = "alloc")]
 use alloc::collections::BTreeMap;
-use alloc::format;
-use alloc::string::String;
-use alloc::sync::Arc;
-use alloc::vec::Vec;
+use core::fmt::{Display, Formatter};
 
 /// Builds a joint from the values of its parameters, in the order of [`JointEntry::parameters`].
-pub type BuildJoint = fn(&[f64]) -> Result<Arc<dyn AnyJoint>, ParameterError>;
+pub type BuildJoint = fn(&[f64]) -> Result<Shared, ParameterError>;
 
 /// One end of the values that a parameter may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,7 +129,7 @@ pub enum ParameterError {
         /// As the spec writes it, such as `outer > inner`.
         requirement: &'static str,
         /// Names and values of the parameters.
-        values: String,
+        values: ParameterValues,
         /// What must be positive: the greater side minus the less.
         margin: f64,
     },
@@ -147,6 +145,38 @@ pub enum ParameterError {
         /// What is allowed, such as `positive`.
         requirement: &'static str,
     },
+}
+
+/// Names and values of parameters, for messages: as many as an error carries without allocating.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterValues {
+    parameters: &'static [ParameterInfo],
+    values: [f64; Self::MOST],
+}
+
+impl ParameterValues {
+    /// How many are named.
+    const MOST: usize = 6;
+
+    fn new(parameters: &'static [ParameterInfo], values: &[f64]) -> Self {
+        Self {
+            parameters,
+            values: core::array::from_fn(|i| values.get(i).copied().unwrap_or(f64::NAN)),
+        }
+    }
+}
+
+impl Display for ParameterValues {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        for (n, (info, value)) in self.parameters.iter().zip(self.values).enumerate() {
+            let comma = if n == 0 { "" } else { ", " };
+            write!(f, "{comma}{} = {value}", info.name)?;
+        }
+        match self.parameters.len() > Self::MOST {
+            true => f.write_str(", …"),
+            false => Ok(()),
+        }
+    }
 }
 
 /// Why an entry cannot be added to a registry.
@@ -201,30 +231,28 @@ pub fn check_requirement(
     joint: &'static str,
     requirement: &'static str,
     margin: f64,
-    parameters: &[ParameterInfo],
+    parameters: &'static [ParameterInfo],
     values: &[f64],
 ) -> Result<(), ParameterError> {
     if margin > 0.0 {
         return Ok(());
     }
-    let named = parameters.iter().zip(values);
-    let named: Vec<String> = named
-        .map(|(info, value)| format!("{} = {value}", info.name))
-        .collect();
     Err(ParameterError::Requirement {
         joint,
         requirement,
-        values: named.join(", "),
+        values: ParameterValues::new(parameters, values),
         margin,
     })
 }
 
 /// Joint types by name, in alphabetical order.
+#[cfg(feature = "alloc")]
 #[derive(Clone, Debug, Default)]
 pub struct JointRegistry {
     entries: BTreeMap<&'static str, JointEntry>,
 }
 
+#[cfg(feature = "alloc")]
 impl JointRegistry {
     /// A registry without entries.
     pub const fn new() -> Self {

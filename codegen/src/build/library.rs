@@ -1,6 +1,6 @@
 //! The committed library: one file a joint with an index, one page and one drawing a joint, and their overview.
 
-use super::{BuildError, watch};
+use super::{BuildError, parallel, watch};
 use crate::derived::Derived;
 use crate::emit::files::Files;
 use crate::emit::report::Accuracy;
@@ -13,7 +13,7 @@ const OVERVIEW: &str = "JOINTS.md";
 
 /// Writes the folders, or compares them with what the specs say.
 pub(super) fn generate(
-    joints: &[(String, Derived)],
+    joints: Vec<(String, Derived)>,
     label: &str,
     (modules, pages): (&Path, &Path),
     accuracy: &Accuracy,
@@ -24,10 +24,22 @@ pub(super) fn generate(
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty());
     let above = parent.unwrap_or(here);
+    let written = parallel::map(joints, |(label, joint)| {
+        let own = of_joint(&joint, &label, accuracy);
+        (joint, own)
+    });
+    let (mut joints, mut own_sources, mut own_pages) = (vec![], Files::default(), Files::default());
+    for (joint, own) in written {
+        let (source, page) = own?;
+        joints.push(joint);
+        own_sources.texts.extend(source.texts);
+        own_pages.texts.extend(page.texts);
+    }
+    own_sources.insert("mod.rs", index(&joints, label, Index::Files)?);
     let folders = [
-        (sources(joints, label)?, modules),
-        (pages_of(joints, accuracy)?, pages),
-        (overview_of(joints, label, pages, accuracy)?, above),
+        (own_sources, modules),
+        (own_pages, pages),
+        (overview_of(&joints, label, pages, accuracy)?, above),
     ];
     let mut lines = vec![];
     for (files, folder) in &folders {
@@ -55,37 +67,30 @@ fn compared(files: &Files, folder: &Path) -> Result<Vec<String>, BuildError> {
     Ok(files.differences(folder)?.lines(&folder.to_string_lossy()))
 }
 
-fn sources(joints: &[(String, Derived)], label: &str) -> Result<Files, BuildError> {
-    let mut files = Files::default();
-    for (label, joint) in joints {
-        files.insert(format!("{}.rs", joint.spec.name.value), file(joint, label)?);
+/// The source file of a joint, and its page with its drawing.
+fn of_joint(
+    joint: &Derived,
+    label: &str,
+    accuracy: &Accuracy,
+) -> Result<(Files, Files), BuildError> {
+    let name = &joint.spec.name.value;
+    let (mut source, mut pages) = (Files::default(), Files::default());
+    source.insert(format!("{name}.rs"), file(joint, label)?);
+    pages.insert(format!("{name}.md"), page(joint, label, accuracy)?);
+    if let Some(drawing) = drawing_file(joint, label) {
+        pages.insert(format!("{name}.svg"), drawing);
     }
-    let joints: Vec<Derived> = joints.iter().map(|(_, joint)| joint.clone()).collect();
-    files.insert("mod.rs", index(&joints, label, Index::Files)?);
-    Ok(files)
-}
-
-fn pages_of(joints: &[(String, Derived)], accuracy: &Accuracy) -> Result<Files, BuildError> {
-    let mut files = Files::default();
-    for (label, joint) in joints {
-        let name = &joint.spec.name.value;
-        files.insert(format!("{name}.md"), page(joint, label, accuracy)?);
-        if let Some(drawing) = drawing_file(joint, label) {
-            files.insert(format!("{name}.svg"), drawing);
-        }
-    }
-    Ok(files)
+    Ok((source, pages))
 }
 
 fn overview_of(
-    joints: &[(String, Derived)],
+    joints: &[Derived],
     label: &str,
     pages: &Path,
     accuracy: &Accuracy,
 ) -> Result<Files, BuildError> {
     let folder = pages.file_name().unwrap_or_default().to_string_lossy();
-    let joints: Vec<Derived> = joints.iter().map(|(_, joint)| joint.clone()).collect();
     let mut files = Files::default();
-    files.insert(OVERVIEW, overview(&joints, label, &folder, accuracy)?);
+    files.insert(OVERVIEW, overview(joints, label, &folder, accuracy)?);
     Ok(files)
 }

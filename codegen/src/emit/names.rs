@@ -375,5 +375,6 @@ fn function_name(function: Function) -> String {
         Function::Stumpff(order) => format!("stumpff{order}"),
         Function::DexpInverse(order) => format!("dexp_inverse{order}"),
         Function::Recip => "inverse".into(),
+        Function::Group => "sum".into(),
     }
 }

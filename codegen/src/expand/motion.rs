@@ -1,7 +1,7 @@
 //! Derivatives along the local coordinates: Φ to second order, and the chain rule through it.
 
 use crate::algebra;
-use crate::expr::{Expr, Symbol};
+use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::{Factor, Kind, Manifold};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
@@ -138,7 +138,7 @@ impl Motion {
 
     /// ∂/∂ϕ_k at ϕ = 0 of a function of Q.
     pub fn along(&self, function: &Expr, k: usize) -> Expr {
-        self.contract(function, &self.first[k])
+        function.along(&|symbol| self.rate(symbol, &self.first[k]))
     }
 
     /// Entry by entry.
@@ -148,30 +148,35 @@ impl Motion {
 
     /// ∂²/∂ϕ_k∂ϕ_l at ϕ = 0 of a function of Φ(Q, ϕ).
     pub fn along_both(&self, function: &Expr, k: usize, l: usize) -> Expr {
-        let curved = self
-            .coordinates
+        // The first derivative, with stand-ins for the rates of the stored scalars, which themselves have rates along ϕ_l.
+        let stand_in = |n: usize| Symbol::new(Role::Intermediate, n, "rate_of_coordinate");
+        let stand_ins: Vec<Symbol> = (0..self.coordinates.len()).map(stand_in).collect();
+        let moves = |n: usize| !self.first[k][n].is_zero() || !self.second[k][l][n].is_zero();
+        let rates = stand_ins
             .iter()
-            .zip(&self.first[k])
-            .zip(&self.second[k][l]);
-        curved
-            .map(|((symbol, first), second)| {
-                let slope = function.derivative(symbol);
-                match slope.is_zero() {
-                    true => Expr::zero(),
-                    false => &(&self.along(&slope, l) * first) + &(&slope * second),
-                }
-            })
-            .sum()
+            .enumerate()
+            .map(|(n, symbol)| match moves(n) {
+                true => Expr::symbol(symbol),
+                false => Expr::zero(),
+            });
+        let rates: Vec<Expr> = rates.collect();
+        let slope = function.along(&|symbol| self.rate(symbol, &rates));
+        let second = slope.along(&|symbol| match stand_ins.iter().position(|s| s == symbol) {
+            Some(n) => self.second[k][l][n].clone(),
+            None => self.rate(symbol, &self.first[l]),
+        });
+        let values = stand_ins.into_iter().zip(self.first[k].iter().cloned());
+        second.substitute(&values.collect())
     }
 
-    fn contract(&self, function: &Expr, direction: &[Expr]) -> Expr {
-        let terms = self
+    fn rate(&self, symbol: &Symbol, rates: &[Expr]) -> Expr {
+        match self
             .coordinates
             .iter()
-            .zip(direction)
-            .filter(|(_, speed)| !speed.is_zero());
-        terms
-            .map(|(symbol, speed)| &function.derivative(symbol) * speed)
-            .sum()
+            .position(|candidate| candidate == symbol)
+        {
+            Some(n) => rates[n].clone(),
+            None => Expr::zero(),
+        }
     }
 }

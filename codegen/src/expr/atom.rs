@@ -116,6 +116,8 @@ pub enum Function {
     DexpInverse(u8),
     /// Reciprocal.
     Recip,
+    /// The identity: a sum that is kept together, so that products with it are not multiplied out.
+    Group,
 }
 
 /// A function with its arguments.

@@ -7,13 +7,36 @@ use std::collections::BTreeMap;
 impl Expr {
     /// Partial derivative with respect to a symbol.
     pub fn derivative(&self, symbol: &Symbol) -> Self {
+        let rate = |candidate: &Symbol| match candidate == symbol {
+            true => Self::one(),
+            false => Self::zero(),
+        };
+        self.by_chain_rule(&rate, &Self::clone)
+    }
+
+    /// Derivative along a direction that gives each symbol a rate.
+    ///
+    /// Rates of the arguments of functions are kept together as [`Function::Group`]s: multiplied out, second derivatives of roots and
+    /// quotients of sums would be large.
+    pub fn along(&self, rate: &impl Fn(&Symbol) -> Self) -> Self {
+        self.by_chain_rule(rate, &Self::grouped)
+    }
+
+    fn by_chain_rule(
+        &self,
+        rate: &impl Fn(&Symbol) -> Self,
+        inner: &impl Fn(&Self) -> Self,
+    ) -> Self {
         self.atoms()
             .iter()
             .map(|atom| {
-                let inner = derivative_of_atom(atom, symbol);
-                match inner.is_zero() {
+                let slope = match atom {
+                    Atom::Symbol(symbol) => rate(symbol),
+                    Atom::Apply(application) => slope_of_function(application, atom, rate, inner),
+                };
+                match slope.is_zero() {
                     true => Self::zero(),
-                    false => &self.derivative_by_atom(atom) * &inner,
+                    false => &self.derivative_by_atom(atom) * &slope,
                 }
             })
             .sum()
@@ -101,19 +124,16 @@ fn substituted_atom(atom: &Atom, values: &BTreeMap<Symbol, Expr>) -> Option<Expr
     }
 }
 
-fn derivative_of_atom(atom: &Atom, symbol: &Symbol) -> Expr {
-    match atom {
-        Atom::Symbol(candidate) if candidate == symbol => Expr::one(),
-        Atom::Symbol(_) => Expr::zero(),
-        Atom::Apply(application) => derivative_of_function(application, atom, symbol),
-    }
-}
-
-fn derivative_of_function(application: &Application, atom: &Atom, symbol: &Symbol) -> Expr {
+fn slope_of_function(
+    application: &Application,
+    atom: &Atom,
+    rate: &impl Fn(&Symbol) -> Expr,
+    keep: &impl Fn(&Expr) -> Expr,
+) -> Expr {
     let inner: Vec<Expr> = application
         .arguments
         .iter()
-        .map(|a| a.derivative(symbol))
+        .map(|a| keep(&a.by_chain_rule(rate, keep)))
         .collect();
     if inner.iter().all(Expr::is_zero) {
         return Expr::zero();
@@ -126,6 +146,7 @@ fn derivative_of_function(application: &Application, atom: &Atom, symbol: &Symbo
     ) {
         (Function::Cos, [x], [dx]) => -(&x.sin() * dx),
         (Function::Sin, [x], [dx]) => &x.cos() * dx,
+        (Function::Group, _, [dx]) => dx.clone(),
         (Function::Exp, _, [dx]) => &itself * dx,
         (Function::Ln, [x], [dx]) => &x.recip().unwrap_or_default() * dx,
         (Function::Sqrt, _, [dx]) => {

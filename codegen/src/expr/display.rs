@@ -88,6 +88,7 @@ impl Display for Function {
             Self::Stumpff(order) => write!(f, "stumpff{order}"),
             Self::DexpInverse(order) => write!(f, "dexp_inverse{order}"),
             Self::Recip => f.write_str("recip"),
+            Self::Group => Ok(()),
         }
     }
 }

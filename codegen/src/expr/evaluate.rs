@@ -13,7 +13,7 @@ pub trait Number: Clone {
     fn times(&self, other: &Self) -> Self;
     /// Quotient.
     fn over(&self, other: &Self) -> Self;
-    /// The value of a function other than [`Function::Recip`].
+    /// The value of a function other than [`Function::Recip`] and [`Function::Group`].
     fn function(&self, function: Function, arguments: &[Self]) -> Self;
 
     /// The integer power.
@@ -62,6 +62,7 @@ fn value_of_function<N: Number>(
         .map(|a| a.evaluate(unit, symbol))
         .collect();
     match (application.function, arguments.as_slice()) {
+        (Function::Group, [x]) => x.clone(),
         (Function::Recip, [x]) => unit.rational(&Rational::from_integer(1.into())).over(x),
         (function, _) => unit.function(function, &arguments),
     }

@@ -91,6 +91,14 @@ impl Expr {
         Some(product.fold(&scale * &units, |product, factor| &product * &factor))
     }
 
+    /// The same value as one factor, where it is a sum.
+    pub fn grouped(&self) -> Self {
+        match self.terms().len() {
+            0 | 1 => self.clone(),
+            _ => apply(Function::Group, vec![self.clone()]),
+        }
+    }
+
     /// Stumpff function `c_order`.
     pub fn stumpff(&self, order: u8) -> Self {
         match self.is_zero() {
@@ -118,6 +126,7 @@ impl Expr {
             (Function::Atan2, [y, x]) => y.atan2(x),
             (Function::Stumpff(order), [x]) => x.stumpff(order),
             (Function::DexpInverse(order), [x]) => x.dexp_inverse(order),
+            (Function::Group, [x]) => x.grouped(),
             (Function::Recip, [x]) if !x.is_zero() => x.recip().unwrap_or_default(),
             _ => apply(function, arguments.to_vec()),
         }

@@ -73,6 +73,9 @@ impl Ideal {
             .arguments
             .iter()
             .map(|argument| self.normal_form(argument));
+        if application.function == Function::Group {
+            return arguments.sum();
+        }
         Expr::applied(application.function, &arguments.collect::<Vec<_>>())
     }
 
@@ -221,7 +224,7 @@ fn related_functions(expression: &Expr) -> BTreeSet<Atom> {
             Function::Cos | Function::Sin => {
                 found.insert(atom);
             }
-            Function::Sqrt | Function::Recip => {
+            Function::Sqrt | Function::Recip | Function::Group => {
                 found.extend(application.arguments.iter().flat_map(related_functions));
                 found.insert(atom);
             }

@@ -15,12 +15,12 @@
 //!     ⎢Q₃₁  Q₃₂  Q₃₃  c² Q₃₃ / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
 //!     ⎣  0    0    0                                        1⎦
 //!
-//!     ⎡                                                                                                                                                  Q₁₁                                                                                                                                                   Q₁₂                                                  Q₁₃⎤
-//!     ⎢                                                                                                                                                  Q₂₁                                                                                                                                                   Q₂₂                                                  Q₂₃⎥
-//! X = ⎢                                                                                                                                                  Q₃₁                                                                                                                                                   Q₃₂                                                  Q₃₃⎥
-//!     ⎢−(a² (Q₁₂ − Q₁₃ (a² Q₁₂ Q₁₃ + b² Q₂₂ Q₂₃ + c² Q₃₂ Q₃₃) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²) + c² Q₂₁ Q₃₃ − b² Q₂₃ Q₃₁) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  (a² (Q₁₁ − Q₁₃ (a² Q₁₁ Q₁₃ + b² Q₂₁ Q₂₃ + c² Q₃₁ Q₃₃) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²) − c² Q₂₂ Q₃₃ + b² Q₂₃ Q₃₂) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)   Q₂₃ Q₃₃ (b² − c²) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
-//!     ⎢−(b² (Q₂₂ − Q₂₃ (a² Q₁₂ Q₁₃ + b² Q₂₂ Q₂₃ + c² Q₃₂ Q₃₃) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²) − c² Q₁₁ Q₃₃ + a² Q₁₃ Q₃₁) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  (b² (Q₂₁ − Q₂₃ (a² Q₁₁ Q₁₃ + b² Q₂₁ Q₂₃ + c² Q₃₁ Q₃₃) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²) + c² Q₁₂ Q₃₃ − a² Q₁₃ Q₃₂) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  −Q₁₃ Q₃₃ (a² − c²) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
-//!     ⎣−(c² (Q₃₂ − Q₃₃ (a² Q₁₂ Q₁₃ + b² Q₂₂ Q₂₃ + c² Q₃₂ Q₃₃) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²) + b² Q₁₁ Q₂₃ − a² Q₁₃ Q₂₁) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  (c² (Q₃₁ − Q₃₃ (a² Q₁₁ Q₁₃ + b² Q₂₁ Q₂₃ + c² Q₃₁ Q₃₃) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²) − b² Q₁₂ Q₂₃ + a² Q₁₃ Q₂₂) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)   Q₁₃ Q₂₃ (a² − b²) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎦
+//!     ⎡                                                                                                                                                        Q₁₁                                                                                                                                                         Q₁₂                                                  Q₁₃⎤
+//!     ⎢                                                                                                                                                        Q₂₁                                                                                                                                                         Q₂₂                                                  Q₂₃⎥
+//! X = ⎢                                                                                                                                                        Q₃₁                                                                                                                                                         Q₃₂                                                  Q₃₃⎥
+//!     ⎢−(a² (Q₁₂ − Q₁₃ 2 (a² Q₁₂ Q₁₃ + b² Q₂₂ Q₂₃ + c² Q₃₂ Q₃₃) / (2 √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²)) + c² Q₂₁ Q₃₃ − b² Q₂₃ Q₃₁) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  (a² (Q₁₁ − Q₁₃ 2 (a² Q₁₁ Q₁₃ + b² Q₂₁ Q₂₃ + c² Q₃₁ Q₃₃) / (2 √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²)) − c² Q₂₂ Q₃₃ + b² Q₂₃ Q₃₂) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)   Q₂₃ Q₃₃ (b² − c²) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
+//!     ⎢−(b² (Q₂₂ − Q₂₃ 2 (a² Q₁₂ Q₁₃ + b² Q₂₂ Q₂₃ + c² Q₃₂ Q₃₃) / (2 √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²)) − c² Q₁₁ Q₃₃ + a² Q₁₃ Q₃₁) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  (b² (Q₂₁ − Q₂₃ 2 (a² Q₁₁ Q₁₃ + b² Q₂₁ Q₂₃ + c² Q₃₁ Q₃₃) / (2 √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²)) + c² Q₁₂ Q₃₃ − a² Q₁₃ Q₃₂) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  −Q₁₃ Q₃₃ (a² − c²) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
+//!     ⎣−(c² (Q₃₂ − Q₃₃ 2 (a² Q₁₂ Q₁₃ + b² Q₂₂ Q₂₃ + c² Q₃₂ Q₃₃) / (2 √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²)) + b² Q₁₁ Q₂₃ − a² Q₁₃ Q₂₁) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)  (c² (Q₃₁ − Q₃₃ 2 (a² Q₁₁ Q₁₃ + b² Q₂₁ Q₂₃ + c² Q₃₁ Q₃₃) / (2 √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)²)) − b² Q₁₂ Q₂₃ + a² Q₁₃ Q₂₂) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)   Q₁₃ Q₂₃ (a² − b²) / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎦
 //!
 //! S(Q, ϕ) = I − ½ ϕ~ + O(ϕ²)
 //! ```
@@ -140,7 +140,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 56 multiplications (24 of each fused), 2 divisions, 1 function call.
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 68 multiplications (24 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
@@ -148,7 +148,9 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let b = T::from_f64(self.b);
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let half = T::from_f64(0.5);
         let one = T::one();
+        let two = T::from_f64(2.0);
         let a_squared = a * a;
         let a_squared_q13 = a_squared * q13;
         let b_squared = b * b;
@@ -173,12 +175,14 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [
                 a_squared
                     .mul_add(
-                        q13.mul_add(product_of_a_squared_q13_q12_q22_q32, -q12),
+                        (half * q13 * two)
+                            .mul_add(product_of_a_squared_q13_q12_q22_q32, -q12),
                         c_squared_q33.mul_add(-q21, b_squared_q23 * q31),
                     ) * quotient_of_2,
                 a_squared
                     .mul_add(
-                        q13.mul_add(-product_of_a_squared_q13_q11_q21_q31, q11),
+                        (half * q13 * two)
+                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q11),
                         c_squared_q33.mul_add(-q22, b_squared_q23 * q32),
                     ) * quotient_of_2,
                 q23 * q33 * (b_squared - c_squared) * quotient_of_2,
@@ -189,13 +193,15 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         -q31,
                         b_squared
                             .mul_add(
-                                q23.mul_add(product_of_a_squared_q13_q12_q22_q32, -q22),
+                                (half * q23 * two)
+                                    .mul_add(product_of_a_squared_q13_q12_q22_q32, -q22),
                                 c_squared_q33 * q11,
                             ),
                     ) * quotient_of_2,
                 b_squared
                     .mul_add(
-                        q23.mul_add(-product_of_a_squared_q13_q11_q21_q31, q21),
+                        (half * q23 * two)
+                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q21),
                         a_squared_q13.mul_add(-q32, c_squared_q33 * q12),
                     ) * quotient_of_2,
                 q13_quotient_of_2 * q33 * (c_squared - a_squared),
@@ -203,12 +209,14 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [
                 c_squared
                     .mul_add(
-                        q33.mul_add(product_of_a_squared_q13_q12_q22_q32, -q32),
+                        (half * q33 * two)
+                            .mul_add(product_of_a_squared_q13_q12_q22_q32, -q32),
                         b_squared_q23.mul_add(-q11, a_squared_q13 * q21),
                     ) * quotient_of_2,
                 c_squared
                     .mul_add(
-                        q33.mul_add(-product_of_a_squared_q13_q11_q21_q31, q31),
+                        (half * q33 * two)
+                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q31),
                         b_squared_q23.mul_add(-q12, a_squared_q13 * q22),
                     ) * quotient_of_2,
                 q13_quotient_of_2 * q23 * (a_squared - b_squared),
@@ -218,7 +226,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 22 additions, 59 multiplications (17 of each fused), 2 divisions, 1 function call.
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 18 additions, 57 multiplications (18 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
@@ -227,6 +235,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let zero = T::zero();
+        let half = T::from_f64(0.5);
         let one = T::one();
         let two = T::from_f64(2.0);
         let a_squared = a * a;
@@ -235,87 +244,82 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let b_squared_q21 = b_squared * q21;
         let c_squared = c * c;
         let c_squared_q31 = c_squared * q31;
-        let c_squared_q33 = c_squared * q33;
-        let a_squared_q13 = a_squared * q13;
-        let b_squared_q23 = b_squared * q23;
-        let b_squared_q23_q23 = b_squared_q23 * q23;
-        let sum_of_a_squared_q13_q13 = a_squared_q13.mul_add(q13, b_squared_q23_q23);
-        let value_of_sum_of_a_squared_q13_q13 = c_squared_q33
-            .mul_add(q33, sum_of_a_squared_q13_q13)
-            .sqrt();
-        let quotient_of = one
-            / (value_of_sum_of_a_squared_q13_q13 * value_of_sum_of_a_squared_q13_q13);
-        let q33_quotient_of = q33 * quotient_of;
-        let sum_of_c_squared_q33_q33_quotient_of = c_squared_q33
-            .mul_add(-q33_quotient_of, one);
-        let product_of_q32 = q32 * sum_of_c_squared_q33_q33_quotient_of;
-        let b_squared_q23_q22 = b_squared_q23 * q22;
-        let sum_of_a_squared_q13_q12 = a_squared_q13.mul_add(q12, b_squared_q23_q22);
-        let product_of_q33_quotient_of = q33_quotient_of * sum_of_a_squared_q13_q12;
-        let b_squared_q23_q21 = b_squared_q23 * q21;
-        let sum_of_a_squared_q13_q11 = a_squared_q13.mul_add(q11, b_squared_q23_q21);
-        let sum_of_sum_of_a_squared_q13_q12_q32 = c_squared_q33
-            .mul_add(q32, sum_of_a_squared_q13_q12);
-        let quotient_of_2 = one / value_of_sum_of_a_squared_q13_q13;
-        let product_of_a_squared_q11_q12_q22 = a_squared_q11
-            .mul_add(
-                q12,
-                b_squared_q21
-                    .mul_add(
-                        q22,
-                        (sum_of_a_squared_q13_q11 * sum_of_sum_of_a_squared_q13_q12_q32)
-                            .mul_add(
-                                -quotient_of,
-                                c_squared_q31
-                                    * (product_of_q32 - product_of_q33_quotient_of),
-                            ),
-                    ),
-            ) * quotient_of_2;
-        let q13_quotient_of = q13 * quotient_of;
-        let sum_of_a_squared_q13_q13_quotient_of = a_squared_q13
-            .mul_add(-q13_quotient_of, one);
-        let sum_of_b_squared_q23_q23_quotient_of = b_squared_q23_q23
-            .mul_add(-quotient_of, one);
-        let product_of_sum_of_a_squared_q13_q13 = sum_of_a_squared_q13_q13
-            .mul_add(-quotient_of, sum_of_c_squared_q33_q33_quotient_of) * quotient_of_2;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let inverse_value_of = one / value_of;
+        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q12_q13_q23_q33
+            * inverse_value_of_squared;
         from_rows([
             [one, zero, zero],
             [zero, one, zero],
             [zero, zero, one],
             [
-                -product_of_a_squared_q11_q12_q22,
-                (b_squared_q21 * q21)
+                (half * two * sum_of_a_squared_q12_q13_q23_q33)
                     .mul_add(
-                        sum_of_b_squared_q23_q23_quotient_of,
-                        a_squared_q11
-                            * (q11 * sum_of_a_squared_q13_q13_quotient_of
-                                - two * b_squared_q23_q21 * q13_quotient_of)
-                            + c_squared_q31
-                                * (q31 * sum_of_c_squared_q33_q33_quotient_of
-                                    - two * q33_quotient_of * sum_of_a_squared_q13_q11),
-                    ) * quotient_of_2,
-                zero,
-            ],
-            [
-                -(b_squared * q22 * q22)
+                        product_of_inverse_value_of_squared,
+                        -sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                a_squared_q11
                     .mul_add(
-                        sum_of_b_squared_q23_q23_quotient_of,
-                        (c_squared * q32)
+                        q11,
+                        b_squared_q21
                             .mul_add(
-                                two.mul_add(-product_of_q33_quotient_of, product_of_q32),
-                                a_squared * q12
-                                    * (q12 * sum_of_a_squared_q13_q13_quotient_of
-                                        - two * b_squared_q23_q22 * q13_quotient_of),
+                                q21,
+                                (half * two * product_of_inverse_value_of_squared)
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q13_q23_q33,
+                                        c_squared_q31 * q31,
+                                    ),
                             ),
-                    ) * quotient_of_2,
-                product_of_a_squared_q11_q12_q22,
+                    ) * inverse_value_of,
                 zero,
             ],
             [
-                -product_of_sum_of_a_squared_q13_q13
-                    * sum_of_sum_of_a_squared_q13_q12_q32,
-                product_of_sum_of_a_squared_q13_q13
-                    * c_squared_q33.mul_add(q31, sum_of_a_squared_q13_q11),
+                a_squared_q12
+                    .mul_add(
+                        -q12,
+                        b_squared_q22
+                            .mul_add(
+                                -q22,
+                                c_squared_q32
+                                    .mul_add(
+                                        -q32,
+                                        half * two * product_of_inverse_value_of_squared_2
+                                            * sum_of_a_squared_q12_q13_q23_q33,
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+                (half * two * product_of_inverse_value_of_squared)
+                    .mul_add(
+                        -sum_of_a_squared_q12_q13_q23_q33,
+                        sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                zero,
+            ],
+            [
+                (half * two * product_of_inverse_value_of_squared_2)
+                    .mul_add(
+                        sum_of_a_squared_q13_b_squared_q23,
+                        -sum_of_a_squared_q12_q13_q23_q33,
+                    ) * inverse_value_of,
+                (half * two * product_of_inverse_value_of_squared)
+                    .mul_add(
+                        -sum_of_a_squared_q13_b_squared_q23,
+                        sum_of_a_squared_q11_q13_q23_q33,
+                    ) * inverse_value_of,
                 zero,
             ],
         ])

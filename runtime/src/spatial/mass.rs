@@ -1,10 +1,26 @@
 //! Mass properties of a body, and what makes them physical.
 
-use alloc::string::String;
 use nalgebra::{Matrix3, Vector3};
 
 /// Rounding that an inertia matrix may show, in units of its trace.
 const INERTIA_TOLERANCE: f64 = 16.0 * f64::EPSILON;
+
+/// The numbers of [`MassProperties`] in the order in which they are checked.
+const QUANTITIES: [&str; 13] = [
+    "mass",
+    "centre of mass x",
+    "centre of mass y",
+    "centre of mass z",
+    "inertia entry (1, 1)",
+    "inertia entry (2, 1)",
+    "inertia entry (3, 1)",
+    "inertia entry (1, 2)",
+    "inertia entry (2, 2)",
+    "inertia entry (3, 2)",
+    "inertia entry (1, 3)",
+    "inertia entry (2, 3)",
+    "inertia entry (3, 3)",
+];
 
 /// Mass, centre of mass, and inertia about the centre of mass, in body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +40,7 @@ pub enum MassError {
     #[error("{quantity} is {value}, not a finite number")]
     NotFinite {
         /// Which number.
-        quantity: String,
+        quantity: &'static str,
         /// Its value.
         value: f64,
     },
@@ -113,25 +129,13 @@ impl MassProperties {
     }
 
     fn check_finite(&self) -> Result<(), MassError> {
-        let refuse = |quantity: String, value: f64| Err(MassError::NotFinite { quantity, value });
-        if !self.mass.is_finite() {
-            return refuse("mass".into(), self.mass);
+        let entries = self.com.iter().chain(&self.inertia_com);
+        let values = core::iter::once(&self.mass).chain(entries);
+        // The inertia is stored column by column.
+        match QUANTITIES.iter().zip(values).find(|(_, v)| !v.is_finite()) {
+            Some((quantity, &value)) => Err(MassError::NotFinite { quantity, value }),
+            None => Ok(()),
         }
-        for (axis, &value) in ["x", "y", "z"].iter().zip(&self.com) {
-            if !value.is_finite() {
-                return refuse(alloc::format!("centre of mass {axis}"), value);
-            }
-        }
-        for row in 0..3 {
-            for column in 0..3 {
-                let value = self.inertia_com[(row, column)];
-                if !value.is_finite() {
-                    let entry = alloc::format!("inertia entry ({}, {})", row + 1, column + 1);
-                    return refuse(entry, value);
-                }
-            }
-        }
-        Ok(())
     }
 
     fn check_symmetric(&self, limit: f64) -> Result<(), MassError> {

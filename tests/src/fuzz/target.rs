@@ -26,12 +26,17 @@ pub fn check(text: &str) -> Outcome {
 /// Derives a spec, and writes its Rust and its page.
 pub fn pipeline(text: &str) -> Outcome {
     guarded(|| {
-        let joint = match hamel_codegen::derive(text, "input.joint") {
+        // A file is named after its joint.
+        let file = match hamel_codegen::spec::parse(text, "input.joint") {
+            Ok(spec) => format!("{}.joint", spec.name.value),
+            Err(errors) => return refused(text, &errors),
+        };
+        let joint = match hamel_codegen::derive(text, &file) {
             Ok(joint) => joint,
             Err(errors) => return refused(text, &errors),
         };
-        let written = emit::rust::file(&joint, "input.joint").map(|_| ());
-        let page = emit::page(&joint, "input.joint", &emit::Accuracy::default()).map(|_| ());
+        let written = emit::rust::file(&joint, &file).map(|_| ());
+        let page = emit::page(&joint, &file, &emit::Accuracy::default()).map(|_| ());
         match (written, page) {
             (Ok(()), Ok(())) => Outcome::Accepted,
             (Err(error), _) => Outcome::Broken(format!("no Rust: {error}")),

@@ -141,6 +141,7 @@ fn node_of_atom(atom: &Atom) -> Node {
             match (application.function, application.arguments.as_slice()) {
                 (Function::Pi, _) => Node::Pi,
                 (Function::Recip, [divisor]) => Node::one().over(factored(divisor)),
+                (Function::Group, [sum]) => factored(sum),
                 (function, arguments) => {
                     Node::Call(function, arguments.iter().map(factored).collect())
                 }

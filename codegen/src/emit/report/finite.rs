@@ -1,7 +1,6 @@
 //! How the maps that move the state are found: those at finite ϕ, and those onto the manifold.
 
 use crate::derived::{Derived, Kernel, KernelKind, Method};
-use crate::emit::names::Names;
 use crate::emit::rust::{self, meaning};
 
 /// A finite map.
@@ -28,9 +27,8 @@ const FINITE: [KernelKind; 9] = [
 ];
 
 pub(super) fn rows(derived: &Derived) -> Vec<FiniteRow> {
-    let names = Names::new(derived);
     let row = |kernel: &Kernel| FiniteRow {
-        kernel: rust::Method::new(derived, kernel, &names).name().to_owned(),
+        kernel: rust::method_name(derived, kernel).to_owned(),
         meaning: meaning(kernel.kind).to_owned(),
         method: in_words(kernel.method).to_owned(),
     };

@@ -201,7 +201,7 @@ joint slider(lead: m) {
 
     #[test]
     fn sources_are_found_with_their_lines_through_lets() {
-        let derived = derive(SPEC, "test.joint").unwrap_or_else(|errors| panic!("{errors}"));
+        let derived = derive(SPEC, "test").unwrap_or_else(|errors| panic!("{errors}"));
         let lines = |kind| -> Vec<usize> {
             let sources = sources(&derived.spec, kind);
             sources.iter().map(|statement| statement.line).collect()

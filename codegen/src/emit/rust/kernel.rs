@@ -13,6 +13,7 @@ use crate::expr::{Role, Symbol};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Up to this many scalars are read one by one where an argument has more.
 const FEW: usize = 3;
@@ -23,8 +24,13 @@ pub struct Method<'a> {
     kernel: &'a Kernel,
     signature: Signature,
     names: Names,
-    program: Program,
+    program: Arc<Program>,
     used: BTreeSet<Symbol>,
+}
+
+/// Name of the method of a kernel.
+pub fn method_name(derived: &Derived, kernel: &Kernel) -> &'static str {
+    Signature::new(kernel, derived.shape).name
 }
 
 impl<'a> Method<'a> {
@@ -32,7 +38,9 @@ impl<'a> Method<'a> {
     pub fn new(derived: &'a Derived, kernel: &'a Kernel, names: &Names) -> Self {
         let mut names = names.clone();
         bound_symbols(&kernel.steps).for_each(|symbol| names.claim(symbol));
-        let program = Program::new(kernel, names.taken());
+        let program = derived
+            .programs
+            .get(kernel, || Program::new(kernel, names.taken()));
         program
             .bindings
             .iter()

@@ -18,7 +18,7 @@ mod tokens;
 
 pub use docs::meaning;
 pub use index::{Index, index};
-pub use kernel::Method;
+pub use kernel::{Method, method_name};
 
 use super::names::type_name;
 use crate::derived::Derived;

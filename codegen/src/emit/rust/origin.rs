@@ -92,7 +92,9 @@ fn collect(expression: &Expr, found: &mut BTreeSet<Node>) {
             && application.function != Function::Pi
         {
             let Application { arguments, .. } = application.as_ref();
-            found.insert(factored(&Expr::atom(atom.clone())));
+            if application.function != Function::Group {
+                found.insert(factored(&Expr::atom(atom.clone())));
+            }
             arguments
                 .iter()
                 .for_each(|argument| collect(argument, found));

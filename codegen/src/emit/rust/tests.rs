@@ -27,7 +27,7 @@ joint crank(/** Radius. */ outer: m, inner: m) {
 }";
 
 fn derived(source: &str) -> Derived {
-    derive(source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"))
+    derive(source, "test").unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn emitted(derived: &Derived) -> String {

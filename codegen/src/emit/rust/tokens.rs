@@ -185,6 +185,7 @@ impl<'a> Writer<'a> {
             Function::Ln => quote! { #first.ln() },
             Function::Sqrt => quote! { #first.sqrt() },
             Function::Recip => quote! { (T::one() / #first) },
+            Function::Group => quote! { #first },
             Function::Pi => quote! { pi },
             Function::Atan2 => {
                 let x = arguments.get(1).map(|x| self.formula(x));

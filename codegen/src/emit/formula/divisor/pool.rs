@@ -247,6 +247,7 @@ impl Writer<'_> {
                     .collect();
                 match (function, arguments.len()) {
                     (Function::Recip, 1) => Node::one().over(arguments.remove(0)),
+                    (Function::Group, 1) => arguments.remove(0),
                     _ => Node::Call(*function, arguments),
                 }
             }

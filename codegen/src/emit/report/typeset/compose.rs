@@ -121,6 +121,7 @@ fn call(
         Function::Recip => {
             return raised(Math::Fraction(Box::new(one()), first()).grouped(), exponent);
         }
+        Function::Group => return raised(first().grouped(), exponent),
         Function::Cos => Math::Word("cos".into()),
         Function::Sin => Math::Word("sin".into()),
         Function::Exp => Math::Word("exp".into()),

@@ -1,7 +1,12 @@
-//! How long generation is felt: the library's build script as built, and one spec in a crate with cargo's default profile.
+//! How long generation is felt: the library's build script as built, one spec in a crate with cargo's default profile, how the
+//! time grows with the number of joints, and the way from an edited spec to compiled kernels.
 //!
 //! `cargo bench --package hamel-tests --bench generation`. Each figure is the wall-clock time of the build script's own
-//! process, minimum and median over its runs; compiling the generator is not part of it.
+//! process (of cargo, for the edit), minimum and median over its runs; compiling the generator is not part of it. `HAMEL_BENCH_SCRATCH` names another
+//! folder for the builds than `target/generation-bench`.
+
+mod edit;
+mod scaling;
 
 use std::error::Error;
 use std::ffi::OsStr;
@@ -16,13 +21,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("..")
         .canonicalize()?;
-    let scratch = root.join("target/generation-bench");
-    library(&root, &scratch)?;
-    downstream(&root, &scratch)
+    let scratch = std::env::var_os("HAMEL_BENCH_SCRATCH").map(PathBuf::from);
+    let scratch = scratch.unwrap_or_else(|| root.join("target/generation-bench"));
+    let script = library(&root, &scratch)?;
+    downstream(&root, &scratch)?;
+    scaling::scaling(&script, &scratch)?;
+    edit::edit(&root, &scratch)
 }
 
 /// The build script of the library, built as `cargo build` builds it.
-fn library(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
+fn library(root: &Path, scratch: &Path) -> Result<PathBuf, Box<dyn Error>> {
     let target = scratch.join("library");
     cargo(root, &target, &["build", "--package", "hamel-joints"])?;
     let script = newest_script(&target, "hamel-joints")?;
@@ -38,7 +46,7 @@ fn library(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
         &[("HAMEL_GENERATE", "check")],
     )?;
     report(&format!("library, {count} specs"), times);
-    Ok(())
+    Ok(script)
 }
 
 /// A crate outside the workspace with one spec and cargo's default profile, so that its build script is unoptimised.
@@ -137,8 +145,12 @@ fn run(
     Ok(times)
 }
 
+/// Seconds of a time.
+fn seconds(time: &Duration) -> f64 {
+    time.as_secs_f64()
+}
+
 fn report(name: &str, times: Vec<Duration>) {
-    let seconds = |time: &Duration| time.as_secs_f64();
     let (least, median) = (
         times.first().map(seconds),
         times.get(times.len() / 2).map(seconds),
