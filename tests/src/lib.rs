@@ -5,6 +5,7 @@ pub mod differences;
 pub mod figures;
 pub mod fuzz;
 pub mod laws;
+pub mod motion;
 pub mod oracle;
 pub mod random;
 pub mod reference_form;

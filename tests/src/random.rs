@@ -3,6 +3,7 @@
 use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
+use hamel::registry::JointRegistry;
 use hamel::spatial::{MassProperties, Pose, so3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -33,7 +34,14 @@ pub struct Case {
 /// # Panics
 /// Where a joint refuses the parameter.
 pub fn library() -> Vec<Arc<dyn AnyJoint>> {
-    let registry = hamel_joints::registry();
+    kinds(&hamel_joints::registry())
+}
+
+/// Every joint of a registry with every parameter 0.7.
+///
+/// # Panics
+/// Where a joint refuses the parameter.
+pub fn kinds(registry: &JointRegistry) -> Vec<Arc<dyn AnyJoint>> {
     let entries = registry.entries();
     let joints = entries.map(|entry| {
         (entry.build)(&vec![0.7; entry.parameters.len()]).expect("0.7 is a legal parameter")
