@@ -159,7 +159,8 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             .fixed_rows::<3>(0)
             .norm();
         let scale = match turn > 0.1 {
-            true => (std::f64::consts::PI - 1e-6) / turn,
+            // An angle of Q may turn further than the child does, as on the flat side of an ellipse.
+            true => (std::f64::consts::PI - 1e-6) / turn.max(phi.amax()),
             false => std::f64::consts::PI,
         };
         [SVector::zeros(), phi * 1e-8, *phi, phi * scale]

@@ -131,18 +131,27 @@ fn mass(random: &mut ChaCha8Rng) -> MassProperties {
     MassProperties::new(mass, vector(random), symmetric).expect("physical by construction")
 }
 
-/// Φ(home, ϕ) for every joint, |ϕ| up to 2.5.
+/// Least distance from a singular set, in the value of its function: nearer, derivatives of high order grow beyond what differences resolve.
+const CLEARANCE: f64 = 0.3;
+
+/// Φ(home, ϕ) for every joint, |ϕ| up to 2.5, away from where a joint ends.
 ///
 /// # Panics
 /// Where a joint cannot be moved from home.
 pub fn configuration(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Vec<f64> {
-    let own = |(index, size): (usize, usize)| {
+    let mut draw = |index: usize, size: usize| {
         let mut phi = numbers(random, size);
         let norm = phi.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
         let scale = random.random_range(0.0..REACH) / norm.max(1e-3);
         phi.iter_mut().for_each(|entry| *entry *= scale);
         let moved = mechanism.configuration_from_local(index, &phi);
         moved.expect("phi is finite and of the joint's size")
+    };
+    let own = |(index, size): (usize, usize)| {
+        let joint = mechanism.bodies()[index].joint();
+        let is_clear = |q: &Vec<f64>| joint.singularity(q) >= CLEARANCE;
+        let mut draws = std::iter::repeat_with(|| draw(index, size));
+        draws.find(is_clear).expect("endless draws")
     };
     let sizes = mechanism
         .bodies()

@@ -30,6 +30,6 @@ pub use grid::Grid;
 pub use jet::Jet;
 pub use outputs::{check_lanes, measure_duals};
 pub use points::{Case, Points};
-pub use suite::{check, measure};
+pub use suite::{Shortfall, check, measure};
 pub use table::Table;
 pub use tracked::{BITS, Tracked};
