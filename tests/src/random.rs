@@ -3,7 +3,7 @@
 use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
-use hamel::registry::JointRegistry;
+use hamel::registry::{JointEntry, JointRegistry};
 use hamel::spatial::{MassProperties, Pose, so3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -29,24 +29,28 @@ pub struct Case {
     pub efforts: Vec<f64>,
 }
 
-/// Every joint of the library with every parameter 0.7: a new spec enters by itself.
+/// Every joint of the library with parameters near 0.7, no two alike: a new spec enters by itself.
 ///
 /// # Panics
-/// Where a joint refuses the parameter.
+/// Where a joint refuses them in ascending and in descending order.
 pub fn library() -> Vec<Arc<dyn AnyJoint>> {
     kinds(&hamel_joints::registry())
 }
 
-/// Every joint of a registry with every parameter 0.7.
+/// Every joint of a registry with parameters near 0.7, no two alike.
 ///
 /// # Panics
-/// Where a joint refuses the parameter.
+/// Where a joint refuses them in ascending and in descending order.
 pub fn kinds(registry: &JointRegistry) -> Vec<Arc<dyn AnyJoint>> {
-    let entries = registry.entries();
-    let joints = entries.map(|entry| {
-        (entry.build)(&vec![0.7; entry.parameters.len()]).expect("0.7 is a legal parameter")
-    });
-    joints.collect()
+    let build = |entry: &JointEntry| {
+        let ascending: Vec<f64> = (0..entry.parameters.len())
+            .map(|i| 0.7 + 0.15 * i as f64)
+            .collect();
+        let descending: Vec<f64> = ascending.iter().rev().copied().collect();
+        let built = (entry.build)(&ascending).or_else(|_| (entry.build)(&descending));
+        built.unwrap_or_else(|error| panic!("{error}"))
+    };
+    registry.entries().map(build).collect()
 }
 
 /// `count` cases on trees of 1 to `largest` joints of the given kinds, each kind at the root of some of them.

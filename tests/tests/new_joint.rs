@@ -8,10 +8,10 @@ use std::process::{Command, Output};
 
 const SPEC: &str = "hamel = 1;
 
-/// Cylindrical joint: a turn about the common z axis and a slide along it.
-joint cylindrical {
-    config  theta: R1, z: R1;   // rad, m
-    H     = rot_z(theta) * trans_z(z);
+/// Pin in a slot: slides along the parent's x axis and turns about z.
+joint pin_slot {
+    config  theta: R1, x: R1;   // rad, m
+    H     = trans_x(x) * rot_z(theta);
 }
 ";
 
@@ -93,20 +93,20 @@ fn a_new_spec_is_picked_up_checked_and_removed() {
     let build = ["build", "--package", "hamel-joints"];
     assert_eq!(copy.check(), Ok(()), "the committed files are fresh");
 
-    fs::write(copy.path("joint-specs/cylindrical.joint"), SPEC).expect("a new spec");
+    fs::write(copy.path("joint-specs/pin_slot.joint"), SPEC).expect("a new spec");
     let missing = copy.check().expect_err("a file is missing");
     assert!(
-        missing.contains("missing") && missing.contains("cylindrical.rs"),
+        missing.contains("missing") && missing.contains("pin_slot.rs"),
         "{missing}"
     );
     assert!(
-        !copy.path("generated/src/joints/cylindrical.rs").exists(),
+        !copy.path("generated/src/joints/pin_slot.rs").exists(),
         "checking writes nothing"
     );
 
     copy.succeeds(&build);
-    assert!(copy.path("generated/src/joints/cylindrical.rs").exists());
-    assert!(copy.path("generated/pages/cylindrical.md").exists());
+    assert!(copy.path("generated/src/joints/pin_slot.rs").exists());
+    assert!(copy.path("generated/pages/pin_slot.md").exists());
     assert_eq!(copy.check(), Ok(()));
     copy.succeeds(&["test", "--package", "hamel-tests", "--test", "laws"]);
     copy.succeeds(&[
@@ -116,27 +116,27 @@ fn a_new_spec_is_picked_up_checked_and_removed() {
         "--",
         "joints",
         "explain",
-        "cylindrical",
+        "pin_slot",
     ]);
 
-    let kernels = copy.path("generated/src/joints/cylindrical.rs");
+    let kernels = copy.path("generated/src/joints/pin_slot.rs");
     let text = fs::read_to_string(&kernels).expect("the kernels");
     fs::write(&kernels, format!("{text}\n// edited\n")).expect("an edit");
     let stale = copy.check().expect_err("a file is stale");
     assert!(
-        stale.contains("stale") && stale.contains("cylindrical.rs"),
+        stale.contains("stale") && stale.contains("pin_slot.rs"),
         "{stale}"
     );
     fs::write(&kernels, text).expect("the edit undone");
 
-    fs::remove_file(copy.path("joint-specs/cylindrical.joint")).expect("the spec removed");
+    fs::remove_file(copy.path("joint-specs/pin_slot.joint")).expect("the spec removed");
     let surplus = copy.check().expect_err("a file is surplus");
     assert!(
-        surplus.contains("surplus") && surplus.contains("cylindrical.rs"),
+        surplus.contains("surplus") && surplus.contains("pin_slot.rs"),
         "{surplus}"
     );
     copy.succeeds(&build);
-    assert!(!copy.path("generated/src/joints/cylindrical.rs").exists());
-    assert!(!copy.path("generated/pages/cylindrical.md").exists());
+    assert!(!copy.path("generated/src/joints/pin_slot.rs").exists());
+    assert!(!copy.path("generated/pages/pin_slot.md").exists());
     assert_eq!(copy.check(), Ok(()));
 }

@@ -22,8 +22,8 @@ Examples:
       derives and proves a spec of your own; errors are shown where they stand
   hamel joints explain-error E0305
       why a spec is refused, with a wrong and a right one
-  hamel joints new cylindrical
-      writes joint-specs/cylindrical.joint to start from
+  hamel joints new pin_slot
+      writes joint-specs/pin_slot.joint to start from
 
 A JOINT is the name of a library joint, or the path of a .joint file (it contains `/` or ends in .joint).";
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Write a spec to start from.
 ///
-/// The file is a complete joint (a cylindrical one): change it, then run `hamel joints check FILE` and `cargo build`.
+/// The file is a complete joint (a pin in a slot): change it, then run `hamel joints check FILE` and `cargo build`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Name of the joint, in snake_case
@@ -47,9 +47,9 @@ fn template(name: &str) -> String {
 
 /// One sentence that says what moves. Frames and units of Q and v.
 joint {name} {{
-    config  theta: R1, z: R1;           // rad, m: the stored scalars of Q
+    config  theta: R1, x: R1;           // rad, m: the stored scalars of Q
     // A group instead: config Q: SO3; basis e1, e2, e3 of so3; velocity in child;
-    H     = rot_z(theta) * trans_z(z);  // child coordinates to parent coordinates
+    H     = trans_x(x) * rot_z(theta);  // child coordinates to parent coordinates
     // Declared where they differ from what is derived: Phi, X. Nonholonomic: A, S_bar.
 }}
 "

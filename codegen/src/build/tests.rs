@@ -56,12 +56,47 @@ fn a_library_has_a_file_and_a_page_for_each_joint() {
     assert!(error.to_string().contains("missing"), "{error}");
     build.generate(false).expect("the spec is right");
     build.generate(true).expect("all is fresh now");
-    for name in ["modules/slider.rs", "modules/mod.rs", "pages/slider.md"] {
+    for name in [
+        "modules/slider.rs",
+        "modules/mod.rs",
+        "pages/slider.md",
+        "pages/slider.svg",
+        "JOINTS.md",
+    ] {
         assert!(folder.join(name).exists(), "{name}");
     }
     fs::remove_file(folder.join("joints/slider.joint")).expect("can be removed");
     build.generate(false).expect("no spec is no error");
     assert!(!folder.join("modules/slider.rs").exists() && !folder.join("pages/slider.md").exists());
+    fs::remove_dir_all(folder).expect("can be removed");
+}
+
+#[test]
+fn pages_show_the_errors_that_were_measured() {
+    let folder = folder("accuracy");
+    write(&folder, "slider.joint", SLIDER);
+    let table = folder.join("kernel_accuracy.csv");
+    let build = Build::new()
+        .specs(folder.join("joints"))
+        .accuracy(&table)
+        .library(folder.join("modules"), folder.join("pages"));
+    let overview = || fs::read_to_string(folder.join("JOINTS.md")).expect("is written");
+    build.generate(false).expect("the table may be absent");
+    assert!(!overview().contains("Measured errors"));
+    let header = "joint,kernel,type,worst ulp,points";
+    fs::write(&table, format!("{header}\nslider,pose,f64,0.50,100\n")).expect("writes");
+    build.generate(true).expect_err("the pages are stale");
+    build.generate(false).expect("the table is good");
+    assert!(overview().contains("| `slider` | 0.50 (`pose`) |"));
+    fs::write(&table, format!("{header}\nslider,pose\n")).expect("writes");
+    let error = build
+        .generate(false)
+        .expect_err("a line is short")
+        .to_string();
+    assert!(
+        error.contains("kernel_accuracy.csv: line 2 is `slider,pose`"),
+        "{error}"
+    );
     fs::remove_dir_all(folder).expect("can be removed");
 }
 

@@ -220,7 +220,8 @@ fn power_of_two(x: f64, n: i32) -> f64 {
     let mut result = x;
     while left != 0 {
         let step = left.clamp(-1000, 1000);
-        result *= f64::powi(2.0, step);
+        // 2^step by its exponent bits: powi would multiply its way there.
+        result *= f64::from_bits(((1023 + step) as u64) << 52);
         left -= step;
     }
     result
@@ -272,6 +273,7 @@ impl Number for Precise {
             (Function::Ln, [x]) => x.ln(),
             (Function::Sqrt, [x]) => x.sqrt(),
             (Function::Recip, [x]) => self.same(1).quotient(x),
+            (Function::Group, [x]) => x.clone(),
             (Function::Atan2, [y, x]) => y.atan2(x),
             (Function::Stumpff(order), [s]) => s.stumpff(order.into()),
             (Function::DexpInverse(derivative), [s]) => s.dexp_inverse(derivative.into()),

@@ -112,34 +112,35 @@ pub const SPECS: &[(&str, &str)] = &[
 ];
 
 /// Calls the macro `$callback` once for each joint with
-/// `(module, Type, expression, N, K, S, C)`: the expression builds the joint with every parameter 0.7.
+/// `(module, Type, expression, N, K, S, C)`: the expression builds the joint with parameters of its range, no two alike.
 #[macro_export]
 macro_rules! for_each_joint {
     ($callback:path) => {
         $callback!(ball, $crate::joints::Ball, $crate::joints::Ball, 9, 3, 3, 0);
         $callback!(ball_child, $crate::joints::BallChild, $crate::joints::BallChild, 9, 3, 3, 0);
-        $callback!(ball_on_plane, $crate::joints::BallOnPlane, $crate::joints::BallOnPlane::new(0.7), 11, 5, 3, 2);
+        $callback!(ball_on_plane, $crate::joints::BallOnPlane, $crate::joints::BallOnPlane::new(0.7f64), 11, 5, 3, 2);
         $callback!(ball_quaternion, $crate::joints::BallQuaternion, $crate::joints::BallQuaternion, 4, 3, 3, 0);
         $callback!(ball_quaternion_child, $crate::joints::BallQuaternionChild, $crate::joints::BallQuaternionChild, 4, 3, 3, 0);
         $callback!(cart, $crate::joints::Cart, $crate::joints::Cart, 6, 3, 2, 1);
         $callback!(cylindrical, $crate::joints::Cylindrical, $crate::joints::Cylindrical, 2, 2, 2, 0);
-        $callback!(ellipse, $crate::joints::Ellipse, $crate::joints::Ellipse::new(0.7, 0.7), 2, 1, 1, 0);
-        $callback!(ellipsoid, $crate::joints::Ellipsoid, $crate::joints::Ellipsoid::new(0.7, 0.7, 0.7), 9, 3, 3, 0);
-        $callback!(falling_disk, $crate::joints::FallingDisk, $crate::joints::FallingDisk::new(0.7), 11, 5, 3, 2);
+        $callback!(ellipse, $crate::joints::Ellipse, $crate::joints::Ellipse::new(0.7f64, 0.85f64), 2, 1, 1, 0);
+        $callback!(ellipsoid, $crate::joints::Ellipsoid, $crate::joints::Ellipsoid::new(0.7f64, 0.85f64, 1f64), 9, 3, 3, 0);
+        $callback!(falling_disk, $crate::joints::FallingDisk, $crate::joints::FallingDisk::new(0.7f64), 11, 5, 3, 2);
         $callback!(free, $crate::joints::Free, $crate::joints::Free, 12, 6, 6, 0);
         $callback!(gimbal, $crate::joints::Gimbal, $crate::joints::Gimbal, 3, 3, 3, 0);
         $callback!(knife_edge, $crate::joints::KnifeEdge, $crate::joints::KnifeEdge, 3, 3, 2, 1);
-        $callback!(offset_sleigh, $crate::joints::OffsetSleigh, $crate::joints::OffsetSleigh::new(0.7), 6, 3, 2, 1);
+        $callback!(offset_sleigh, $crate::joints::OffsetSleigh, $crate::joints::OffsetSleigh::new(0.7f64), 6, 3, 2, 1);
         $callback!(planar, $crate::joints::Planar, $crate::joints::Planar, 6, 3, 3, 0);
         $callback!(planar_euclidean, $crate::joints::PlanarEuclidean, $crate::joints::PlanarEuclidean, 3, 3, 3, 0);
         $callback!(pointing, $crate::joints::Pointing, $crate::joints::Pointing, 9, 3, 2, 1);
         $callback!(prismatic, $crate::joints::Prismatic, $crate::joints::Prismatic, 1, 1, 1, 0);
         $callback!(revolute, $crate::joints::Revolute, $crate::joints::Revolute, 1, 1, 1, 0);
         $callback!(revolute_circle, $crate::joints::RevoluteCircle, $crate::joints::RevoluteCircle, 2, 1, 1, 0);
-        $callback!(screw, $crate::joints::Screw, $crate::joints::Screw::new(0.7), 1, 1, 1, 0);
-        $callback!(torus, $crate::joints::Torus, $crate::joints::Torus::new(0.7, 0.7), 4, 2, 2, 0);
+        $callback!(screw, $crate::joints::Screw, $crate::joints::Screw::new(0.7f64), 1, 1, 1, 0); $callback
+        ! (torus, $crate::joints::Torus, $crate::joints::Torus::new(0.85f64, 0.7f64), 4,
+        2, 2, 0); 
         $callback!(translation, $crate::joints::Translation, $crate::joints::Translation, 3, 3, 3, 0);
         $callback!(universal, $crate::joints::Universal, $crate::joints::Universal, 2, 2, 2, 0);
-        $callback!(upright_wheel, $crate::joints::UprightWheel, $crate::joints::UprightWheel::new(0.7), 7, 4, 2, 2);
+        $callback!(upright_wheel, $crate::joints::UprightWheel, $crate::joints::UprightWheel::new(0.7f64), 7, 4, 2, 2);
     };
 }

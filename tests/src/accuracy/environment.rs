@@ -1,8 +1,9 @@
 //! Expressions of a spec in jets.
 
 use super::{Grid, Jet};
-use hamel_codegen::expr::{Atom, Expr, Function, Number, Symbol};
+use hamel_codegen::expr::{Atom, Expr, Function, Monomial, Number, Rational, Symbol};
 use hamel_codegen::matrix::Matrix;
+use num_traits::One;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
@@ -28,16 +29,26 @@ impl Environment {
 
     /// The value of an expression; NaN where a symbol has none.
     pub fn evaluate(&self, expression: &Expr) -> Jet {
-        let zero = Jet::input(0.0);
-        expression
+        let mut terms = expression
             .terms()
-            .fold(zero, |sum, (monomial, coefficient)| {
-                let start = Jet::input(1.0).rational(coefficient);
-                let term = monomial.factors().fold(start, |product, (atom, power)| {
-                    product.times(&self.atom(atom).power(power))
-                });
-                sum.plus(&term)
-            })
+            .map(|(monomial, coefficient)| self.term(monomial, coefficient));
+        let first = terms.next().unwrap_or_else(|| Jet::input(0.0));
+        terms.fold(first, |sum, term| sum.plus(&term))
+    }
+
+    /// `coefficient · monomial`, without products by 1: most of them are.
+    fn term(&self, monomial: &Monomial, coefficient: &Rational) -> Jet {
+        let power = |(atom, power): (&Atom, i32)| match power {
+            1 => self.atom(atom),
+            _ => self.atom(atom).power(power),
+        };
+        let product = monomial.factors().map(power).reduce(|a, b| a.times(&b));
+        let number = || Jet::input(1.0).rational(coefficient);
+        match product {
+            None => number(),
+            Some(product) if coefficient.is_one() => product,
+            Some(product) => product.times(&number()),
+        }
     }
 
     /// Each entry of a list.
@@ -66,6 +77,7 @@ impl Environment {
         let arguments = self.evaluate_all(&application.arguments);
         let value = match (application.function, arguments.as_slice()) {
             (Function::Recip, [x]) => Jet::input(1.0).over(x),
+            (Function::Group, [x]) => x.clone(),
             (function, _) => Jet::input(1.0).function(function, &arguments),
         };
         self.functions

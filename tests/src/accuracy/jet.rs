@@ -227,7 +227,8 @@ fn derivative(function: Function, order: u8, x: &Tracked) -> Tracked {
             ahead.plus(&behind).times(&Tracked::input(0.5))
         }
         (Function::DexpInverse(n), _) => once(Function::DexpInverse(n + 1)),
-        (Function::Pi | Function::Atan2, _) => number(0),
+        (Function::Group, 1) => number(1),
+        (Function::Group | Function::Pi | Function::Atan2, _) => number(0),
     }
 }
 

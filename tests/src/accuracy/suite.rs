@@ -3,6 +3,7 @@
 use super::compare::{Measured, Worst};
 use super::definition::{AtZero, Definition, slopes, values};
 use super::points::{Case, Points, Range};
+use super::tracked::larger;
 use super::{Grid, Tracked};
 use hamel::joint::Joint;
 use hamel::nalgebra::{SMatrix, SVector};
@@ -219,21 +220,22 @@ impl<J> Subject<'_, J> {
         );
     }
 
-    /// AᵀS̄ = 0 where one of both is derived and so not unique: in ulp of the largest product.
+    /// AᵀS̄ = 0 where one of both is derived and so not unique: in ulp of the largest entries, of which both are rounded.
     fn forbidden<T: Measured, const K: usize, const S: usize, const C: usize>(
         &self,
         a: &SMatrix<T, K, C>,
         basis: &SMatrix<T, K, S>,
         worst: &mut Worst,
     ) {
+        let largest =
+            |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, |m: f64, x| larger(m, x.abs()));
+        let sizes =
+            largest(&mut a.iter().map(|x| x.wide())) * largest(&mut basis.iter().map(|x| x.wide()));
         for c in 0..C {
             for s in 0..S {
                 let product = |k: usize| a[(k, c)].wide() * basis[(k, s)].wide();
-                let (sum, largest) = (0..K)
-                    .map(product)
-                    .fold((0.0, 0.0_f64), |(sum, m), x| (sum + x, m.max(x.abs())));
-                let unit = T::ULP * if largest > 0.0 { largest } else { 1.0 };
-                worst.error("constraint", sum.abs() / unit, || {
+                let sum: f64 = (0..K).map(product).sum();
+                worst.error("constraint", sum.abs() / (T::ULP * sizes), || {
                     format!("A = {a:?}, S_bar = {basis:?}")
                 });
             }

@@ -4,10 +4,15 @@ use super::Worst;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// Joint, kernel and type of numbers.
+type Key = (String, String, String);
+/// Worst error in ulp, and number of points.
+type Entry = (f64, usize);
+
 /// Rows by joint, kernel and type of numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    rows: BTreeMap<(String, String, String), (f64, usize)>,
+    rows: BTreeMap<Key, Entry>,
 }
 
 const HEADER: &str = "joint,kernel,type,worst_ulp,points";
@@ -43,7 +48,7 @@ impl Table {
     }
 }
 
-fn row(line: &str) -> Option<((String, String, String), (f64, usize))> {
+fn row(line: &str) -> Option<(Key, Entry)> {
     let fields: Vec<&str> = line.split(',').collect();
     let [joint, kernel, number, error, points] = fields.as_slice() else {
         return None;

@@ -208,6 +208,7 @@ fn slope(function: Function, x: &Precise) -> Precise {
             (ahead - stumpff(k + 1, x)).halved(1)
         }
         Function::DexpInverse(n) => x.dexp_inverse(u32::from(n) + 1),
+        Function::Group => x.same(1),
         Function::Pi | Function::Atan2 => x.same(0),
     }
 }

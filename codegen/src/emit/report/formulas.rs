@@ -2,6 +2,7 @@
 
 use super::notation::Notation;
 use super::series::series;
+use super::shared;
 use super::statement;
 use super::typeset::{Equation, Mark, Math};
 use crate::derived::{Derived, Kernel, KernelKind};
@@ -201,7 +202,27 @@ fn summed(term: Math) -> Math {
     Math::product([Math::Letter('Σ'), term])
 }
 
+/// What the kernel's values are; with names for what they share where they are long.
 fn equations(
+    derived: &Derived,
+    notation: &Notation,
+    kernel: &Kernel,
+    name: &Math,
+) -> Vec<Equation> {
+    let whole = whole_equations(derived, notation, kernel, name);
+    if !shared::is_long(&whole) || kernel.kind == KernelKind::Pose {
+        return whole;
+    }
+    let names: Vec<Math> = match kernel.outputs.len() {
+        1 => vec![name.clone()],
+        slices => (1..=slices)
+            .map(|k| along(name, Math::integer(k)))
+            .collect(),
+    };
+    shared::equations(derived, notation, kernel, &names).unwrap_or(whole)
+}
+
+fn whole_equations(
     derived: &Derived,
     notation: &Notation,
     kernel: &Kernel,
@@ -231,16 +252,10 @@ fn gradient(
     if slices.iter().all(Matrix::is_zero) {
         return vec![notation.equation(name.clone(), &zero)];
     }
-    let along = |index: Math| match name {
-        Math::Partial(above, below) => Math::Partial(
-            above.clone(),
-            Box::new(below.as_ref().clone().with_index(index)),
-        ),
-        other => other.clone(),
-    };
     if slices.len() <= FEW {
         let each = slices.iter().enumerate();
-        let each = each.map(|(k, slice)| notation.equation(along(Math::integer(k + 1)), slice));
+        let each =
+            each.map(|(k, slice)| notation.equation(along(name, Math::integer(k + 1)), slice));
         return each.collect();
     }
     let (k, first) = (
@@ -251,8 +266,19 @@ fn gradient(
     let sum = terms.fold(first, |sum, (slice, local)| {
         sum.plus(&slice.scale(&Expr::symbol(local)))
     });
-    let term = Math::product([Math::Letter('ϕ').with_index(k.clone()), along(k)]);
+    let term = Math::product([Math::Letter('ϕ').with_index(k.clone()), along(name, k)]);
     vec![notation.equation(summed(term), &sum)]
+}
+
+/// The derivative along one ϕ.
+fn along(name: &Math, index: Math) -> Math {
+    match name {
+        Math::Partial(above, below) => Math::Partial(
+            above.clone(),
+            Box::new(below.as_ref().clone().with_index(index)),
+        ),
+        other => other.clone(),
+    }
 }
 
 fn homogeneous(rotation: &Matrix, translation: &Matrix) -> Matrix {

@@ -8,6 +8,7 @@ pub mod notation;
 mod provenance;
 mod ranges;
 mod series;
+mod shared;
 mod tables;
 pub mod typeset;
 pub mod units;

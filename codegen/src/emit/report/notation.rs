@@ -2,7 +2,7 @@
 
 use super::typeset::{Equation, Mark, Math, composed, named};
 use crate::derived::Derived;
-use crate::emit::formula::factored;
+use crate::emit::formula::{Node, factored};
 use crate::expr::{Expr, Symbol};
 use crate::manifold::{Factor, Kind};
 use crate::matrix::Matrix;
@@ -61,10 +61,19 @@ impl Notation {
         self.set_symbol(symbol).text()
     }
 
+    /// Gives a symbol a name.
+    pub fn name(&mut self, symbol: &Symbol, name: Math) {
+        self.by_symbol.insert(symbol.clone(), name);
+    }
+
     /// An expression, set with common factors pulled out.
     pub fn set(&self, expression: &Expr) -> Math {
-        let node = factored(expression).polished();
-        composed(&node, &|symbol| self.set_symbol(symbol))
+        self.formula(&factored(expression).polished())
+    }
+
+    /// A formula, set as it stands.
+    pub fn formula(&self, node: &Node) -> Math {
+        composed(node, &|symbol| self.set_symbol(symbol))
     }
 
     /// `left = matrix`, short where the matrix is 0, I or a scalar.

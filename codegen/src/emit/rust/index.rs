@@ -1,5 +1,6 @@
 //! The module that lists all joints: re-exports, registry entries, specs, and a macro for tests.
 
+use super::example;
 use super::joint::sizes;
 use super::tokens::ident;
 use super::{Malformed, docs, header, nested, text, type_ident};
@@ -55,12 +56,12 @@ pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, M
 fn for_each_joint(joints: &[&Derived]) -> TokenStream {
     let docs = docs::outer(&[
         "Calls the macro `$callback` once for each joint with",
-        "`(module, Type, expression, N, K, S, C)`: the expression builds the joint with every parameter 0.7.",
+        "`(module, Type, expression, N, K, S, C)`: the expression builds the joint with parameters of its range, no two alike.",
     ]);
     let calls = joints.iter().map(|joint| {
         let (module, name) = (ident(&joint.spec.name.value), type_ident(joint));
         let [n, k, s, c] = sizes(joint);
-        let values = joint.spec.parameters.iter().map(|_| quote! { 0.7 });
+        let values = example::parameters(&joint.spec);
         let value = match joint.spec.parameters.is_empty() {
             true => quote! { $crate::joints::#name },
             false => quote! { $crate::joints::#name::new(#(#values),*) },

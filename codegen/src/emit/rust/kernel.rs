@@ -63,6 +63,11 @@ impl<'a> Method<'a> {
         self.signature.name
     }
 
+    /// What it computes.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
     /// The operations of the emitted method.
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::of_program(&self.program);

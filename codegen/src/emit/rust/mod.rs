@@ -3,6 +3,7 @@
 mod comment;
 mod docs;
 mod entry;
+mod example;
 mod index;
 mod joint;
 mod kernel;

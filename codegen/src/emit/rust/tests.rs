@@ -238,7 +238,7 @@ fn ranges_and_requirements_are_checked() {
             "It is greater than 0 and at most 2.5.",
             "They must meet `outer > 2 * inner`.",
             "type T = f64;",
-            "check_requirement( \"crank\", \"outer > 2 * inner\", outer - two * inner, &PARAMETERS, values, )?;",
+            "check_requirement( \"crank\", \"outer > 2 * inner\", two.mul_add(-inner, outer), &PARAMETERS, values, )?;",
         ],
     );
     assert!(

@@ -53,9 +53,9 @@ fn operator(sign: char, attributes: &str) -> String {
 /// Not declared an accent: fonts without tables for mathematics would set it into the letter.
 fn marked(mark: Mark, inner: &Math) -> String {
     let sign = match mark {
-        Mark::Bar => '‾',
+        Mark::Bar => '¯',
         Mark::Dot => '˙',
-        Mark::Tilde => '˜',
+        Mark::Tilde => '~',
     };
     format!(
         "<mover>{}<mo stretchy=\"false\">{sign}</mo></mover>",

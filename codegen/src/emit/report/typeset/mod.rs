@@ -135,6 +135,26 @@ impl Math {
         Self::Row(vec![self, Self::Sign('='), right])
     }
 
+    /// Number of letters, numbers and signs.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Row(parts) | Self::Matrix(_, parts) => parts.iter().map(Self::size).sum(),
+            Self::Marked(_, inner)
+            | Self::Part(inner, _)
+            | Self::Root(inner)
+            | Self::Group(inner) => inner.size(),
+            Self::Fraction(above, below) | Self::Partial(above, below) => {
+                above.size() + below.size()
+            }
+            Self::Script(base, below, above) => {
+                let scripts = [below, above].into_iter().flatten();
+                base.size() + scripts.map(|part| part.size()).sum::<usize>()
+            }
+            Self::Space => 0,
+            Self::Letter(_) | Self::Word(_) | Self::Number(_) | Self::Sign(_) | Self::Minus => 1,
+        }
+    }
+
     /// On one line, or a matrix over several.
     pub fn text(&self) -> String {
         text::written(self)

@@ -1,0 +1,74 @@
+//! Long formulas in names for what their entries share, as the emitted kernel computes them.
+
+use super::notation::Notation;
+use super::typeset::{Equation, Math};
+use crate::derived::{Derived, Kernel};
+use crate::emit::formula::Binding;
+use crate::emit::names::Names;
+use crate::emit::rust::Method;
+use crate::expr::Symbol;
+
+/// Parts of a formula that a reader takes in as a whole: longer ones are written with names for what they share.
+const LONGEST: usize = 300;
+
+/// Whether the equations are too long to be read as they stand.
+pub fn is_long(equations: &[Equation]) -> bool {
+    equations
+        .iter()
+        .map(|equation| equation.right.size())
+        .sum::<usize>()
+        > LONGEST
+}
+
+/// The values of a kernel, one for each of `names`, and after them w₁, w₂, … as they follow from each other; nothing for a
+/// kernel that calls the runtime.
+pub fn equations(
+    derived: &Derived,
+    notation: &Notation,
+    kernel: &Kernel,
+    names: &[Math],
+) -> Option<Vec<Equation>> {
+    let claimed = Names::new(derived);
+    let method = Method::new(derived, kernel, &claimed);
+    let program = method.program();
+    let mut notation = notation.clone();
+    let mut definitions = vec![];
+    for binding in &program.bindings {
+        match binding {
+            Binding::Value { name, value } => {
+                let left = Math::Letter('w').with_index(Math::integer(definitions.len() + 1));
+                let right = notation.formula(value);
+                notation.name(name, left.clone());
+                definitions.push(Equation { left, right });
+            }
+            Binding::SinCos { sin, cos, angle } => {
+                let angle = notation.formula(angle);
+                let mut name = |symbol: &Option<Symbol>, function: &str| {
+                    if let Some(symbol) = symbol {
+                        let applied = vec![Math::Word(function.into()), angle.clone().grouped()];
+                        notation.name(symbol, Math::Row(applied));
+                    }
+                };
+                name(sin, "sin");
+                name(cos, "cos");
+            }
+            Binding::Call { .. } => return None,
+        }
+    }
+    let mut outputs = program.outputs.iter().map(|node| notation.formula(node));
+    let results = kernel.outputs.iter().zip(names).map(|(matrix, name)| {
+        let entries: Vec<Math> = outputs.by_ref().take(matrix.entries().len()).collect();
+        let right = Math::Matrix(matrix.columns(), entries);
+        Equation {
+            left: name.clone(),
+            right,
+        }
+    });
+    Some(
+        results
+            .collect::<Vec<_>>()
+            .into_iter()
+            .chain(definitions)
+            .collect(),
+    )
+}
