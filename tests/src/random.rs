@@ -37,7 +37,7 @@ pub fn library() -> Vec<Arc<dyn AnyJoint>> {
     kinds(&hamel_joints::registry())
 }
 
-/// Every joint of a registry with parameters near 0.7, no two alike.
+/// Every joint of a registry, with such parameters.
 ///
 /// # Panics
 /// Where a joint refuses them in ascending and in descending order.

@@ -1,11 +1,12 @@
 //! A run over many inputs: what breaks, what is slow, how much memory is used.
 
 use super::target::Outcome;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// After this an input is taken to hang, and the run is given up.
-const HANG: Duration = Duration::from_secs(120);
+const HANG: Duration = Duration::from_secs(60);
 
 /// What a run found.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +32,9 @@ pub fn run(
     std::thread::scope(|scope| {
         scope.spawn(|| watch.guard());
         for number in numbers {
+            watch.begin(&format!("that makes input {number}"));
             let Some(text) = input(number) else { continue };
-            watch.begin(number);
+            watch.begin(&text);
             let (outcome, time) = timed(&text, &target, figures.slowest.0);
             figures.count += 1;
             figures.accepted += u64::from(outcome == Outcome::Accepted);
@@ -75,14 +77,16 @@ fn timed(text: &str, target: &impl Fn(&str) -> Outcome, record: Duration) -> (Ou
 /// Ends the process where an input hangs: nothing else ends a loop.
 #[derive(Default)]
 struct Watch {
-    number: AtomicU64,
+    text: Mutex<String>,
     begun: AtomicU64,
     done: AtomicBool,
 }
 
 impl Watch {
-    fn begin(&self, number: u64) {
-        self.number.store(number, Ordering::Relaxed);
+    fn begin(&self, text: &str) {
+        if let Ok(mut current) = self.text.lock() {
+            text.clone_into(&mut current);
+        }
         self.begun.fetch_add(1, Ordering::Relaxed);
     }
 
@@ -95,7 +99,8 @@ impl Watch {
                 last = (begun, Instant::now());
             }
             if begun > 0 && last.1.elapsed() > HANG {
-                eprintln!("input {} hangs", self.number.load(Ordering::Relaxed));
+                let text = self.text.lock().map(|text| text.clone());
+                eprintln!("this hangs:\n{}", text.unwrap_or_default());
                 std::process::exit(1);
             }
         }

@@ -6,6 +6,7 @@ use crate::algebra;
 use crate::derived::Derived;
 use crate::expr::{Expr, Rational};
 use crate::matrix::Matrix;
+use crate::model::Freedom;
 use num_traits::{One, Signed, Zero};
 
 /// A product of factors known by name, and those of them that have to be shown.
@@ -103,11 +104,12 @@ fn multiple_of(a: &Matrix, b: &Matrix) -> Option<Rational> {
     (rest.is_zero() && !ratio.is_zero()).then_some(ratio)
 }
 
-/// `ad_ϕ` in the declared basis, where one factor alone moves.
+/// `ad_ϕ` in the declared basis, where one factor alone moves; freedoms that only Φ gives a meaning have none.
 fn adjoint(derived: &Derived, local: &[Expr]) -> Option<Matrix> {
     let freedoms = &derived.spec.freedoms.value;
     let factor = freedoms.first()?.factor;
-    if freedoms.iter().any(|freedom| freedom.factor != factor) {
+    let other = |freedom: &Freedom| freedom.factor != factor || freedom.generator.is_empty();
+    if freedoms.iter().any(other) {
         return None;
     }
     let kind = derived.spec.manifold.value.factors().get(factor)?.kind;
