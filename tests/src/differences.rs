@@ -56,9 +56,19 @@ pub fn gradient(
     q: &[f64],
     f: impl Fn(&[f64]) -> DMatrix<f64>,
 ) -> Vec<DMatrix<f64>> {
+    gradient_with(STEP, mechanism, q, f)
+}
+
+/// As [`gradient`], with a step of one's own.
+pub fn gradient_with(
+    step: f64,
+    mechanism: &Mechanism,
+    q: &[f64],
+    f: impl Fn(&[f64]) -> DMatrix<f64>,
+) -> Vec<DMatrix<f64>> {
     let freedoms = mechanism.layout().freedoms;
     let along = |k: usize| {
-        derivative(STEP, |t| {
+        derivative(step, |t| {
             let mut phi = vec![0.0; freedoms];
             phi[k] = t;
             f(&moved(mechanism, q, &phi))

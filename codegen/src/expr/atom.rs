@@ -129,13 +129,32 @@ pub struct Application {
     pub arguments: Vec<Expr>,
 }
 
-/// An indeterminate.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+/// An indeterminate. Symbols stand before functions.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Atom {
     /// A symbol.
     Symbol(Symbol),
     /// A function applied to expressions.
     Apply(Arc<Application>),
+}
+
+impl PartialOrd for Atom {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Atom {
+    fn cmp(&self, other: &Self) -> Ordering {
+        match (self, other) {
+            (Self::Symbol(a), Self::Symbol(b)) => a.cmp(b),
+            (Self::Symbol(_), Self::Apply(_)) => Ordering::Less,
+            (Self::Apply(_), Self::Symbol(_)) => Ordering::Greater,
+            // Equal arguments are mostly one object: comparing nested ones entry by entry is felt.
+            (Self::Apply(a), Self::Apply(b)) if Arc::ptr_eq(a, b) => Ordering::Equal,
+            (Self::Apply(a), Self::Apply(b)) => a.cmp(b),
+        }
+    }
 }
 
 impl Atom {

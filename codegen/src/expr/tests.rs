@@ -85,3 +85,15 @@ fn reciprocals_of_parameters_cancel() {
     let lead = Expr::symbol(&Symbol::new(Role::Parameter, 0, "lead"));
     assert!((&lead * &lead.recip().expect("not zero")).is_one());
 }
+
+#[test]
+fn equal_functions_are_one_indeterminate_whether_shared_or_not() {
+    let root = || Expr::symbol(&Symbol::new(Role::Coordinate, 0, "x")).sqrt();
+    let (one, other) = (root(), root());
+    assert_eq!(one.atoms(), other.atoms());
+    assert!((&one - &other).is_zero() && (&one - &one.clone()).is_zero());
+    // Symbols stand before functions, whatever the functions hold.
+    let last = Expr::symbol(&Symbol::new(Role::Intermediate, 9, "z"));
+    let atom = |e: &Expr| e.atoms().into_iter().next().expect("one atom");
+    assert!(atom(&last) < atom(&one));
+}

@@ -1,4 +1,4 @@
-//! A joint of one's own, beside the library's.
+//! Joints of one's own, beside the library's: general Φ, declared manifolds, subgroups.
 
 /// The joints that the build script generated.
 pub mod joints {
