@@ -23,7 +23,16 @@ struct At<'a, J, const N: usize, const K: usize, const S: usize, const C: usize>
     q: SVector<f64, N>,
 }
 
-/// Checks every law at many configurations and sizes of ϕ.
+/// How far ϕ goes.
+#[derive(Clone, Copy, Debug)]
+pub enum Reach {
+    /// Up to half a turn: Φ is exp, or as good.
+    HalfTurn,
+    /// Entries up to this number: beyond, Φ(Q, ·) takes values twice, or meets an exception.
+    Entries(f64),
+}
+
+/// Checks every law at many configurations and sizes of ϕ, up to half a turn.
 ///
 /// # Panics
 /// With the law, the joint and the figures, where one does not hold.
@@ -35,6 +44,23 @@ pub fn check_all<
     const C: usize,
 >(
     joint: &J,
+) {
+    check_within(joint, Reach::HalfTurn);
+}
+
+/// Checks every law at many configurations, at sizes of ϕ up to `reach`.
+///
+/// # Panics
+/// With the law, the joint and the figures, where one does not hold.
+pub fn check_within<
+    J: Joint<N, K, S, C>,
+    const N: usize,
+    const K: usize,
+    const S: usize,
+    const C: usize,
+>(
+    joint: &J,
+    reach: Reach,
 ) {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     for _ in 0..CONFIGURATIONS {
@@ -48,7 +74,7 @@ pub fn check_all<
         at.manifold_laws(&vector(&mut random, 1e-6));
         at.imperceptible_laws(&vector(&mut random, 1.0));
         at.singular_sets();
-        for phi in at.sizes(&vector(&mut random, 1.0)) {
+        for phi in at.sizes(&vector(&mut random, 1.0), reach) {
             at.finite_laws(&phi, &vector(&mut random, 2.0));
         }
     }
@@ -124,8 +150,11 @@ fn unit<const K: usize>(k: usize) -> SVector<f64, K> {
 impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize>
     At<'_, J, N, K, S, C>
 {
-    /// ϕ = 0, of size 1e-8, as given, and with its turn within 1e-6 of π.
-    fn sizes(&self, phi: &SVector<f64, K>) -> [SVector<f64, K>; 4] {
+    /// ϕ = 0, of size 1e-8, and up to the reach: as given and with its turn within 1e-6 of π, or a half and the whole.
+    fn sizes(&self, phi: &SVector<f64, K>, reach: Reach) -> [SVector<f64, K>; 4] {
+        if let Reach::Entries(most) = reach {
+            return [SVector::zeros(), phi * 1e-8, phi * (most / 2.0), phi * most];
+        }
         let turn = (self.joint.twist_map_child(&self.q) * self.joint.velocity_map(&self.q) * phi)
             .fixed_rows::<3>(0)
             .norm();

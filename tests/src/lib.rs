@@ -5,10 +5,14 @@ pub mod differences;
 pub mod figures;
 pub mod fuzz;
 pub mod laws;
+pub mod motion;
 pub mod oracle;
 pub mod random;
+pub mod reference_form;
 pub mod scenes;
 pub mod specs;
+
+pub use hamel;
 
 use hamel::registry::JointRegistry;
 use hamel_codegen::derived::Derived;

@@ -3,7 +3,7 @@
 use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
-use hamel::registry::JointEntry;
+use hamel::registry::{JointEntry, JointRegistry};
 use hamel::spatial::{MassProperties, Pose, so3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -34,7 +34,14 @@ pub struct Case {
 /// # Panics
 /// Where a joint refuses them in ascending and in descending order.
 pub fn library() -> Vec<Arc<dyn AnyJoint>> {
-    let registry = hamel_joints::registry();
+    kinds(&hamel_joints::registry())
+}
+
+/// Every joint of a registry, with such parameters.
+///
+/// # Panics
+/// Where a joint refuses them in ascending and in descending order.
+pub fn kinds(registry: &JointRegistry) -> Vec<Arc<dyn AnyJoint>> {
     let build = |entry: &JointEntry| {
         let ascending: Vec<f64> = (0..entry.parameters.len())
             .map(|i| 0.7 + 0.15 * i as f64)

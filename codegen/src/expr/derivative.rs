@@ -76,6 +76,13 @@ impl Expr {
             .sum()
     }
 
+    /// Replaces atoms of the expression itself, not those inside functions.
+    pub fn replace_atoms(&self, values: &BTreeMap<Atom, Self>) -> Self {
+        self.terms()
+            .map(|(monomial, coefficient)| substituted_term(monomial, coefficient, values))
+            .sum()
+    }
+
     /// Replaces the symbols by zero.
     pub fn at_zero(&self, symbols: &[Symbol]) -> Self {
         let zeros = symbols.iter().map(|symbol| (symbol.clone(), Self::zero()));

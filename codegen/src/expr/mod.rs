@@ -96,6 +96,11 @@ impl Expr {
         self.as_rational().is_some_and(|value| value.is_one())
     }
 
+    /// Monomial and coefficient, if this is one term.
+    pub fn single_term(&self) -> Option<(&Monomial, &Rational)> {
+        self.leading().filter(|_| self.terms.len() == 1)
+    }
+
     /// The value, if this is a rational number.
     pub fn as_rational(&self) -> Option<Rational> {
         match self.terms.len() {

@@ -1,5 +1,6 @@
 //! Equality on a manifold: normal forms modulo its relations and those of the functions that occur.
 
+use super::angles;
 use super::reduction::Reduction;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::matrix::Matrix;
@@ -76,7 +77,8 @@ impl Ideal {
                 &product * &value.pow(power.unsigned_abs())
             })
         };
-        expression.terms().map(term).sum()
+        let settled: Expr = expression.terms().map(term).sum();
+        angles::unified(&settled)
     }
 
     fn settled_function(&self, application: &Application) -> Expr {

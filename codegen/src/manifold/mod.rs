@@ -1,5 +1,6 @@
 //! Configuration manifolds: products of known factors, and equality modulo their relations.
 
+mod angles;
 mod factor;
 mod groebner;
 mod ideal;

@@ -1,17 +1,19 @@
-//! Theorems 2 and 3 on random trees of 1 to 12 joints of all types of the library, against Newton–Euler, differences, and
+//! Theorems 2 and 3 on random trees of 1 to 12 joints of given kinds, against Newton–Euler, differences, and
 //! the laws of mechanics.
 
-mod equations;
-mod matrices;
-mod power;
+pub mod equations;
+pub mod kinds;
+pub mod matrices;
+pub mod power;
 
+use crate::random::{Case, cases};
 use hamel::dynamics::reference::Expansion;
 use hamel::dynamics::{NewtonEuler, Reference};
+use hamel::erased::AnyJoint;
 use hamel::nalgebra::DVector;
-use hamel_tests::random::{Case, cases, library};
 use std::sync::Arc;
 
-/// Trees of each law: twelve sizes, every library joint at the root of several.
+/// Trees of each law: twelve sizes, every kind at the root of several.
 const TREES: u64 = 84;
 const LARGEST: usize = 12;
 
@@ -92,35 +94,41 @@ impl Point {
     }
 }
 
-fn points() -> impl Iterator<Item = Point> {
-    let kinds = library();
-    let all: Vec<Case> = cases(&kinds, LARGEST, TREES).collect();
-    all.into_iter().map(Point::new)
+fn points(kinds: &[Arc<dyn AnyJoint>]) -> impl Iterator<Item = Point> + '_ {
+    cases(kinds, LARGEST, TREES).map(Point::new)
 }
 
-/// The suite would say less if the trees did.
-#[test]
-fn trees_are_of_all_kinds() {
-    let mut off_root = std::collections::BTreeMap::new();
-    let mut sizes = [0; LARGEST + 1];
-    for point in points() {
-        let bodies = point.case.mechanism.bodies();
-        sizes[bodies.len()] += 1;
-        for body in bodies {
-            let (at_root, inside) = off_root.entry(body.joint().name()).or_insert((0, 0));
-            *(if body.parent().is_none() {
-                at_root
-            } else {
-                inside
-            }) += 1;
+/// One test for each law, over the joints that the expression gives: a `Vec<Arc<dyn AnyJoint>>` of distinct kinds.
+#[macro_export]
+macro_rules! reference_form_tests {
+    ($kinds:expr) => {
+        $crate::reference_form_tests! {
+            $kinds =>
+            mod kinds { trees_are_of_all_kinds }
+            mod equations {
+                theorem_2_is_newton_euler
+                theorem_3_is_newton_euler
+                hamiltonian_form_of_theorem_2
+                hamiltonian_form_of_theorem_3
+                constraint_forces_are_those_of_the_joint_wrench
+            }
+            mod matrices {
+                mass_matrix_is_symmetric_positive_and_gives_the_kinetic_energy
+                derivatives_in_phi_are_those_of_differences
+                coriolis_matrices
+            }
+            mod power { lagrangian_form hamiltonian_form along_the_motion }
         }
-    }
-    assert!(sizes[1..].iter().all(|&count| count >= 5), "{sizes:?}");
-    assert_eq!(off_root.len(), hamel_joints::ENTRIES.len());
-    assert!(
-        off_root
-            .values()
-            .all(|&(at_root, inside)| at_root > 0 && inside > 3),
-        "{off_root:?}"
-    );
+    };
+    ($kinds:expr => $(mod $topic:ident { $($law:ident)* })*) => {
+        fn reference_form_kinds() -> Vec<std::sync::Arc<dyn $crate::hamel::erased::AnyJoint>> {
+            $kinds
+        }
+        $(mod $topic {
+            $(#[test]
+            fn $law() {
+                $crate::reference_form::$topic::$law(&super::reference_form_kinds());
+            })*
+        })*
+    };
 }

@@ -1,10 +1,12 @@
 //! Power balance: `dH/dt = yᵀτ`, in both forms and along the motion itself.
 
 use super::{Point, points};
+use crate::differences::{self, moved};
+use crate::figures::Largest;
 use hamel::dynamics::Dynamics;
+use hamel::erased::AnyJoint;
 use hamel::nalgebra::{DMatrix, DVector};
-use hamel_tests::differences::{self, moved};
-use hamel_tests::figures::Largest;
+use std::sync::Arc;
 
 /// Powers of up to 50 freedoms, each from sums over 50: 1000 roundings of 1.1e-16. The condition of M̄ does not enter, since
 /// the residual of a solution with M̄ is small in forces.
@@ -17,10 +19,12 @@ fn imbalance(powers: &[DVector<f64>]) -> f64 {
 }
 
 /// `v̄ᵀM̄v̄̇ + ½ v̄ᵀṀ̄v̄ + ∂V/∂ϕᵀϕ̇ = vᵀτ`.
-#[test]
-fn lagrangian_form() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn lagrangian_form(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("power balance, Lagrangian form");
-    for point in points() {
+    for point in points(kinds) {
         let (expansion, speeds) = (&point.expansion, &point.speeds);
         let inertia = expansion.reduced_mass_matrix() * point.accelerations();
         let change = point.reduced_mass_rate() * speeds * 0.5;
@@ -38,10 +42,12 @@ fn lagrangian_form() {
 }
 
 /// `∂H̄/∂ϕᵀϕ̇ + ∂H̄/∂p̄ᵀp̄̇ = vᵀτ`, from the rates that the integrator sees.
-#[test]
-fn hamiltonian_form() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn hamiltonian_form(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("power balance, port-Hamiltonian form");
-    for mut point in points() {
+    for mut point in points(kinds) {
         let size = point.speeds.len();
         let momenta = point.expansion.reduced_mass_matrix() * &point.speeds;
         let (mut speeds, mut rates) = (DVector::zeros(size), DVector::zeros(size));
@@ -75,10 +81,13 @@ fn energy(point: &Point, local_rate: &DVector<f64>, rates: &DVector<f64>, t: f64
     kinematics.expect("sizes fit").energy()
 }
 
-#[test]
-fn along_the_motion() {
+/// Along the motion.
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn along_the_motion(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("power balance by differences of the bodies' energy");
-    for point in points() {
+    for point in points(kinds) {
         let local_rate = point.expansion.local_rate(&point.v);
         let rates = point.accelerations();
         // The path is wanted over a time in which speeds change by a part of 1.

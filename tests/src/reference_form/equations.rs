@@ -1,8 +1,10 @@
 //! The equations themselves: (24), (26), (34) and (37) against Newton–Euler, (27) and (35) against (24) and (34).
 
 use super::{Point, points};
+use crate::figures::{Largest, difference, size};
+use hamel::erased::AnyJoint;
 use hamel::nalgebra::DVector;
-use hamel_tests::figures::{Largest, difference, size};
+use std::sync::Arc;
 
 /// Bound of relative errors: each side sums some hundred products a freedom over 12 bodies, and intermediate terms on arms
 /// of several metres exceed the largest of the equation up to tenfold; 1000 roundings of 1.1e-16.
@@ -18,10 +20,12 @@ fn relative(found: &DVector<f64>, expected: &DVector<f64>, terms: &[&DVector<f64
 }
 
 /// (24) and (26): `M v̇ + Ĉv + N̂` is what the joints exert, constraint forces included, for all freedoms.
-#[test]
-fn theorem_2_is_newton_euler() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn theorem_2_is_newton_euler(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("M v̇ + Ĉv + N̂ against Newton–Euler");
-    for point in points() {
+    for point in points(kinds) {
         let expansion = &point.expansion;
         let inertia = &expansion.mass_matrix * &point.v_rate;
         let coriolis = expansion.coriolis_matrix(&point.v) * &point.v;
@@ -41,10 +45,12 @@ fn theorem_2_is_newton_euler() {
 }
 
 /// (34): `M̄ v̄̇ + C̄ v̄ + S̄ᵀN̂ = S̄ᵀτ`.
-#[test]
-fn theorem_3_is_newton_euler() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn theorem_3_is_newton_euler(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("M̄ v̄̇ + C̄v̄ + S̄ᵀN̂ against Newton–Euler");
-    for point in points() {
+    for point in points(kinds) {
         let expansion = &point.expansion;
         let inertia = expansion.reduced_mass_matrix() * &point.rates;
         let coriolis = expansion.reduced_coriolis_matrix(&point.speeds) * &point.speeds;
@@ -60,10 +66,12 @@ fn theorem_3_is_newton_euler() {
 }
 
 /// (27) is (24): `ṗ = M v̇ + Ṁ v`, with τ and the constraint forces on the right.
-#[test]
-fn hamiltonian_form_of_theorem_2() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn hamiltonian_form_of_theorem_2(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("ṗ of (27) against d/dt (M v)");
-    for point in points() {
+    for point in points(kinds) {
         let expansion = &point.expansion;
         let (recursion, _) = point.newton_euler(&point.rates);
         let mut efforts = DVector::zeros(point.v.len());
@@ -86,10 +94,12 @@ fn hamiltonian_form_of_theorem_2() {
 }
 
 /// (35) and (36) are (34): `p̄̇ = M̄ v̄̇ + d/dt(M̄) v̄` under random efforts, through [`hamel::dynamics::Dynamics`].
-#[test]
-fn hamiltonian_form_of_theorem_3() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn hamiltonian_form_of_theorem_3(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("p̄̇ of (35) against d/dt (M̄ v̄)");
-    for point in points() {
+    for point in points(kinds) {
         let inertia = point.expansion.reduced_mass_matrix() * point.accelerations();
         let change = point.reduced_mass_rate() * &point.speeds;
         let found = point
@@ -110,10 +120,12 @@ fn condition(point: &Point) -> f64 {
 }
 
 /// λ of (37) is the joint wrench's part: `λ = (AᵀA)⁻¹ Aᵀ (X^cᵀF − τ)`.
-#[test]
-fn constraint_forces_are_those_of_the_joint_wrench() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn constraint_forces_are_those_of_the_joint_wrench(kinds: &[Arc<dyn AnyJoint>]) {
     let mut worst = Largest::new("λ of (37) against the joint wrench, over the condition of M");
-    for point in points().filter(|point| point.expansion.constraint.ncols() > 0) {
+    for point in points(kinds).filter(|point| point.expansion.constraint.ncols() > 0) {
         let (recursion, _) = point.newton_euler(&point.accelerations());
         let mut expected = DVector::zeros(point.expansion.constraint.ncols());
         recursion

@@ -1,19 +1,24 @@
 //! The matrices: M, its derivatives, Ĉ and Ĉ′.
 
 use super::points;
+use crate::differences;
+use crate::figures::Largest;
+use hamel::erased::AnyJoint;
 use hamel::nalgebra::{Cholesky, DMatrix};
-use hamel_tests::differences;
-use hamel_tests::figures::Largest;
+use std::sync::Arc;
 
 /// Sums over 12 bodies of products of 6-vectors, cancelling tenfold at most: 1000 roundings of 1.1e-16.
 const ROUNDING: f64 = 1e-13;
 
-#[test]
-fn mass_matrix_is_symmetric_positive_and_gives_the_kinetic_energy() {
+/// Mass matrix is symmetric positive and gives the kinetic energy.
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn mass_matrix_is_symmetric_positive_and_gives_the_kinetic_energy(kinds: &[Arc<dyn AnyJoint>]) {
     let mut symmetry = Largest::new("M − Mᵀ");
     let mut energy = Largest::new("½ vᵀMv against the kinetic energy of the bodies");
     let mut potential = Largest::new("V against the potential energy of the bodies");
-    for point in points() {
+    for point in points(kinds) {
         let (case, mass) = (&point.case, &point.expansion.mass_matrix);
         symmetry.meet((mass - mass.transpose()).amax() / mass.amax(), case.seed);
         assert!(
@@ -45,12 +50,14 @@ fn mass_matrix_is_symmetric_positive_and_gives_the_kinetic_energy() {
 }
 
 /// ∂M/∂ϕ, ∂V/∂ϕ and ∂S̄/∂ϕ against differences through Φ.
-#[test]
-fn derivatives_in_phi_are_those_of_differences() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn derivatives_in_phi_are_those_of_differences(kinds: &[Arc<dyn AnyJoint>]) {
     let mut mass = Largest::new("∂M/∂ϕ against differences");
     let mut potential = Largest::new("∂V/∂ϕ against differences");
     let mut basis = Largest::new("∂S̄/∂ϕ against differences");
-    for point in points() {
+    for point in points(kinds) {
         let (mechanism, expansion) = (&point.case.mechanism, &point.expansion);
         let (k, s) = expansion.speed_basis.shape();
         // M, S̄ and V side by side, so that each moved configuration is expanded once.
@@ -87,13 +94,15 @@ fn derivatives_in_phi_are_those_of_differences() {
 }
 
 /// `vᵀ(Ṁ − 2Ĉ)v = 0` for that v; `Ĉ′v = Ĉv`, and `Ṁ − 2Ĉ′` is skew, which `Ṁ − 2Ĉ` is not.
-#[test]
-fn coriolis_matrices() {
+///
+/// # Panics
+/// With the figure and the case, where it does not hold.
+pub fn coriolis_matrices(kinds: &[Arc<dyn AnyJoint>]) {
     let mut power = Largest::new("vᵀ(Ṁ − 2Ĉ)v");
     let mut action = Largest::new("Ĉ′v − Ĉv");
     let mut skew = Largest::new("symmetric part of Ṁ − 2Ĉ′");
     let mut not_skew: f64 = 0.0;
-    for point in points() {
+    for point in points(kinds) {
         let (expansion, v, seed) = (&point.expansion, &point.v, point.case.seed);
         let coriolis = expansion.coriolis_matrix(v);
         let compatible = expansion.coriolis_matrix_skew(v);

@@ -1,0 +1,78 @@
+//! Sines and cosines of several multiples of one angle, written by those of their common part, so that they can be compared.
+
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational};
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_traits::{Signed, ToPrimitive, Zero};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Largest multiple that is expanded: cos 16x has 17 terms.
+const LARGEST_MULTIPLE: u32 = 16;
+
+/// The expression with one base angle where it holds several multiples of it: cos q beside cos q/2 becomes cos² q/2 − sin² q/2.
+pub fn unified(expression: &Expr) -> Expr {
+    let atoms = expression.atoms();
+    let mut angles: BTreeMap<Monomial, BTreeSet<Rational>> = BTreeMap::new();
+    for (monomial, coefficient) in atoms.iter().filter_map(angle) {
+        angles.entry(monomial).or_default().insert(coefficient);
+    }
+    angles.retain(|_, coefficients| coefficients.len() > 1);
+    if angles.is_empty() {
+        return expression.clone();
+    }
+    let replaced: BTreeMap<Atom, Expr> = atoms
+        .into_iter()
+        .filter_map(|atom| {
+            let value = by_common_part(&atom, &angles)?;
+            Some((atom, value))
+        })
+        .collect();
+    expression.replace_atoms(&replaced)
+}
+
+/// Monomial and coefficient of the argument of a sine or cosine of one term.
+fn angle(atom: &Atom) -> Option<(Monomial, Rational)> {
+    let (monomial, coefficient) = trigonometric(atom)?.arguments.first()?.single_term()?;
+    Some((monomial.clone(), coefficient.clone()))
+}
+
+fn trigonometric(atom: &Atom) -> Option<&Application> {
+    match atom {
+        Atom::Apply(application) => {
+            matches!(application.function, Function::Cos | Function::Sin).then_some(&**application)
+        }
+        Atom::Symbol(_) => None,
+    }
+}
+
+fn by_common_part(atom: &Atom, angles: &BTreeMap<Monomial, BTreeSet<Rational>>) -> Option<Expr> {
+    let (monomial, coefficient) = angle(atom)?;
+    let part = common_part(angles.get(&monomial)?);
+    let multiple = (&coefficient / &part).to_integer().to_u32()?;
+    if multiple > LARGEST_MULTIPLE {
+        return None;
+    }
+    let base = Expr::term(part, monomial);
+    let (cos, sin) = (base.cos(), base.sin());
+    let (mut c, mut s) = (Expr::one(), Expr::zero());
+    for _ in 0..multiple {
+        (c, s) = (&(&c * &cos) - &(&s * &sin), &(&s * &cos) + &(&c * &sin));
+    }
+    match trigonometric(atom)?.function {
+        Function::Cos => Some(c),
+        _ => Some(s),
+    }
+}
+
+/// The largest number of which all are multiples.
+fn common_part(coefficients: &BTreeSet<Rational>) -> Rational {
+    coefficients.iter().fold(Rational::zero(), |common, c| {
+        let denominator: BigInt = common.denom().lcm(c.denom());
+        let scaled = |x: &Rational| {
+            (x * Rational::from_integer(denominator.clone()))
+                .to_integer()
+                .abs()
+        };
+        Rational::new(scaled(&common).gcd(&scaled(c)), denominator.clone())
+    })
+}
