@@ -45,7 +45,7 @@ fn workspace(root: &Path, size: u64) -> Result<std::path::PathBuf, Box<dyn Error
     fs::create_dir_all(root.join("tests/data"))?;
     fs::write(
         root.join("tests/data/kernel_accuracy.csv"),
-        "joint,kernel,type,worst_ulp,points\n",
+        "joint,kernel,type,worst ulp,points\n",
     )?;
     fs::write(root.join("Cargo.toml"), "[workspace]\n")?;
     for seed in 0..size {

@@ -15,7 +15,7 @@ pub struct Table {
     rows: BTreeMap<Key, Entry>,
 }
 
-const HEADER: &str = "joint,kernel,type,worst_ulp,points";
+const HEADER: &str = "joint,kernel,type,worst ulp,points";
 
 impl Table {
     /// The table in a file; empty where there is none.
