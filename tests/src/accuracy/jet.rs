@@ -62,7 +62,7 @@ impl Jet {
         }
     }
 
-    /// Without the variables from [`ONCE`] on.
+    /// Without the variables from `ONCE` on.
     pub fn at_zero_of_once(&self) -> Self {
         let mut kept = self.clone();
         kept.first.retain(|i, _| *i < ONCE);
