@@ -3,6 +3,7 @@
 use crate::build::{self, State};
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::forces::JointForces;
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
 use crate::settings::Settings;
@@ -10,6 +11,9 @@ use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::path::Path;
 use std::sync::Arc;
+
+/// What is said of a scene that cannot be read, should no error say more.
+const INCOMPLETE: &str = "the scene is not complete";
 
 /// A mechanism with its state at time 0 and its simulation settings.
 #[derive(Clone, Debug)]
@@ -59,7 +63,7 @@ impl Scene {
             if let Some(draft) = &draft {
                 check_joints(draft, registry, &mut sink);
             }
-            return Err(Diagnostics::new(source_name, text, sink.into_errors()));
+            return Err(sink.refuse(source_name, text, INCOMPLETE));
         }
         let source = Source {
             name: source_name.to_owned(),
@@ -106,7 +110,7 @@ impl SceneDescription {
     }
 
     fn refuse(&self, sink: Sink) -> Diagnostics {
-        Diagnostics::new(&self.source.name, &self.source.text, sink.into_errors())
+        sink.refuse(&self.source.name, &self.source.text, INCOMPLETE)
     }
 }
 
@@ -123,7 +127,7 @@ fn check_joints(draft: &Draft, registry: &JointRegistry, sink: &mut Sink) {
 /// The description that a draft without errors makes.
 fn describe(
     draft: Option<Draft>,
-    mut sink: Sink,
+    sink: Sink,
     source: Source,
 ) -> Result<SceneDescription, Diagnostics> {
     let complete = draft.and_then(complete);
@@ -134,23 +138,14 @@ fn describe(
             gravity: draft.gravity,
             bodies,
             settings: draft.settings,
-            source,
+            ..SceneDescription::empty(source)
         }),
-        _ => {
-            if sink.len() == 0 {
-                sink.push(Diagnostic::without_place("the scene is not complete"));
-            }
-            Err(Diagnostics::new(
-                &source.name,
-                &source.text,
-                sink.into_errors(),
-            ))
-        }
+        _ => Err(sink.refuse(&source.name, &source.text, INCOMPLETE)),
     }
 }
 
 /// Name of a file without folder and ending.
-fn stem(source_name: &str) -> String {
+pub(crate) fn stem(source_name: &str) -> String {
     let stem = Path::new(source_name).file_stem();
     stem.map_or_else(
         || source_name.to_owned(),
@@ -172,6 +167,7 @@ fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
             at: body.at,
             body_at: body.body_at,
             initial: body.initial?,
+            forces: JointForces::default(),
         })
     });
     let bodies: Option<Vec<_>> = bodies.collect();

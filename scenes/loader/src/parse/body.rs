@@ -7,7 +7,7 @@ use crate::source::Located;
 use hamel::spatial::Pose;
 
 /// Name by which a body's `parent` means the inertial frame.
-pub(super) const WORLD: &str = "world";
+pub(crate) const WORLD: &str = "world";
 
 /// Reads a body.
 pub(super) fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {

@@ -5,10 +5,13 @@ mod initial;
 mod joint;
 mod mass;
 mod placement;
-mod rotation;
+pub(crate) mod rotation;
 mod simulation;
 mod syntax;
 mod tree;
+
+pub(crate) use body::WORLD;
+pub(crate) use tree::{cycles, order};
 
 use crate::description::{InitialDescription, JointDescription};
 use crate::diagnostics::Diagnostic;

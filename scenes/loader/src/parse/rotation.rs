@@ -13,7 +13,7 @@ const QUATERNION_TOLERANCE: f64 = 1e-9;
 const LARGEST_ANGLE: f64 = 1e6;
 
 /// exp(r~) of a rotation vector `r`, rad.
-pub(super) fn from_rotation_vector(
+pub(crate) fn from_rotation_vector(
     path: &str,
     r: Located<Vector3<f64>>,
     sink: &mut Sink,
@@ -23,7 +23,7 @@ pub(super) fn from_rotation_vector(
 }
 
 /// The rotation of a unit quaternion `(w, x, y, z)`.
-pub(super) fn from_quaternion(
+pub(crate) fn from_quaternion(
     path: &str,
     quaternion: Located<Vector4<f64>>,
     sink: &mut Sink,
@@ -40,7 +40,7 @@ pub(super) fn from_quaternion(
 }
 
 /// Rotations about the fixed x, y and z axes in turn, rad: `Rz(yaw) Ry(pitch) Rx(roll)`.
-pub(super) fn from_roll_pitch_yaw(
+pub(crate) fn from_roll_pitch_yaw(
     path: &str,
     rpy: Located<Vector3<f64>>,
     sink: &mut Sink,
@@ -63,7 +63,7 @@ fn check_angles(path: &str, angles: &Located<Vector3<f64>>, sink: &mut Sink) -> 
 }
 
 /// A rotation matrix given by rows, freed of its rounding.
-pub(super) fn from_matrix(
+pub(crate) fn from_matrix(
     path: &str,
     rotation: Located<Matrix3<f64>>,
     sink: &mut Sink,
@@ -79,7 +79,7 @@ pub(super) fn from_matrix(
 }
 
 /// The shortest rotation that turns the z axis onto `axis`; about the x axis where `axis` is −z.
-pub(super) fn from_axis(
+pub(crate) fn from_axis(
     path: &str,
     axis: Located<Vector3<f64>>,
     sink: &mut Sink,

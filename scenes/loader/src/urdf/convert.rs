@@ -1,0 +1,338 @@
+//! From links and joints to bodies: moving joints make bodies, fixed joints join links to one.
+
+use super::document::{child, place, tag};
+use super::joint::{self, JointFacts};
+use super::tree::{self, Links, Parsed};
+use super::{Import, Options, mass};
+use crate::description::{
+    BodyDescription, InitialDescription, JointDescription, SceneDescription, Source,
+};
+use crate::diagnostics::Diagnostic;
+use crate::forces::{FrameDescription, JointForces, PerFreedom};
+use crate::notice::Notices;
+use crate::parse::WORLD;
+use crate::read::Sink;
+use crate::scene::stem;
+use crate::settings::Settings;
+use crate::source::{Located, Span};
+use hamel::spatial::{MassProperties, Pose};
+
+/// The robot as a scene.
+pub(super) fn convert(
+    parsed: &Parsed<'_, '_>,
+    version: (u32, u32),
+    source: Source,
+    options: &Options,
+    mut notices: Notices,
+    sink: &mut Sink,
+) -> Option<Import> {
+    let errors_before = sink.len();
+    let links = tree::links(parsed, sink);
+    let facts = facts(parsed, sink);
+    let links = links?;
+    let mut robot = Converter::new(parsed, version, &mut notices, sink);
+    robot.root(&links, options);
+    for &link in links.order.iter().skip(1) {
+        robot.link(link, &links, &facts);
+    }
+    robot.masses();
+    let Converter { bodies, frames, .. } = robot;
+    if bodies.is_empty() && sink.len() == errors_before {
+        let error = Diagnostic::new(tag(parsed.links[0]), "no joint of the robot moves");
+        sink.push(error.help("with a floating base it can move as a whole"));
+    }
+    if sink.len() > errors_before {
+        return None;
+    }
+    let name = Some(parsed.robot.name.clone()).filter(|name| !name.is_empty());
+    Some(Import {
+        scene: SceneDescription {
+            name: name.unwrap_or_else(|| stem(&source.name)),
+            gravity: options.gravity,
+            bodies,
+            frames,
+            settings: Settings::default(),
+            ..SceneDescription::empty(source)
+        },
+        notices: notices.into_vec(),
+        joints: facts,
+    })
+}
+
+/// What the file says of every joint beyond its motion, checked.
+fn facts(parsed: &Parsed<'_, '_>, sink: &mut Sink) -> Vec<JointFacts> {
+    let joints = parsed.robot.joints.iter().zip(&parsed.joints);
+    let facts: Vec<JointFacts> = joints
+        .clone()
+        .map(|(joint, &node)| joint::facts(joint, node))
+        .collect();
+    for (facts, (_, node)) in facts.iter().zip(joints) {
+        let losses = [("damping", facts.damping), ("friction", facts.friction)];
+        for (what, value) in losses.into_iter().filter(|(_, value)| *value < 0.0) {
+            let message = format!(
+                "joint `{}`: `{what}` is {value:?}, but must be at least 0",
+                facts.name
+            );
+            sink.push(Diagnostic::new(place(*node, "dynamics", what), message));
+        }
+    }
+    facts
+}
+
+/// Where a link frame is: on which body, and its pose there.
+#[derive(Clone, Copy, Debug)]
+struct Anchor {
+    body: Option<usize>,
+    pose: Pose<f64>,
+}
+
+struct Converter<'c, 'a, 'i> {
+    parsed: &'c Parsed<'a, 'i>,
+    version: (u32, u32),
+    notices: &'c mut Notices,
+    sink: &'c mut Sink,
+    anchors: Vec<Option<Anchor>>,
+    bodies: Vec<BodyDescription>,
+    /// The links that make each body, with their mass properties in the body frame.
+    parts: Vec<Vec<(usize, MassProperties)>>,
+    frames: Vec<FrameDescription>,
+}
+
+impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
+    fn new(
+        parsed: &'c Parsed<'a, 'i>,
+        version: (u32, u32),
+        notices: &'c mut Notices,
+        sink: &'c mut Sink,
+    ) -> Self {
+        Self {
+            anchors: vec![None; parsed.links.len()],
+            parsed,
+            version,
+            notices,
+            sink,
+            bodies: Vec::new(),
+            parts: Vec::new(),
+            frames: Vec::new(),
+        }
+    }
+
+    /// The root link, which hangs on no joint of the file.
+    fn root(&mut self, links: &Links, options: &Options) {
+        let Some(&root) = links.order.first() else {
+            return;
+        };
+        if !options.floating_base {
+            let anchor = Anchor {
+                body: None,
+                pose: Pose::identity(),
+            };
+            return self.attach(root, anchor);
+        }
+        let mut name = String::from("floating_base");
+        while self.parsed.robot.joints.iter().any(|joint| joint.name == name) {
+            name.push('_');
+        }
+        let joint = (name, "free", self.name_span(root));
+        self.body(root, None, joint, [Pose::identity(); 2], JointForces::default());
+    }
+
+    /// A link that hangs on a joint.
+    fn link(&mut self, link: usize, links: &Links, facts: &[JointFacts]) {
+        let Some((index, parent)) = links.parents[link] else {
+            return;
+        };
+        let (joint, node) = (&self.parsed.robot.joints[index], self.parsed.joints[index]);
+        let owner = format!("joint `{}`", joint.name);
+        let origin = joint::origin(&owner, &joint.origin, node, self.version, self.sink);
+        let axis = joint::axis(joint, node, self.sink).map(Pose::from_rotation);
+        let Some(parent) = self.anchors[parent] else {
+            return;
+        };
+        // An error there must not hide those of the links below.
+        let origin = parent.pose * origin.unwrap_or_else(Pose::identity);
+        let axis = axis.unwrap_or_else(Pose::identity);
+        let Some(kind) = joint::kind(&joint.joint_type) else {
+            let message = "fixed joints join links to one body, on which the link is a named frame";
+            self.notices.add(message, owner);
+            let body = parent.body;
+            return self.attach(link, Anchor { body, pose: origin });
+        };
+        joint::tell(joint, &facts[index], node, self.notices);
+        let damping = Some(facts[index].damping).filter(|&damping| damping != 0.0);
+        let span = place(node, "dynamics", "damping");
+        let forces = JointForces {
+            damping: damping.map(|damping| Located::new(PerFreedom::All(damping), span)),
+            ..JointForces::default()
+        };
+        let joint = (joint.name.clone(), kind, tag(node));
+        self.body(link, parent.body, joint, [origin * axis, axis.inverse()], forces);
+    }
+
+    /// Begins a body with a link.
+    fn body(
+        &mut self,
+        link: usize,
+        parent: Option<usize>,
+        (joint, kind, span): (String, &str, Span),
+        [at, body_at]: [Pose<f64>; 2],
+        forces: JointForces,
+    ) {
+        let body = self.bodies.len();
+        self.bodies.push(BodyDescription {
+            name: Located::new(self.parsed.robot.links[link].name.clone(), self.name_span(link)),
+            parent,
+            mass: MassProperties::massless(),
+            joint: JointDescription {
+                name: Located::new(joint, span.clone()),
+                kind: Located::new(kind.to_owned(), span.clone()),
+                parameters: Vec::new(),
+                span,
+            },
+            at,
+            body_at,
+            initial: InitialDescription::default(),
+            forces,
+        });
+        self.parts.push(Vec::new());
+        let anchor = Anchor {
+            body: Some(body),
+            pose: Pose::identity(),
+        };
+        self.refuse_world(link);
+        self.place(link, anchor);
+    }
+
+    /// Adds a link to what is already there.
+    fn attach(&mut self, link: usize, anchor: Anchor) {
+        let name = &self.parsed.robot.links[link].name;
+        let is_world = name == WORLD && anchor.body.is_none() && anchor.pose == Pose::identity();
+        if !is_world {
+            self.refuse_world(link);
+            self.frames.push(FrameDescription {
+                name: Located::new(name.clone(), self.name_span(link)),
+                body: anchor.body,
+                at: anchor.pose,
+            });
+        }
+        self.place(link, anchor);
+    }
+
+    fn refuse_world(&mut self, link: usize) {
+        if self.parsed.robot.links[link].name == WORLD {
+            let message = format!("link `{WORLD}` is not the root, or the root floats");
+            let error = Diagnostic::new(self.name_span(link), message);
+            self.sink
+                .push(error.help(format!("`{WORLD}` is the inertial frame, which does not move")));
+        }
+    }
+
+    /// Notes where a link is, and gives its mass to that body.
+    fn place(&mut self, link: usize, anchor: Anchor) {
+        self.anchors[link] = Some(anchor);
+        let Some(mass) = self.mass(link) else { return };
+        match anchor.body {
+            Some(body) => self.parts[body].push((link, mass::moved(&mass, &anchor.pose))),
+            None => self.notices.add(
+                "links fixed to the world do not move: their masses have no effect",
+                self.owner(link),
+            ),
+        }
+    }
+
+    /// Mass properties in link axes; `None` without an `<inertial>` and with one that is refused.
+    fn mass(&mut self, link: usize) -> Option<MassProperties> {
+        let node = child(self.parsed.links[link], "inertial")?;
+        let inertial = &self.parsed.robot.links[link].inertial;
+        let owner = self.owner(link);
+        let origin = joint::origin(&owner, &inertial.origin, node, self.version, self.sink)?;
+        if inertial.mass.value < 0.0 {
+            let message = format!(
+                "{owner}: mass is {:?} kg: it must be at least 0",
+                inertial.mass.value
+            );
+            self.sink
+                .push(Diagnostic::new(place(node, "mass", "value"), message));
+            return None;
+        }
+        Some(mass::of_link(inertial, &origin))
+    }
+
+    /// Adds the masses of each body up.
+    fn masses(&mut self) {
+        for body in 0..self.bodies.len() {
+            let parts = std::mem::take(&mut self.parts[body]);
+            let masses: Vec<MassProperties> = parts.iter().map(|part| part.1).collect();
+            let whole = mass::sum(&masses);
+            self.bodies[body].mass = whole;
+            match whole.check() {
+                Err(error) => self.refuse_mass(body, &parts, &error.to_string()),
+                Ok(()) => self.tell_odd_parts(&parts),
+            }
+        }
+        self.refuse_massless();
+    }
+
+    fn refuse_mass(&mut self, body: usize, parts: &[(usize, MassProperties)], why: &str) {
+        let culprit = parts.iter().find(|part| part.1.check().is_err());
+        let link = culprit.or(parts.first()).map_or(0, |part| part.0);
+        let node = self.parsed.links[link];
+        let mut error = Diagnostic::new(
+            place(node, "inertial", "").clone(),
+            format!("{}: {why}", self.owner(link)),
+        );
+        if parts.len() > 1 {
+            let name = &self.bodies[body].name.value;
+            let count = parts.len();
+            error = error.help(format!(
+                "this is the sum over the {count} links that fixed joints join to body `{name}`"
+            ));
+        }
+        self.sink.push(error);
+    }
+
+    /// A link that no rigid body could be by itself may still be part of one that is.
+    fn tell_odd_parts(&mut self, parts: &[(usize, MassProperties)]) {
+        for (link, mass) in parts {
+            if mass.check().is_err() {
+                let message = "no rigid body has such an inertia, but the body that the link is part of is sound";
+                self.notices.add(message, self.owner(*link));
+            }
+        }
+    }
+
+    /// Refuses bodies that move without mass on them or on what hangs on them: M would be singular.
+    fn refuse_massless(&mut self) {
+        let count = self.bodies.len();
+        let mut massive: Vec<bool> = self
+            .bodies
+            .iter()
+            .map(|body| !mass::is_nothing(&body.mass))
+            .collect();
+        for body in (0..count).rev() {
+            if let Some(parent) = self.bodies[body].parent.filter(|_| massive[body]) {
+                massive[parent] = true;
+            }
+        }
+        for (body, _) in self.bodies.iter().zip(massive).filter(|(_, massive)| !massive) {
+            let (name, joint) = (&body.name.value, &body.joint.name.value);
+            let message = format!(
+                "link `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration \
+                 would not be determined"
+            );
+            let error = Diagnostic::new(body.name.span.clone(), message);
+            self.sink
+                .push(error.help("give the link an <inertial>, or make the joint fixed"));
+        }
+    }
+
+    fn owner(&self, link: usize) -> String {
+        format!("link `{}`", self.parsed.robot.links[link].name)
+    }
+
+    fn name_span(&self, link: usize) -> Span {
+        let node = self.parsed.links[link];
+        let name = node.attribute_node("name");
+        name.map_or_else(|| tag(node), |name| name.range_value())
+    }
+}
