@@ -16,8 +16,8 @@ mod scene;
 mod settings;
 mod source;
 mod suggest;
-mod write;
 pub mod urdf;
+mod write;
 
 pub use description::{
     BodyDescription, InitialDescription, JointDescription, Motion, Position, SceneDescription,

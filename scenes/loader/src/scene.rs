@@ -3,7 +3,8 @@
 use crate::build::{self, State};
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::forces::JointForces;
+use crate::forces::FrameDescription;
+use crate::notice::Notice;
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
 use crate::settings::Settings;
@@ -11,6 +12,23 @@ use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::path::Path;
 use std::sync::Arc;
+
+/// The text of a file, and what messages call it.
+///
+/// # Errors
+/// A file that cannot be read or is not UTF-8.
+pub(crate) fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
+    let name = path.display().to_string();
+    let refuse =
+        |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
+    let bytes =
+        std::fs::read(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        refuse(format!("cannot read {name}: its byte {valid} is not UTF-8"))
+    })?;
+    Ok((text, name))
+}
 
 /// What is said of a scene that cannot be read, should no error say more.
 const INCOMPLETE: &str = "the scene is not complete";
@@ -28,8 +46,12 @@ pub struct Scene {
     pub configuration: Vec<f64>,
     /// Speeds v̄ of all joints at time 0, one joint after the other.
     pub speeds: Vec<f64>,
+    /// Named frames.
+    pub frames: Vec<FrameDescription>,
     /// Simulation settings.
     pub settings: Settings,
+    /// What the scene says and the simulation leaves out.
+    pub notices: Vec<Notice>,
 }
 
 impl Scene {
@@ -77,16 +99,7 @@ impl Scene {
     /// # Errors
     /// A file that cannot be read or is not UTF-8, and all mistakes of its text.
     pub fn load(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Self, Diagnostics> {
-        let path = path.as_ref();
-        let name = path.display().to_string();
-        let refuse =
-            |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
-        let bytes =
-            std::fs::read(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            refuse(format!("cannot read {name}: its byte {valid} is not UTF-8"))
-        })?;
+        let (text, name) = read_file(path.as_ref())?;
         Self::parse(&text, &name, registry)
     }
 }
@@ -102,7 +115,9 @@ impl SceneDescription {
         let states: Vec<Option<State>> = self
             .bodies
             .iter()
-            .map(|body| build::state(&body.joint, &body.initial, registry, &mut sink))
+            .map(|body| {
+                build::state(&body.joint, &body.initial, &body.forces, registry, &mut sink)
+            })
             .collect();
         let states: Option<Vec<State>> = states.into_iter().collect();
         let scene = states.and_then(|states| build::scene(self, states, &mut sink));
@@ -119,7 +134,8 @@ fn check_joints(draft: &Draft, registry: &JointRegistry, sink: &mut Sink) {
     for body in &draft.bodies {
         if let Some(joint) = &body.joint {
             let initial = body.initial.clone().unwrap_or_default();
-            build::state(joint, &initial, registry, sink);
+            let forces = body.forces.clone().unwrap_or_default();
+            build::state(joint, &initial, &forces, registry, sink);
         }
     }
 }
@@ -137,6 +153,10 @@ fn describe(
             description: draft.description,
             gravity: draft.gravity,
             bodies,
+            frames: draft.elements.frames,
+            springs: draft.elements.springs,
+            wrenches: draft.elements.wrenches,
+            constraints: draft.elements.constraints,
             settings: draft.settings,
             ..SceneDescription::empty(source)
         }),
@@ -167,7 +187,7 @@ fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
             at: body.at,
             body_at: body.body_at,
             initial: body.initial?,
-            forces: JointForces::default(),
+            forces: body.forces?,
         })
     });
     let bodies: Option<Vec<_>> = bodies.collect();

@@ -78,19 +78,28 @@ pub(crate) fn from_matrix(
     Some(r * (Matrix3::identity() * 3.0 - gram) * 0.5)
 }
 
+/// The vector of length 1 in the direction of `vector`.
+pub(super) fn unit(
+    path: &str,
+    vector: Located<Vector3<f64>>,
+    sink: &mut Sink,
+) -> Option<Vector3<f64>> {
+    let scale = vector.value.amax();
+    if scale == 0.0 {
+        let message = format!("{path} is zero; an axis must have a direction");
+        sink.push(Diagnostic::new(vector.span, message));
+        return None;
+    }
+    Some((vector.value / scale).normalize())
+}
+
 /// The shortest rotation that turns the z axis onto `axis`; about the x axis where `axis` is −z.
 pub(crate) fn from_axis(
     path: &str,
     axis: Located<Vector3<f64>>,
     sink: &mut Sink,
 ) -> Option<Matrix3<f64>> {
-    let scale = axis.value.amax();
-    if scale == 0.0 {
-        let message = format!("{path} is zero; an axis must have a direction");
-        sink.push(Diagnostic::new(axis.span, message));
-        return None;
-    }
-    let a = (axis.value / scale).normalize();
+    let a = unit(path, axis, sink)?;
     let across = a.x.hypot(a.y);
     // The quaternion is along (1 + z, −y, x, 0); below the horizontal 1 + z cancels, but equals across² / (1 − z).
     let quaternion = if a.z >= 0.0 {

@@ -26,7 +26,12 @@ impl Sink {
     }
 
     /// The errors noted, about the text `source`; `otherwise` is said where there are none.
-    pub(crate) fn refuse(mut self, source_name: &str, source: &str, otherwise: &str) -> Diagnostics {
+    pub(crate) fn refuse(
+        mut self,
+        source_name: &str,
+        source: &str,
+        otherwise: &str,
+    ) -> Diagnostics {
         if self.errors.is_empty() {
             self.push(Diagnostic::without_place(otherwise));
         }

@@ -2,9 +2,9 @@
 //! parser, which would stop at the first error and drop what it does not know.
 
 use super::document::tag;
-use crate::notice::Notices;
 use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need};
 use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
 use crate::read::Sink;
 use crate::suggest::{nearest, one_of};
 use roxmltree::Node;
@@ -117,9 +117,16 @@ impl Audit<'_> {
                 None => String::new(),
             };
             let name = safe(attribute.name());
-            let message = format!("attributes `{name}` of <{}> are not read{hint}", schema.name);
+            let message = format!(
+                "attributes `{name}` of <{}> are not read{hint}",
+                schema.name
+            );
             let element = owner.trim_end_matches(": ");
-            let element = if element.is_empty() { "<robot>" } else { element };
+            let element = if element.is_empty() {
+                "<robot>"
+            } else {
+                element
+            };
             self.notices.add(message, element);
         }
     }
@@ -168,7 +175,8 @@ impl Audit<'_> {
             let name = node.tag_name().name();
             let message = format!("{owner}<{name}> holds the text {}", quoted(text.trim()));
             let error = Diagnostic::new(start..end.max(start), message);
-            self.sink.push(error.help("a URDF has elements and attributes only"));
+            self.sink
+                .push(error.help("a URDF has elements and attributes only"));
         }
     }
 }

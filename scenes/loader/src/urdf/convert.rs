@@ -16,6 +16,7 @@ use crate::scene::stem;
 use crate::settings::Settings;
 use crate::source::{Located, Span};
 use hamel::spatial::{MassProperties, Pose};
+use std::path::Path;
 
 /// The robot as a scene.
 pub(super) fn convert(
@@ -45,8 +46,11 @@ pub(super) fn convert(
         return None;
     }
     let name = Some(parsed.robot.name.clone()).filter(|name| !name.is_empty());
+    let file = Path::new(&source.name).file_name().unwrap_or_default();
+    let description = format!("Imported from the URDF {}", file.to_string_lossy());
     Some(Import {
         scene: SceneDescription {
+            description: description.replace(char::is_control, " "),
             name: name.unwrap_or_else(|| stem(&source.name)),
             gravity: options.gravity,
             bodies,
@@ -130,11 +134,23 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             return self.attach(root, anchor);
         }
         let mut name = String::from("floating_base");
-        while self.parsed.robot.joints.iter().any(|joint| joint.name == name) {
+        while self
+            .parsed
+            .robot
+            .joints
+            .iter()
+            .any(|joint| joint.name == name)
+        {
             name.push('_');
         }
         let joint = (name, "free", self.name_span(root));
-        self.body(root, None, joint, [Pose::identity(); 2], JointForces::default());
+        self.body(
+            root,
+            None,
+            joint,
+            [Pose::identity(); 2],
+            JointForces::default(),
+        );
     }
 
     /// A link that hangs on a joint.
@@ -166,7 +182,13 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             ..JointForces::default()
         };
         let joint = (joint.name.clone(), kind, tag(node));
-        self.body(link, parent.body, joint, [origin * axis, axis.inverse()], forces);
+        self.body(
+            link,
+            parent.body,
+            joint,
+            [origin * axis, axis.inverse()],
+            forces,
+        );
     }
 
     /// Begins a body with a link.
@@ -180,7 +202,10 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     ) {
         let body = self.bodies.len();
         self.bodies.push(BodyDescription {
-            name: Located::new(self.parsed.robot.links[link].name.clone(), self.name_span(link)),
+            name: Located::new(
+                self.parsed.robot.links[link].name.clone(),
+                self.name_span(link),
+            ),
             parent,
             mass: MassProperties::massless(),
             joint: JointDescription {
@@ -222,8 +247,9 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         if self.parsed.robot.links[link].name == WORLD {
             let message = format!("link `{WORLD}` is not the root, or the root floats");
             let error = Diagnostic::new(self.name_span(link), message);
-            self.sink
-                .push(error.help(format!("`{WORLD}` is the inertial frame, which does not move")));
+            self.sink.push(error.help(format!(
+                "`{WORLD}` is the inertial frame, which does not move"
+            )));
         }
     }
 
@@ -314,7 +340,12 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
                 massive[parent] = true;
             }
         }
-        for (body, _) in self.bodies.iter().zip(massive).filter(|(_, massive)| !massive) {
+        for (body, _) in self
+            .bodies
+            .iter()
+            .zip(massive)
+            .filter(|(_, massive)| !massive)
+        {
             let (name, joint) = (&body.name.value, &body.joint.name.value);
             let message = format!(
                 "link `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration \

@@ -1,8 +1,8 @@
 //! Joint types of URDF in the library, and what else a file says of a joint.
 
 use super::document::{child, place};
-use crate::notice::Notices;
 use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
 use crate::parse::rotation;
 use crate::read::Sink;
 use crate::source::Located;
@@ -24,6 +24,44 @@ pub struct JointFacts {
     pub damping: f64,
     /// Dry friction, N m or N.
     pub friction: f64,
+}
+
+impl JointFacts {
+    /// What is not simulated of it, a line each.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(limits) = &self.limits {
+            lines.extend(limits.line());
+        }
+        if let Some(Mimic {
+            joint,
+            multiplier,
+            offset,
+        }) = &self.mimic
+        {
+            lines.push(format!(
+                "mimics `{joint}`: {multiplier:?} times its position, and {offset:?}"
+            ));
+        }
+        if self.friction != 0.0 {
+            lines.push(format!("dry friction {:?}", self.friction));
+        }
+        lines
+    }
+}
+
+impl Limits {
+    fn line(&self) -> Option<String> {
+        let position = self
+            .position
+            .map(|[lower, upper]| format!("position {lower:?} to {upper:?}"));
+        let velocity = self
+            .velocity
+            .map(|velocity| format!("velocity {velocity:?}"));
+        let effort = self.effort.map(|effort| format!("effort {effort:?}"));
+        let parts: Vec<String> = [position, velocity, effort].into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| format!("limits: {}", parts.join(", ")))
+    }
 }
 
 /// Limits of a joint: rad or m, rad/s or m/s, N m or N.
@@ -97,7 +135,9 @@ pub(super) fn origin(
                 sink.push(Diagnostic::new(span("quat_xyzw"), message));
                 return None;
             }
-            let mut numbers = text.split_whitespace().map(|word| word.parse().unwrap_or(f64::NAN));
+            let mut numbers = text
+                .split_whitespace()
+                .map(|word| word.parse().unwrap_or(f64::NAN));
             let [x, y, z, w] = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
             let wxyz = Located::new(Vector4::new(w, x, y, z), span("quat_xyzw"));
             rotation::from_quaternion(&format!("{owner}: `quat_xyzw`"), wxyz, sink)?

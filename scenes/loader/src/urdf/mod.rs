@@ -26,10 +26,13 @@ use crate::description::{SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::notice::{Notice, Notices};
 use crate::read::Sink;
+use crate::scene::{Scene, read_file};
 use audit::Audit;
 use document::tag;
+use hamel::registry::JointRegistry;
 use nalgebra::Vector3;
 use roxmltree::{Document, Node};
+use std::path::Path;
 use tree::Parsed;
 use urdf_rs::Robot;
 
@@ -83,6 +86,42 @@ pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, 
     }
 }
 
+/// The robot in the file `path`.
+///
+/// # Errors
+/// A file that cannot be read or is not UTF-8, and those of [`read`].
+pub fn load(path: impl AsRef<Path>, options: &Options) -> Result<Import, Diagnostics> {
+    let (text, name) = read_file(path.as_ref())?;
+    read(&text, &name, options)
+}
+
+impl Import {
+    /// The scene, built; its notices and those of the import together.
+    ///
+    /// # Errors
+    /// Those of [`SceneDescription::build`].
+    pub fn build(&self, registry: &JointRegistry) -> Result<Scene, Diagnostics> {
+        let mut scene = self.scene.build(registry)?;
+        scene.notices.splice(0..0, self.notices.iter().cloned());
+        Ok(scene)
+    }
+
+    /// The scene as the text of a scene file, with the notices and what else the file says of the joints as comments.
+    pub fn to_toml(&self) -> String {
+        let mut head = Vec::new();
+        if !self.notices.is_empty() {
+            head.push(String::from(
+                "What the robot's file says and the scene does not, or what it leaves open:",
+            ));
+            head.extend(self.notices.iter().map(|notice| format!("- {notice}")));
+        }
+        let facts = |name: &str| self.joints.iter().find(|joint| joint.name == name);
+        self.scene.to_toml(&head, |name| {
+            facts(name).map_or_else(Vec::new, JointFacts::lines)
+        })
+    }
+}
+
 fn import(
     document: &Document<'_>,
     source: Source,
@@ -124,11 +163,7 @@ fn version(root: Node<'_, '_>) -> (u32, u32) {
 }
 
 /// Joins what the parser read with the document.
-fn parsed<'a, 'i>(
-    robot: &'a Robot,
-    root: Node<'a, 'i>,
-    sink: &mut Sink,
-) -> Option<Parsed<'a, 'i>> {
+fn parsed<'a, 'i>(robot: &'a Robot, root: Node<'a, 'i>, sink: &mut Sink) -> Option<Parsed<'a, 'i>> {
     let named = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
     let links: Vec<_> = named("link").collect();
     let joints: Vec<_> = named("joint").collect();
@@ -138,7 +173,10 @@ fn parsed<'a, 'i>(
     }
     // Should the parser ever leave one out, places and elements would not fit.
     if (links.len(), joints.len()) != (robot.links.len(), robot.joints.len()) {
-        sink.push(Diagnostic::new(tag(root), "not every link and joint was read"));
+        sink.push(Diagnostic::new(
+            tag(root),
+            "not every link and joint was read",
+        ));
         return None;
     }
     Some(Parsed {

@@ -33,8 +33,18 @@ pub(super) struct Links {
 pub(super) fn links(parsed: &Parsed<'_, '_>, sink: &mut Sink) -> Option<Links> {
     let errors_before = sink.len();
     let robot = parsed.robot;
-    let names = unique("links", robot.links.iter().map(|l| &l.name), &parsed.links, sink);
-    unique("joints", robot.joints.iter().map(|j| &j.name), &parsed.joints, sink);
+    let names = unique(
+        "links",
+        robot.links.iter().map(|l| &l.name),
+        &parsed.links,
+        sink,
+    );
+    unique(
+        "joints",
+        robot.joints.iter().map(|j| &j.name),
+        &parsed.joints,
+        sink,
+    );
     mimics(parsed, sink);
     let parents = parents(parsed, &names, sink);
     if sink.len() > errors_before {
@@ -119,12 +129,7 @@ fn unknown_link(
     }
 }
 
-fn second_parent(
-    parsed: &Parsed<'_, '_>,
-    link: usize,
-    joint: usize,
-    other: usize,
-) -> Diagnostic {
+fn second_parent(parsed: &Parsed<'_, '_>, link: usize, joint: usize, other: usize) -> Diagnostic {
     let (link, joints) = (&parsed.robot.links[link].name, &parsed.robot.joints);
     let message = format!(
         "link `{link}` hangs on two joints, `{}` and `{}`",
@@ -161,8 +166,14 @@ fn roots(parsed: &Parsed<'_, '_>, parents: &[Option<usize>], sink: &mut Sink) {
     let is_root = |link: &usize| parents[*link].is_none();
     let roots: Vec<usize> = (0..parents.len()).filter(is_root).collect();
     if let [first, second, ..] = roots.as_slice() {
-        let names = roots.iter().map(|&root| parsed.robot.links[root].name.as_str());
-        let message = format!("the robot has {} root links: {}", roots.len(), all_of(names));
+        let names = roots
+            .iter()
+            .map(|&root| parsed.robot.links[root].name.as_str());
+        let message = format!(
+            "the robot has {} root links: {}",
+            roots.len(),
+            all_of(names)
+        );
         sink.push(
             Diagnostic::new(tag(parsed.links[*second]), message)
                 .label("no joint has this link as its child")

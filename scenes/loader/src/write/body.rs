@@ -42,7 +42,9 @@ fn mass(out: &mut String, mass: &MassProperties) {
         let six = places.map(|place| i[place]);
         entry(out, "inertia_xx_yy_zz_xy_xz_yz", &list(&six));
     } else {
-        let matrix = i.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>());
+        let matrix = i
+            .row_iter()
+            .map(|row| row.iter().copied().collect::<Vec<_>>());
         let matrix: Vec<_> = matrix.collect();
         entry(out, "inertia", &rows(&matrix));
     }

@@ -1,6 +1,6 @@
 //! Numbers, texts and lists as TOML.
 
-use toml_writer::{TomlStringBuilder, ToTomlValue};
+use toml_writer::{ToTomlKey, ToTomlValue, TomlKeyBuilder, TomlStringBuilder};
 
 /// The shortest digits that read back as the same number; zero has no sign.
 pub(super) fn number(value: f64) -> String {
@@ -34,7 +34,12 @@ where
 pub(super) fn table(entries: &[(&str, String)]) -> String {
     let entries: Vec<String> = entries
         .iter()
-        .map(|(key, value)| format!("{key} = {value}"))
+        .map(|(key, value)| {
+            format!(
+                "{} = {value}",
+                TomlKeyBuilder::new(key).as_default().to_toml_key()
+            )
+        })
         .collect();
     format!("{{ {} }}", entries.join(", "))
 }
