@@ -9,6 +9,7 @@ pub mod motion;
 pub mod oracle;
 pub mod random;
 pub mod reference_form;
+pub mod refusals;
 pub mod scenes;
 pub mod specs;
 

@@ -116,7 +116,13 @@ impl SceneDescription {
             .bodies
             .iter()
             .map(|body| {
-                build::state(&body.joint, &body.initial, &body.forces, registry, &mut sink)
+                build::state(
+                    &body.joint,
+                    &body.initial,
+                    &body.forces,
+                    registry,
+                    &mut sink,
+                )
             })
             .collect();
         let states: Option<Vec<State>> = states.into_iter().collect();

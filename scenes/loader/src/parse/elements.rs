@@ -114,7 +114,11 @@ impl<'a> Bodies<'a> {
     }
 }
 
-fn frame(fields: &mut Fields<'_>, bodies: &Bodies<'_>, sink: &mut Sink) -> Option<FrameDescription> {
+fn frame(
+    fields: &mut Fields<'_>,
+    bodies: &Bodies<'_>,
+    sink: &mut Sink,
+) -> Option<FrameDescription> {
     let name = name(fields, "frame", sink);
     let body = fields.required("body", sink);
     let body = body.and_then(|body| bodies.find(&body, sink));

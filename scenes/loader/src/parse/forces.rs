@@ -16,7 +16,7 @@ pub(super) fn forces(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<JointFo
     let spring = optional(fields, "spring", spring, sink);
     let damping = optional(fields, "damping", per_freedom, sink);
     let armature = optional(fields, "armature", per_freedom, sink);
-    let effort = optional(fields, "effort", Value::numbers, sink);
+    let effort = optional(fields, "effort", |value, sink| value.numbers(sink), sink);
     let motion = optional(fields, "motion", motion, sink);
     Some(JointForces {
         spring: spring?,

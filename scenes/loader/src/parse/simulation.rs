@@ -75,9 +75,7 @@ fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
     let (least, largest) = (Settings::LEAST_TOL, Settings::LARGEST_TOL);
     let limit = format!("between {least:?} and {largest:?}");
     let holds = |number| (least..=largest).contains(&number);
-    let number = table
-        .optional("tol")?
-        .number_within(holds, &limit, sink)?;
+    let number = table.optional("tol")?.number_within(holds, &limit, sink)?;
     Some(number.value)
 }
 

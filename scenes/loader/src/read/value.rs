@@ -238,7 +238,12 @@ impl<'a> Value<'a> {
     }
 
     /// The items of a list, which messages call `item` 1, 2, …
-    pub(crate) fn items(&self, item: &str, expected: &str, sink: &mut Sink) -> Option<Vec<Value<'a>>> {
+    pub(crate) fn items(
+        &self,
+        item: &str,
+        expected: &str,
+        sink: &mut Sink,
+    ) -> Option<Vec<Value<'a>>> {
         let DeValue::Array(items) = self.value.get_ref() else {
             return self.wrong_type(expected, sink);
         };
