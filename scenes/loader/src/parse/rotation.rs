@@ -39,6 +39,21 @@ pub(crate) fn from_quaternion(
     Some(unit_quaternion(&quaternion.value))
 }
 
+/// The rotation of a quaternion `(w, x, y, z)` of any length but 0.
+pub(crate) fn from_any_quaternion(
+    path: &str,
+    quaternion: Located<Vector4<f64>>,
+    sink: &mut Sink,
+) -> Option<Matrix3<f64>> {
+    let scale = quaternion.value.amax();
+    if scale == 0.0 {
+        let message = format!("{path} is zero; a quaternion must have a length");
+        sink.push(Diagnostic::new(quaternion.span, message));
+        return None;
+    }
+    Some(unit_quaternion(&(quaternion.value / scale)))
+}
+
 /// Rotations about the fixed x, y and z axes in turn, rad: `Rz(yaw) Ry(pitch) Rx(roll)`.
 pub(crate) fn from_roll_pitch_yaw(
     path: &str,

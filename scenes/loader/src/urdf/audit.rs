@@ -30,6 +30,9 @@ impl Audit<'_> {
             self.attribute(node, attribute, &owner);
         }
         self.unknown_attributes(node, schema, &owner);
+        if schema.name == "limit" && self.version >= (1, 2) {
+            self.limits(node, &owner);
+        }
         self.distilled.push('>');
         self.text(node, &owner);
         for child in node.children().filter(Node::is_element) {
@@ -161,6 +164,27 @@ impl Audit<'_> {
             None => {
                 let text = format!(" {name}=\"{}\"", escaped(value));
                 self.distilled.push_str(&text);
+            }
+        }
+    }
+
+    /// Since version 1.2 limits must make sense; before, URDF does not say so.
+    fn limits(&mut self, node: Node<'_, '_>, owner: &str) {
+        let number = |name: &str| node.attribute(name)?.trim().parse::<f64>().ok();
+        let place = |name: &str| {
+            node.attribute_node(name)
+                .map_or(tag(node), |a| a.range_value())
+        };
+        if let (Some(lower), Some(upper)) = (number("lower"), number("upper"))
+            && lower > upper
+        {
+            let message = format!("{owner}`lower` is {lower:?}, above `upper`, which is {upper:?}");
+            self.sink.push(Diagnostic::new(place("lower"), message));
+        }
+        for name in ["effort", "velocity", "acceleration", "deceleration", "jerk"] {
+            if let Some(value) = number(name).filter(|value| *value < 0.0) {
+                let message = format!("{owner}`{name}` is {value:?}, but must be at least 0");
+                self.sink.push(Diagnostic::new(place(name), message));
             }
         }
     }

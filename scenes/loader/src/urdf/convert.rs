@@ -32,11 +32,16 @@ pub(super) fn convert(
     let facts = facts(parsed, sink);
     let links = links?;
     let mut robot = Converter::new(parsed, version, &mut notices, sink);
+    let errors_before_masses = robot.sink.len();
     robot.root(&links, options);
     for &link in links.order.iter().skip(1) {
         robot.link(link, &links, &facts);
     }
     robot.masses();
+    // A mass that was refused is missing on what moves.
+    if robot.sink.len() == errors_before_masses {
+        robot.refuse_massless();
+    }
     let Converter { bodies, frames, .. } = robot;
     if bodies.is_empty() && sink.len() == errors_before {
         let error = Diagnostic::new(tag(parsed.links[0]), "no joint of the robot moves");
@@ -243,14 +248,21 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         self.place(link, anchor);
     }
 
+    /// A link that moves, or stands elsewhere, may not have the name of the world.
     fn refuse_world(&mut self, link: usize) {
-        if self.parsed.robot.links[link].name == WORLD {
-            let message = format!("link `{WORLD}` is not the root, or the root floats");
-            let error = Diagnostic::new(self.name_span(link), message);
-            self.sink.push(error.help(format!(
-                "`{WORLD}` is the inertial frame, which does not move"
-            )));
+        if self.parsed.robot.links[link].name != WORLD {
+            return;
         }
+        let is_root = self.anchors.iter().all(Option::is_none);
+        let why = match is_root {
+            true => "it is the root of the robot, and the base is to float",
+            false => "it is not the root of the robot",
+        };
+        let message = format!("link `{WORLD}` cannot be the inertial frame: {why}");
+        let error = Diagnostic::new(self.name_span(link), message);
+        self.sink.push(error.help(format!(
+            "`{WORLD}` is the inertial frame: give the link another name"
+        )));
     }
 
     /// Notes where a link is, and gives its mass to that body.
@@ -296,7 +308,6 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
                 Ok(()) => self.tell_odd_parts(&parts),
             }
         }
-        self.refuse_massless();
     }
 
     fn refuse_mass(&mut self, body: usize, parts: &[(usize, MassProperties)], why: &str) {

@@ -140,7 +140,7 @@ pub(super) fn origin(
                 .map(|word| word.parse().unwrap_or(f64::NAN));
             let [x, y, z, w] = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
             let wxyz = Located::new(Vector4::new(w, x, y, z), span("quat_xyzw"));
-            rotation::from_quaternion(&format!("{owner}: `quat_xyzw`"), wxyz, sink)?
+            rotation::from_any_quaternion(&format!("{owner}: `quat_xyzw`"), wxyz, sink)?
         }
         None => {
             let rpy = Located::new(Vector3::from(origin.rpy.0), span("rpy"));

@@ -1,6 +1,5 @@
 //! The links as a tree: names that are unique, joints between links that exist, one root, no cycle.
 
-use super::audit::safe;
 use super::document::{place, tag};
 use crate::diagnostics::Diagnostic;
 use crate::parse::{cycles, order};
@@ -183,20 +182,25 @@ fn roots(parsed: &Parsed<'_, '_>, parents: &[Option<usize>], sink: &mut Sink) {
     }
 }
 
-/// A mimic joint follows one that exists.
+/// A mimic joint follows another one that exists.
 fn mimics(parsed: &Parsed<'_, '_>, sink: &mut Sink) {
     let joints = &parsed.robot.joints;
     for (joint, node) in joints.iter().zip(&parsed.joints) {
         let Some(mimic) = &joint.mimic else { continue };
+        let span = place(*node, "mimic", "joint");
+        if joint.name == mimic.joint {
+            let message = format!("joint `{}` mimics itself", joint.name);
+            sink.push(Diagnostic::new(span, message));
+            continue;
+        }
         if joints.iter().any(|other| other.name == mimic.joint) {
             continue;
         }
         let message = format!(
             "joint `{}` mimics `{}`, which is not a joint of the robot",
-            joint.name,
-            safe(&mimic.joint)
+            joint.name, mimic.joint
         );
-        let error = Diagnostic::new(place(*node, "mimic", "joint"), message);
+        let error = Diagnostic::new(span, message);
         let names = joints.iter().map(|joint| joint.name.as_str());
         sink.push(match nearest(&mimic.joint, names) {
             Some(near) => error.label(format!("did you mean `{near}`?")),
