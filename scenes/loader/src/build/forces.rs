@@ -104,6 +104,13 @@ fn spring(stand: &Stand, spring: &Located<JointSpring>) -> Result<Spring, Diagno
     let freedoms = stand.joint.freedoms();
     let key = "spring.stiffness";
     let stiffness = match &spring.value.energy {
+        SpringEnergy::Trace(_) if !stand.turns() => {
+            let message = format!(
+                "joint `{}`: a spring of kind \"trace\" acts on the rotation, and the joint does not turn",
+                stand.name
+            );
+            return Err(Diagnostic::new(spring.span.clone(), message));
+        }
         SpringEnergy::Trace(stiffness) => Stiffness::Trace(*stiffness),
         SpringEnergy::Diagonal(numbers) => {
             let numbers = each(stand, key, numbers, &spring.span)?;

@@ -85,6 +85,17 @@ impl Stand {
         })
     }
 
+    /// Whether the child can turn at home.
+    pub(super) fn turns(&self) -> bool {
+        let mut twists = vec![0.0; 6 * self.joint.layout().freedoms];
+        let home = self.mechanism.home();
+        self.joint.twist_map_child(&home, &mut twists);
+        // Columns of an angular and a linear part.
+        twists
+            .chunks(6)
+            .any(|twist| twist[..3].iter().any(|&rate| rate != 0.0))
+    }
+
     /// The configuration that `position` means.
     pub(super) fn configuration(&self, position: &Position) -> Result<Vec<f64>, Diagnostic> {
         match position {

@@ -90,7 +90,7 @@ impl<'a> Bodies<'a> {
             return (*index).map(Some);
         }
         let message = format!(
-            "{}: {:?} is not a body of the scene",
+            "{} is {:?}, which is not a body of the scene",
             value.path(),
             name.value
         );
@@ -98,7 +98,7 @@ impl<'a> Bodies<'a> {
         let names = self.names.iter().copied().chain([WORLD]);
         sink.push(match nearest(&name.value, names.clone()) {
             Some(near) => error.label(format!("did you mean `{near}`?")),
-            None => error.help(format!("its bodies are {}", one_of(names))),
+            None => error.help(format!("a body is {}", one_of(names))),
         });
         None
     }
