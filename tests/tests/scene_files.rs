@@ -50,23 +50,68 @@ fn every_scene_loads_at_home_on_its_manifolds() -> Result<(), Box<dyn Error>> {
 
 #[test]
 fn examples_of_the_description_load() -> Result<(), Box<dyn Error>> {
+    for example in examples()? {
+        Scene::parse(&example, "scenes/README.md", &hamel_joints::registry())
+            .map_err(|error| format!("in scenes/README.md:\n{error}"))?;
+    }
+    Ok(())
+}
+
+/// The examples of the description, each a whole scene.
+fn examples() -> Result<Vec<String>, Box<dyn Error>> {
     let text = fs::read_to_string(root().join("scenes/README.md"))?;
     let examples = text
         .split("```toml\n")
         .skip(1)
         .filter_map(|rest| rest.split("```").next());
-    let mut count = 0;
-    for example in examples {
-        let whole = match example.split_once('\n') {
-            Some(("[[body]]", _)) => format!("{HEADER}{example}"),
-            Some(("[simulation]", _)) => format!("{HEADER}{BODY}{example}"),
-            _ => example.to_owned(),
-        };
-        Scene::parse(&whole, "scenes/README.md", &hamel_joints::registry())
-            .map_err(|error| format!("in scenes/README.md:\n{error}"))?;
-        count += 1;
+    let examples: Vec<String> = examples.map(completed).collect();
+    assert!(
+        examples.len() >= 6,
+        "the description has {} examples",
+        examples.len()
+    );
+    Ok(examples)
+}
+
+/// A fragment of the description with what it needs to be a scene.
+fn completed(example: &str) -> String {
+    match example.split_once('\n') {
+        Some(("[[body]]", _)) => format!("{HEADER}{example}"),
+        Some(("[simulation]", _)) => format!("{HEADER}{BODY}{example}"),
+        _ => example.to_owned(),
     }
-    assert!(count >= 4, "the description has {count} examples");
+}
+
+/// What is written of a scene is written again of what is read from it: no key is lost on either way.
+#[test]
+fn scenes_come_through_their_own_text() -> Result<(), Box<dyn Error>> {
+    let mut texts = examples()?;
+    for path in files(&root().join("scenes"), "toml")? {
+        texts.push(fs::read_to_string(path)?);
+    }
+    for text in texts {
+        let description = Scene::from_toml(&text, "scene.toml")?;
+        let written = description.to_toml(&[], |_| Vec::new());
+        let again = Scene::from_toml(&written, "written.toml")?;
+        assert_eq!(again.to_toml(&[], |_| Vec::new()), written);
+        let keys = [
+            "spring",
+            "damping",
+            "armature",
+            "effort",
+            "motion",
+            "[[frame]]",
+            "[[wrench]]",
+            "[[constraint]]",
+        ];
+        for key in keys {
+            assert_eq!(
+                text.contains(&format!("\n{key}")),
+                written.contains(&format!("\n{key}")),
+                "{written}"
+            );
+        }
+    }
     Ok(())
 }
 
