@@ -173,6 +173,37 @@ fn what_is_not_simulated_is_told_and_kept() {
     );
 }
 
+/// Of a CAD program's inertia about the frame's origin, 5e-4 kg m², nothing but rounding is left about the centre of mass.
+#[test]
+fn what_rounding_leaves_of_an_inertia_is_no_mistake() {
+    let with_moment = |moment: &str| {
+        let text = format!(
+            "<robot name=\"r\"><link name=\"base\"/><link name=\"arm\"><inertial><origin xyz=\"0 0 0.03\"/>\
+             <mass value=\"0.5\"/><inertia ixx=\"{moment}\" ixy=\"0\" ixz=\"0\" iyy=\"{moment}\" iyz=\"0\" izz=\"0\"/>\
+             </inertial></link><joint name=\"joint\" type=\"revolute\"><parent link=\"base\"/><child link=\"arm\"/></joint>\
+             </robot>"
+        );
+        read(&text, "r.urdf", &Options::default()).map(|import| arm(&import).mass.mass)
+    };
+    assert_eq!(
+        with_moment("-5e-20").map_err(|errors| errors.to_string()),
+        Ok(0.5)
+    );
+    let refused = with_moment("-5e-9").map_err(|errors| errors.to_string());
+    assert!(
+        refused
+            .is_err_and(|message| message.contains("link `arm`: inertia has the principal moment"))
+    );
+}
+
+#[test]
+fn a_mimic_joint_that_follows_nothing_is_told() {
+    let inside = "<axis xyz=\"0 0 1\"/><mimic joint=\"absent\"/>";
+    let told =
+        "mimic joints follow no other joint of the robot: the joint moves by itself: joint `joint`";
+    assert_eq!(notices(&robot("revolute", inside, "")), [told]);
+}
+
 #[test]
 fn a_steep_quaternion_keeps_its_digits() {
     // A pitch of a quarter turn less 1e-4: where angles are taken from the quaternion, a thousandth is lost.

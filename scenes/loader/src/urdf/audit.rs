@@ -213,10 +213,11 @@ fn owner_of(node: Node<'_, '_>, owner: &str) -> String {
     }
 }
 
-/// What messages call an element of the robot.
+/// What messages call an element of the robot: by its name, or by what it refers to.
 fn named(node: Node<'_, '_>) -> String {
     let kind = safe(node.tag_name().name());
-    match node.attribute("name") {
+    let name = node.attribute("name").or(node.attribute("reference"));
+    match name {
         Some(name) => format!("{kind} `{}`", safe(name)),
         None => {
             let before = node.prev_siblings().skip(1);

@@ -179,7 +179,8 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             let body = parent.body;
             return self.attach(link, Anchor { body, pose: origin });
         };
-        joint::tell(joint, &facts[index], node, self.notices);
+        let joints = &self.parsed.robot.joints;
+        joint::tell(joint, joints, &facts[index], node, self.notices);
         let damping = Some(facts[index].damping).filter(|&damping| damping != 0.0);
         let span = place(node, "dynamics", "damping");
         let forces = JointForces {

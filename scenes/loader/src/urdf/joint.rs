@@ -174,8 +174,14 @@ pub(super) fn facts(joint: &Joint, node: Node<'_, '_>) -> JointFacts {
     }
 }
 
-/// Tells what of a moving joint is not simulated, and what URDF leaves open.
-pub(super) fn tell(joint: &Joint, facts: &JointFacts, node: Node<'_, '_>, notices: &mut Notices) {
+/// Tells what of a moving joint, one of `joints`, is not simulated, and what URDF leaves open.
+pub(super) fn tell(
+    joint: &Joint,
+    joints: &[Joint],
+    facts: &JointFacts,
+    node: Node<'_, '_>,
+    notices: &mut Notices,
+) {
     let mut add = |holds: bool, message: &str| {
         if holds {
             notices.add(message, format!("joint `{}`", joint.name));
@@ -190,9 +196,17 @@ pub(super) fn tell(joint: &Joint, facts: &JointFacts, node: Node<'_, '_>, notice
         limits.is_some_and(|limits| limits.velocity.is_some() || limits.effort.is_some()),
         "limits of velocity and effort are not simulated",
     );
+    let follows = |mimic: &Mimic| {
+        let mut names = joints.iter().map(|joint| &joint.name);
+        mimic.joint != joint.name && names.any(|name| *name == mimic.joint)
+    };
     add(
-        facts.mimic.is_some(),
+        facts.mimic.as_ref().is_some_and(follows),
         "mimic joints are not coupled: the joint moves by itself",
+    );
+    add(
+        facts.mimic.as_ref().is_some_and(|mimic| !follows(mimic)),
+        "mimic joints follow no other joint of the robot: the joint moves by itself",
     );
     add(facts.friction != 0.0, "dry friction is not simulated");
     add(

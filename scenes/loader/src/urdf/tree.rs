@@ -44,7 +44,6 @@ pub(super) fn links(parsed: &Parsed<'_, '_>, sink: &mut Sink) -> Option<Links> {
         &parsed.joints,
         sink,
     );
-    mimics(parsed, sink);
     let parents = parents(parsed, &names, sink);
     if sink.len() > errors_before {
         return None;
@@ -179,32 +178,5 @@ fn roots(parsed: &Parsed<'_, '_>, parents: &[Option<usize>], sink: &mut Sink) {
                 .context(tag(parsed.links[*first]), "nor this one")
                 .help("a URDF is one tree: every link but one is the child of a joint"),
         );
-    }
-}
-
-/// A mimic joint follows another one that exists.
-fn mimics(parsed: &Parsed<'_, '_>, sink: &mut Sink) {
-    let joints = &parsed.robot.joints;
-    for (joint, node) in joints.iter().zip(&parsed.joints) {
-        let Some(mimic) = &joint.mimic else { continue };
-        let span = place(*node, "mimic", "joint");
-        if joint.name == mimic.joint {
-            let message = format!("joint `{}` mimics itself", joint.name);
-            sink.push(Diagnostic::new(span, message));
-            continue;
-        }
-        if joints.iter().any(|other| other.name == mimic.joint) {
-            continue;
-        }
-        let message = format!(
-            "joint `{}` mimics `{}`, which is not a joint of the robot",
-            joint.name, mimic.joint
-        );
-        let error = Diagnostic::new(span, message);
-        let names = joints.iter().map(|joint| joint.name.as_str());
-        sink.push(match nearest(&mimic.joint, names) {
-            Some(near) => error.label(format!("did you mean `{near}`?")),
-            None => error,
-        });
     }
 }
