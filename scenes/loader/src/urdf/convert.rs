@@ -2,8 +2,9 @@
 
 use super::document::{child, place, tag};
 use super::joint::{self, JointFacts};
+use super::masses::Part;
 use super::tree::{self, Links, Parsed};
-use super::{Import, Options, mass};
+use super::{Import, Options, mass, masses};
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, SceneDescription, Source,
 };
@@ -31,18 +32,24 @@ pub(super) fn convert(
     let links = tree::links(parsed, sink);
     let facts = facts(parsed, sink);
     let links = links?;
+    let errors_before_masses = sink.len();
     let mut robot = Converter::new(parsed, version, &mut notices, sink);
-    let errors_before_masses = robot.sink.len();
     robot.root(&links, options);
     for &link in links.order.iter().skip(1) {
         robot.link(link, &links, &facts);
     }
-    robot.masses();
+    let Converter {
+        mut bodies,
+        frames,
+        parts,
+        ..
+    } = robot;
     // A mass that was refused is missing on what moves.
-    if robot.sink.len() == errors_before_masses {
-        robot.refuse_massless();
+    let complete = sink.len() == errors_before_masses;
+    masses::settle(parsed, &mut bodies, &parts, &mut notices, sink);
+    if complete {
+        masses::refuse_massless(&bodies, sink);
     }
-    let Converter { bodies, frames, .. } = robot;
     if bodies.is_empty() && sink.len() == errors_before {
         let error = Diagnostic::new(tag(parsed.links[0]), "no joint of the robot moves");
         sink.push(error.help("with a floating base it can move as a whole"));
@@ -102,8 +109,8 @@ struct Converter<'c, 'a, 'i> {
     sink: &'c mut Sink,
     anchors: Vec<Option<Anchor>>,
     bodies: Vec<BodyDescription>,
-    /// The links that make each body, with their mass properties in the body frame.
-    parts: Vec<Vec<(usize, MassProperties)>>,
+    /// The links that make each body.
+    parts: Vec<Vec<Part>>,
     frames: Vec<FrameDescription>,
 }
 
@@ -138,14 +145,9 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             };
             return self.attach(root, anchor);
         }
+        let joints = &self.parsed.robot.joints;
         let mut name = String::from("floating_base");
-        while self
-            .parsed
-            .robot
-            .joints
-            .iter()
-            .any(|joint| joint.name == name)
-        {
+        while joints.iter().any(|joint| joint.name == name) {
             name.push('_');
         }
         let joint = (name, "free", self.name_span(root));
@@ -271,7 +273,10 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         self.anchors[link] = Some(anchor);
         let Some(mass) = self.mass(link) else { return };
         match anchor.body {
-            Some(body) => self.parts[body].push((link, mass::moved(&mass, &anchor.pose))),
+            Some(body) => self.parts[body].push(Part {
+                link,
+                mass: mass::moved(&mass, &anchor.pose),
+            }),
             None => self.notices.add(
                 "links fixed to the world do not move: their masses have no effect",
                 self.owner(link),
@@ -295,78 +300,6 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             return None;
         }
         Some(mass::of_link(inertial, &origin))
-    }
-
-    /// Adds the masses of each body up.
-    fn masses(&mut self) {
-        for body in 0..self.bodies.len() {
-            let parts = std::mem::take(&mut self.parts[body]);
-            let masses: Vec<MassProperties> = parts.iter().map(|part| part.1).collect();
-            let whole = mass::sum(&masses);
-            self.bodies[body].mass = whole;
-            match whole.check() {
-                Err(error) => self.refuse_mass(body, &parts, &error.to_string()),
-                Ok(()) => self.tell_odd_parts(&parts),
-            }
-        }
-    }
-
-    fn refuse_mass(&mut self, body: usize, parts: &[(usize, MassProperties)], why: &str) {
-        let culprit = parts.iter().find(|part| part.1.check().is_err());
-        let link = culprit.or(parts.first()).map_or(0, |part| part.0);
-        let node = self.parsed.links[link];
-        let mut error = Diagnostic::new(
-            place(node, "inertial", "").clone(),
-            format!("{}: {why}", self.owner(link)),
-        );
-        if parts.len() > 1 {
-            let name = &self.bodies[body].name.value;
-            let count = parts.len();
-            error = error.help(format!(
-                "this is the sum over the {count} links that fixed joints join to body `{name}`"
-            ));
-        }
-        self.sink.push(error);
-    }
-
-    /// A link that no rigid body could be by itself may still be part of one that is.
-    fn tell_odd_parts(&mut self, parts: &[(usize, MassProperties)]) {
-        for (link, mass) in parts {
-            if mass.check().is_err() {
-                let message = "no rigid body has such an inertia, but the body that the link is part of is sound";
-                self.notices.add(message, self.owner(*link));
-            }
-        }
-    }
-
-    /// Refuses bodies that move without mass on them or on what hangs on them: M would be singular.
-    fn refuse_massless(&mut self) {
-        let count = self.bodies.len();
-        let mut massive: Vec<bool> = self
-            .bodies
-            .iter()
-            .map(|body| !mass::is_nothing(&body.mass))
-            .collect();
-        for body in (0..count).rev() {
-            if let Some(parent) = self.bodies[body].parent.filter(|_| massive[body]) {
-                massive[parent] = true;
-            }
-        }
-        for (body, _) in self
-            .bodies
-            .iter()
-            .zip(massive)
-            .filter(|(_, massive)| !massive)
-        {
-            let (name, joint) = (&body.name.value, &body.joint.name.value);
-            let message = format!(
-                "link `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration \
-                 would not be determined"
-            );
-            let error = Diagnostic::new(body.name.span.clone(), message);
-            self.sink
-                .push(error.help("give the link an <inertial>, or make the joint fixed"));
-        }
     }
 
     fn owner(&self, link: usize) -> String {

@@ -17,6 +17,7 @@ mod convert;
 mod document;
 mod joint;
 mod mass;
+mod masses;
 mod schema;
 mod tree;
 
