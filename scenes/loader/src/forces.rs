@@ -169,3 +169,42 @@ pub struct ConstraintDescription {
     /// The direction d in body axes, of length 1.
     pub direction: Vector3<f64>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{PerFreedom, SpeedOverTime};
+
+    #[test]
+    fn acceleration_is_the_rate_of_speed() {
+        let law = SpeedOverTime {
+            rate: 0.7,
+            amplitude: 0.3,
+            frequency: 5.0,
+            phase: -0.4,
+        };
+        let h = 1e-5;
+        for t in [0.0, 0.31, 2.0] {
+            let rate = (law.speed(t + h) - law.speed(t - h)) / (2.0 * h);
+            // A central difference errs by h²/6 times the third derivative, 0.3 · 5⁴, and by rounding over h.
+            assert!((rate - law.acceleration(t)).abs() < 1e-8);
+        }
+        assert_eq!(
+            SpeedOverTime {
+                rate: 2.0,
+                ..SpeedOverTime::default()
+            }
+            .speed(3.0),
+            2.0
+        );
+    }
+
+    #[test]
+    fn one_number_stands_for_all_freedoms() {
+        assert_eq!(PerFreedom::All(0.5).spread(3), Some(vec![0.5; 3]));
+        assert_eq!(
+            PerFreedom::Each(vec![1.0, 2.0]).spread(2),
+            Some(vec![1.0, 2.0])
+        );
+        assert_eq!(PerFreedom::Each(vec![1.0, 2.0]).spread(3), None);
+    }
+}
