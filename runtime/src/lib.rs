@@ -30,3 +30,5 @@ pub mod mechanism;
 pub mod registry;
 pub mod scalar;
 pub mod spatial;
+#[cfg(feature = "alloc")]
+pub mod steps;

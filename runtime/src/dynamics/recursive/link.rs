@@ -1,0 +1,65 @@
+//! What the recursion keeps of each body: a compact copy of what never changes, and the workspace.
+
+use crate::erased::AnyJoint;
+use crate::mechanism::Body;
+use crate::spatial::{Pose, SpatialInertia, join};
+use crate::steps::Placement;
+use alloc::sync::Arc;
+use core::ops::Range;
+use nalgebra::{Vector3, Vector6};
+
+/// One body and its joint, as the sweeps read them: next to each other in memory, without names.
+#[derive(Clone, Debug)]
+pub(super) struct Link {
+    pub(super) joint: Arc<dyn AnyJoint>,
+    pub(super) parent: Option<usize>,
+    pub(super) configuration: Range<usize>,
+    pub(super) freedoms: Range<usize>,
+    pub(super) speeds: Range<usize>,
+    /// The joint's parent frame in the child frame of the parent's joint.
+    pub(super) frame: Pose<f64>,
+    /// Inertia in the joint's child frame.
+    pub(super) inertia: SpatialInertia<f64>,
+}
+
+impl Link {
+    pub(super) fn new(body: &Body) -> Self {
+        let ranges = body.ranges();
+        Self {
+            joint: body.shared_joint(),
+            parent: body.parent(),
+            configuration: ranges.configuration.clone(),
+            freedoms: ranges.freedoms.clone(),
+            speeds: ranges.speeds.clone(),
+            frame: *body.joint_frame(),
+            inertia: *body.joint_inertia(),
+        }
+    }
+}
+
+/// The state of one body in a sweep; all vectors at the child frame's origin, in world axes.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub(super) placement: Placement<f64>,
+    /// V.
+    pub(super) twist: Vector6<f64>,
+    /// V̇, from −g at the world.
+    pub(super) rate: Vector6<f64>,
+    /// The body's own inertia.
+    pub(super) rigid: SpatialInertia<f64>,
+    /// What a sweep carries rootward: a wrench or a momentum.
+    pub(super) wrench: Vector6<f64>,
+}
+
+impl Node {
+    /// The world, which a base that accelerates upwards makes as heavy as gravity does.
+    pub(super) fn world(gravity: &Vector3<f64>) -> Self {
+        Self {
+            placement: Placement::world(),
+            twist: Vector6::zeros(),
+            rate: join(&Vector3::zeros(), &-gravity),
+            rigid: SpatialInertia::zero(),
+            wrench: Vector6::zeros(),
+        }
+    }
+}

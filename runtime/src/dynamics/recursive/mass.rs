@@ -1,0 +1,252 @@
+//! M̄ by composite rigid bodies, and its factorisation along the branches of the tree.
+
+use super::Recursive;
+use crate::dynamics::DynamicsError;
+use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
+use crate::spatial::fused::dot;
+use crate::spatial::{shift_wrench, split};
+use crate::steps::PivotFailure;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, Vector6};
+
+/// How many roundings of its own diagonal entry a pivot must stand above, for each row: those of one update and a margin of four.
+const ROUNDINGS: f64 = 8.0;
+
+/// M̄ of one mechanism, and its factors: `M̄ = Lᵀ D L` with the zeros of the tree's branches.
+///
+/// Row i of the lower triangle has entries for speed i itself and for the speeds between it and the root alone; so has row i of L. Filling
+/// and factorising allocate nothing.
+#[derive(Clone, Debug)]
+pub struct MassMatrix {
+    size: usize,
+    /// The lower triangle, row after row, each of full length.
+    rows: Vec<f64>,
+    /// The same, factorised: D on the diagonal.
+    factors: Vec<f64>,
+    /// The next speed towards the root.
+    parents: Vec<Option<usize>>,
+}
+
+impl MassMatrix {
+    /// Room for the mass matrix of `mechanism`.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let size = mechanism.layout().speeds;
+        Self {
+            size,
+            rows: vec![0.0; size * size],
+            factors: Vec::new(),
+            parents: parents(mechanism),
+        }
+        .with_factors()
+    }
+
+    fn with_factors(mut self) -> Self {
+        self.factors = vec![0.0; self.rows.len()];
+        self
+    }
+
+    /// Number of rows: of speeds.
+    pub const fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Entry (i, j); zero for an index out of range.
+    pub fn entry(&self, i: usize, j: usize) -> f64 {
+        let (row, column) = (i.max(j), i.min(j));
+        let index = row * self.size + column;
+        self.rows.get(index).copied().unwrap_or(0.0)
+    }
+
+    /// All entries.
+    pub fn matrix(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.size, self.size, |i, j| self.entry(i, j))
+    }
+
+    /// The factors L (unit diagonal left out) and D (on the diagonal) of `M̄ = Lᵀ D L`, of the last [`MassMatrix::factorize`].
+    pub fn factors(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.size, self.size, |i, j| match j <= i {
+            true => self.factors[i * self.size + j],
+            false => 0.0,
+        })
+    }
+
+    /// `M̄ = Lᵀ D L`, from the last row to the first, so that no zero fills in.
+    ///
+    /// # Errors
+    /// When a pivot does not stand above its rounding, with the joint and the speed.
+    pub fn factorize(&mut self, mechanism: &Mechanism) -> Result<(), DynamicsError> {
+        self.factors.copy_from_slice(&self.rows);
+        let size = self.size;
+        for k in (0..size).rev() {
+            let pivot = self.factors[k * size + k];
+            let limit = ROUNDINGS * size as f64 * f64::EPSILON * self.rows[k * size + k];
+            if pivot.is_nan() || pivot <= limit {
+                return Err(singular(mechanism, k, pivot, limit));
+            }
+            let (above, row) = self.factors.split_at_mut(k * size);
+            let mut ancestor = self.parents[k];
+            while let Some(i) = ancestor {
+                let weight = row[i] / pivot;
+                let target = &mut above[i * size..=i * size + i];
+                subtract(target, &row[..=i], weight, &self.parents, i);
+                row[i] = weight;
+                ancestor = self.parents[i];
+            }
+        }
+        Ok(())
+    }
+
+    /// `M̄⁻¹ x` in place, with the factors of the last [`MassMatrix::factorize`].
+    ///
+    /// # Errors
+    /// When `x` has the wrong size.
+    pub fn solve(&self, x: &mut [f64]) -> Result<(), StateError> {
+        check_size(WHOLE, "right-hand side", self.size, x.len())?;
+        let size = self.size;
+        for k in (0..size).rev() {
+            self.each_ancestor(k, |i| x[i] -= self.factors[k * size + i] * x[k]);
+        }
+        for k in 0..size {
+            let mut value = x[k] / self.factors[k * size + k];
+            self.each_ancestor(k, |i| value -= self.factors[k * size + i] * x[i]);
+            x[k] = value;
+        }
+        Ok(())
+    }
+
+    fn each_ancestor(&self, speed: usize, mut visit: impl FnMut(usize)) {
+        let mut ancestor = self.parents[speed];
+        while let Some(i) = ancestor {
+            visit(i);
+            ancestor = self.parents[i];
+        }
+    }
+}
+
+/// `target_j −= weight row_j` for j = i and every speed between i and the root.
+fn subtract(target: &mut [f64], row: &[f64], weight: f64, parents: &[Option<usize>], i: usize) {
+    let mut ancestor = Some(i);
+    while let Some(j) = ancestor {
+        target[j] -= weight * row[j];
+        ancestor = parents[j];
+    }
+}
+
+fn singular(mechanism: &Mechanism, speed: usize, pivot: f64, limit: f64) -> DynamicsError {
+    let owner = |range: &core::ops::Range<usize>| range.contains(&speed);
+    let body = mechanism
+        .bodies()
+        .iter()
+        .position(|body| owner(&body.ranges().speeds));
+    let body = body.unwrap_or(0);
+    let start = mechanism.bodies()[body].ranges().speeds.start;
+    let failure = PivotFailure {
+        speed: speed - start,
+        pivot,
+        limit,
+    };
+    mechanism.singular(body, &failure)
+}
+
+/// The next speed towards the root, for each speed.
+fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
+    let mut parents = vec![None; mechanism.layout().speeds];
+    for body in mechanism.bodies() {
+        let mut nearest = nearest_speed(mechanism, body.parent());
+        for speed in body.ranges().speeds.clone() {
+            parents[speed] = nearest;
+            nearest = Some(speed);
+        }
+    }
+    parents
+}
+
+/// The last speed of `body`'s joint, or of the nearest body towards the root whose joint has any.
+fn nearest_speed(mechanism: &Mechanism, mut body: Option<usize>) -> Option<usize> {
+    while let Some(index) = body {
+        let candidate = &mechanism.bodies()[index];
+        if !candidate.ranges().speeds.is_empty() {
+            return Some(candidate.ranges().speeds.end - 1);
+        }
+        body = candidate.parent();
+    }
+    None
+}
+
+impl Recursive {
+    /// M̄ at `q` into `mass`.
+    ///
+    /// # Errors
+    /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
+    pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
+        self.check(q, &[("rows of the mass matrix", mass.size)])?;
+        self.place(q);
+        for (link, node) in self.links.iter().zip(&mut self.nodes) {
+            node.rigid = link.inertia.rotated(&node.placement.rotation);
+        }
+        for (index, link) in self.links.iter().enumerate().rev() {
+            let own = self.nodes[index].rigid;
+            for speed in link.speeds.clone() {
+                let momentum = own.apply(&self.columns[speed]);
+                let row = &mut mass.rows[speed * mass.size..=speed * mass.size + speed];
+                self.fill_row(row, index, momentum);
+            }
+            if let Some(parent) = link.parent {
+                let carried = own.shifted(&self.nodes[index].placement.offset);
+                self.nodes[parent].rigid = self.nodes[parent].rigid.combine(&carried);
+            }
+        }
+        Ok(())
+    }
+
+    /// M̄⁻¹ at `q` into `inverse`, column by column with the factors of the articulated inertias.
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size.
+    pub fn inverse_mass_matrix(
+        &mut self,
+        q: &[f64],
+        inverse: &mut MassMatrix,
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("rows of the mass matrix", inverse.size)])?;
+        self.place(q);
+        self.weigh();
+        self.articulate()?;
+        let mut unit = core::mem::take(&mut self.forces);
+        let mut column = core::mem::take(&mut self.rates);
+        unit.fill(0.0);
+        for i in 0..inverse.size {
+            unit[i] = 1.0;
+            for node in &mut self.nodes {
+                node.wrench = Vector6::zeros();
+            }
+            self.load(&unit);
+            self.resolve(&mut column);
+            inverse.rows[i * inverse.size..=i * inverse.size + i].copy_from_slice(&column[..=i]);
+            unit[i] = 0.0;
+        }
+        self.forces = unit;
+        self.rates = column;
+        Ok(())
+    }
+
+    /// `X_kᵀ F` for all speeds k from `body` to the root, and up to the length of the row.
+    fn fill_row(&self, row: &mut [f64], mut body: usize, mut momentum: Vector6<f64>) {
+        loop {
+            let link = &self.links[body];
+            let (moment, force) = split(&momentum);
+            let end = link.speeds.end.min(row.len());
+            let columns = &self.columns[link.speeds.start..end];
+            for (entry, column) in row[link.speeds.start..end].iter_mut().zip(columns) {
+                let (angular, linear) = split(column);
+                *entry = dot(&angular, &moment) + dot(&linear, &force);
+            }
+            let Some(parent) = link.parent else {
+                return;
+            };
+            momentum = shift_wrench(&momentum, &self.nodes[body].placement.offset);
+            body = parent;
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Where a joint puts its child, and how it moves it.
+
+use crate::joint::{Entry, Joint};
+use crate::scalar::Scalar;
+use crate::spatial::fused::{add_scaled, apply, cross, product};
+use crate::spatial::{Pose, bracket_product, join, split};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
+
+/// The child frame of a joint in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement<T> {
+    /// Its axes, in world axes, as columns.
+    pub rotation: Matrix3<T>,
+    /// Its origin, in world axes, m.
+    pub origin: Vector3<T>,
+    /// Its origin seen from that of the parent's child frame, in world axes, m.
+    ///
+    /// Kept beside [`Placement::origin`], whose difference would lose digits far from the world's origin.
+    pub offset: Vector3<T>,
+}
+
+impl<T: Scalar> Placement<T> {
+    /// The world itself.
+    pub fn world() -> Self {
+        Self {
+            rotation: Matrix3::identity(),
+            origin: Vector3::zeros(),
+            offset: Vector3::zeros(),
+        }
+    }
+
+    /// As a pose: child coordinates to world coordinates.
+    pub fn pose(&self) -> Pose<T> {
+        Pose::new(self.rotation, self.origin)
+    }
+}
+
+/// `Σ_i a_i x_i` over the columns a of `matrix`, without what `pattern` knows to be 0 or 1; `None` where all is 0.
+#[inline(always)]
+fn combine<T: Scalar>(
+    matrix: &Matrix3<T>,
+    pattern: [Entry; 3],
+    weights: [T; 3],
+) -> Option<Vector3<T>> {
+    let mut sum: Option<Vector3<T>> = None;
+    for i in 0..3 {
+        let [x, y, z] = matrix.data.0[i];
+        let column = Vector3::new(x, y, z);
+        sum = match (pattern[i], sum) {
+            (Entry::Zero, sum) => sum,
+            (Entry::One, None) => Some(column),
+            (Entry::One, Some(sum)) => Some(sum + column),
+            (Entry::Other, None) => Some(column * weights[i]),
+            (Entry::Other, Some(sum)) => Some(add_scaled(&sum, &column, weights[i])),
+        };
+    }
+    sum
+}
+
+/// The child frame of `joint` at `q`.
+#[inline(always)]
+pub(super) fn child<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    q: &SVector<T, N>,
+    joint_frame: &Pose<T>,
+    parent: &Placement<T>,
+) -> Placement<T>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let (pose, patterns) = (joint.pose(q), J::PATTERNS);
+    let base = product(&parent.rotation, &joint_frame.rotation);
+    let column = |j: usize| {
+        let pattern = [0, 1, 2].map(|i| patterns.rotation[i][j]);
+        combine(&base, pattern, pose.rotation.data.0[j]).unwrap_or_else(Vector3::zeros)
+    };
+    let rotation = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+    let fixed = apply(&parent.rotation, &joint_frame.translation);
+    let offset = match combine(&base, patterns.translation, pose.translation.data.0[0]) {
+        Some(moved) => fixed + moved,
+        None => fixed,
+    };
+    Placement {
+        rotation,
+        origin: parent.origin + offset,
+        offset,
+    }
+}
+
+/// Which parts of the columns of X̄ can be other than zero.
+pub(super) struct Parts;
+
+impl Parts {
+    /// Angular and linear part of column `j`.
+    #[inline(always)]
+    pub(super) const fn of<J, const N: usize, const K: usize, const S: usize, const C: usize>(
+        j: usize,
+    ) -> (bool, bool)
+    where
+        J: Joint<N, K, S, C>,
+    {
+        let pattern = const { J::PATTERNS.speed_columns() };
+        (occurs(&pattern, 0, j), occurs(&pattern, 3, j))
+    }
+
+    /// Whether any column has an angular, and whether any has a linear part.
+    #[inline(always)]
+    pub(super) fn any<J, const N: usize, const K: usize, const S: usize, const C: usize>() -> (bool, bool)
+    where
+        J: Joint<N, K, S, C>,
+    {
+        let (mut angular, mut linear) = (false, false);
+        for j in 0..S {
+            let (a, l) = Self::of::<J, N, K, S, C>(j);
+            angular |= a;
+            linear |= l;
+        }
+        (angular, linear)
+    }
+}
+
+const fn occurs<const S: usize>(pattern: &[[Entry; S]; 6], first: usize, j: usize) -> bool {
+    !(matches!(pattern[first][j], Entry::Zero)
+        && matches!(pattern[first + 1][j], Entry::Zero)
+        && matches!(pattern[first + 2][j], Entry::Zero))
+}
+
+/// The columns of `X̄ = X^c S̄`, turned into world axes.
+#[inline(always)]
+pub(super) fn columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    q: &SVector<T, N>,
+    rotation: &Matrix3<T>,
+) -> [Vector6<T>; S]
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let pattern = const { J::PATTERNS.speed_columns() };
+    let map = speed_map(joint, q);
+    core::array::from_fn(|j| {
+        let part = |first: usize| {
+            let rows = [0, 1, 2].map(|i| pattern[first + i][j]);
+            let weights = [0, 1, 2].map(|i| map[(first + i, j)]);
+            combine(rotation, rows, weights).unwrap_or_else(Vector3::zeros)
+        };
+        join(&part(0), &part(3))
+    })
+}
+
+/// `X̄ = X^c S̄` in child axes.
+#[inline(always)]
+fn speed_map<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    q: &SVector<T, N>,
+) -> SMatrix<T, 6, S>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let map = joint.twist_map_child(q);
+    if J::STRUCTURES.speed_basis.is_identity() {
+        return SMatrix::from_fn(|i, j| map[(i, j)]);
+    }
+    map * joint.speed_basis(q)
+}
+
+/// `X̄ v̄` and `c + ad_V X̄ v̄` with `V = carried + X̄ v̄`.
+#[inline(always)]
+pub(super) fn velocity_product<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    q: &[T; N],
+    speeds: &SVector<T, S>,
+    rotation: &Matrix3<T>,
+    carried: &Vector6<T>,
+    columns: &[Vector6<T>; S],
+) -> (Vector6<T>, Vector6<T>)
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let relative = relative::<T, J, N, K, S, C>(speeds, columns);
+    // ad_V X̄ v̄ with V = carried + X̄ v̄, where the second bracket with itself vanishes.
+    let turned = bracket::<T, J, N, K, S, C>(carried, &relative);
+    if J::STRUCTURES.bias_acceleration.is_zero() {
+        return (relative, turned);
+    }
+    let (angular, linear) = split(&joint.bias_acceleration(&SVector::from(*q), speeds));
+    let own = join(&apply(rotation, &angular), &apply(rotation, &linear));
+    (relative, own + turned)
+}
+
+/// `X̄ v̄`, part by part.
+#[inline(always)]
+fn relative<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    speeds: &SVector<T, S>,
+    columns: &[Vector6<T>; S],
+) -> Vector6<T>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let (mut angular, mut linear) = (Vector3::zeros(), Vector3::zeros());
+    for j in 0..S {
+        let (column_angular, column_linear) = split(&columns[j]);
+        let (turns, slides) = Parts::of::<J, N, K, S, C>(j);
+        if turns {
+            angular = add_scaled(&angular, &column_angular, speeds[j]);
+        }
+        if slides {
+            linear = add_scaled(&linear, &column_linear, speeds[j]);
+        }
+    }
+    join(&angular, &linear)
+}
+
+/// `ad_V U` for a U in the joint's range.
+#[inline(always)]
+fn bracket<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    twist: &Vector6<T>,
+    relative: &Vector6<T>,
+) -> Vector6<T>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let (angular, linear) = split(twist);
+    let (turn, slide) = split(relative);
+    match Parts::any::<J, N, K, S, C>() {
+        (true, true) => bracket_product(twist, relative),
+        (true, false) => join(&cross(&angular, &turn), &cross(&linear, &turn)),
+        (false, true) => join(&Vector3::zeros(), &cross(&angular, &slide)),
+        (false, false) => Vector6::zeros(),
+    }
+}
