@@ -156,7 +156,10 @@ const fn entries<const R: usize, const C: usize>(rows: [&str; R]) -> [[Entry; C]
     let mut i = 0;
     while i < R {
         let row = rows[i].as_bytes();
-        assert!(row.len() == C, "a row of a pattern has another length than its matrix");
+        assert!(
+            row.len() == C,
+            "a row of a pattern has another length than its matrix"
+        );
         let mut j = 0;
         while j < C {
             entries[i][j] = match row[j] {

@@ -98,7 +98,11 @@ fn hamiltonian_form_agrees() {
                     .momentum_rates(&case.q, &case.speeds, &mut efforts, &mut speeds, &mut rates)
                     .expect("regular");
                 speeds.extend(rates);
-                speeds.push(dynamics.hamiltonian(&case.q, &case.speeds).expect("regular"));
+                speeds.push(
+                    dynamics
+                        .hamiltonian(&case.q, &case.speeds)
+                        .expect("regular"),
+                );
                 speeds
             },
             "momentum rates",

@@ -73,7 +73,8 @@ impl<T: Scalar> ArticulatedInertia<T> {
     /// `H′ = H + r~M`, `I′ = I + r~Hᵀ − H′r~` with r = `offset`.
     #[inline(always)]
     pub fn shifted(&self, offset: &Vector3<T>) -> Self {
-        let row = |m: &Matrix3<T>, i: usize| Vector3::new(m.data.0[0][i], m.data.0[1][i], m.data.0[2][i]);
+        let row =
+            |m: &Matrix3<T>, i: usize| Vector3::new(m.data.0[0][i], m.data.0[1][i], m.data.0[2][i]);
         let [mx, my, mz] = self.linear.rows();
         let column = |j: usize, m: &Vector3<T>| {
             let [x, y, z] = self.coupling.data.0[j];
@@ -97,6 +98,25 @@ impl<T: Scalar> ArticulatedInertia<T> {
             coupling,
             linear: self.linear,
         }
+    }
+
+    /// The sum with a rigid body's inertia at the same frame.
+    #[inline(always)]
+    pub fn with_rigid(&self, rigid: &SpatialInertia<T>) -> Self {
+        let mut sum = *self;
+        sum.angular += rigid.inertia;
+        let [[x, y, z]] = rigid.first_moment.data.0;
+        let [a, b, c] = &mut sum.coupling.data.0;
+        a[1] += z;
+        a[2] -= y;
+        b[0] -= z;
+        b[2] += x;
+        c[0] += y;
+        c[1] -= x;
+        sum.linear.xx += rigid.mass;
+        sum.linear.yy += rigid.mass;
+        sum.linear.zz += rigid.mass;
+        sum
     }
 
     /// Adds what another inertia at the same frame weighs.

@@ -30,7 +30,9 @@ impl<T: Scalar> SpatialInertia<T> {
     pub fn matrix(&self) -> Matrix6<T> {
         let mut matrix = Matrix6::zeros();
         let cross = hat(&self.first_moment);
-        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.inertia.matrix());
+        matrix
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&self.inertia.matrix());
         matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&cross);
         matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&-cross);
         matrix

@@ -95,7 +95,8 @@ impl<T: Scalar> Symmetric3<T> {
             apply(rotation, &y),
             apply(rotation, &z),
         ]);
-        let row = |m: &Matrix3<T>, i: usize| Vector3::new(m.data.0[0][i], m.data.0[1][i], m.data.0[2][i]);
+        let row =
+            |m: &Matrix3<T>, i: usize| Vector3::new(m.data.0[0][i], m.data.0[1][i], m.data.0[2][i]);
         let entry = |i: usize, j: usize| dot(&row(&half, i), &row(rotation, j));
         Self {
             xx: entry(0, 0),

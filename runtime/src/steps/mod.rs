@@ -15,33 +15,47 @@ pub use place::Placement;
 
 use crate::erased::Erased;
 use crate::joint::Joint;
-use crate::spatial::{ArticulatedInertia, Pose};
+use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use nalgebra::{Matrix3, SVector, Vector6};
+
+/// The motion of a joint's child frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<T> {
+    /// Where it is.
+    pub placement: Placement<T>,
+    /// V.
+    pub twist: Vector6<T>,
+    /// V̇.
+    pub rate: Vector6<T>,
+}
 
 /// The steps of the recursions for one joint; slices have the joint's own sizes (N for `q`, S for the others).
 pub trait Steps {
-    /// Places the joint's child frame, given its joint frame in the parent's child frame and that of the parent in the world; writes the
-    /// columns of X̄ at the child frame's origin, in world axes.
+    /// Whether any column of X̄ has a linear part.
+    fn slides(&self) -> bool;
+
+    /// The joint's child frame, given its joint frame in the parent's child frame and that of the parent in the world.
     fn place(
         &self,
         q: &[f64],
         joint_frame: &Pose<f64>,
         parent: &Placement<f64>,
         own: &mut Placement<f64>,
-        columns: &mut [Vector6<f64>],
     );
 
-    /// `X̄ v̄` and `c + ad_V X̄ v̄`: relative twist, and what of the twist rate is there when v̄̇ = 0.
-    ///
-    /// `carried` is the parent's twist at the child frame's origin.
-    fn velocity_product(
+    /// The columns of X̄ at the child frame's origin, in world axes.
+    fn columns(&self, q: &[f64], rotation: &Matrix3<f64>, columns: &mut [Vector6<f64>]);
+
+    /// [`Steps::place`] and [`Steps::columns`] at the `state` (q, v̄, v̄̇); `V = V_λ + X̄ v̄` and
+    /// `V̇ = V̇_λ + X̄ v̄̇ + c + ad_V X̄ v̄`. An empty v̄̇ is zero.
+    fn advance(
         &self,
-        q: &[f64],
-        speeds: &[f64],
-        rotation: &Matrix3<f64>,
-        carried: &Vector6<f64>,
-        columns: &[Vector6<f64>],
-    ) -> (Vector6<f64>, Vector6<f64>);
+        state: (&[f64], &[f64], &[f64]),
+        joint_frame: &Pose<f64>,
+        parent: &Motion<f64>,
+        own: &mut Motion<f64>,
+        columns: &mut [Vector6<f64>],
+    );
 
     /// Takes the joint's freedoms out of `inertia`, which becomes what its parent feels; `armature` is added to the pivots.
     ///
@@ -66,6 +80,19 @@ pub trait Steps {
         loads: &mut [f64],
     );
 
+    /// [`Steps::articulate`] and [`Steps::reduce`] in one.
+    ///
+    /// # Errors
+    /// The first pivot that does not stand above its rounding.
+    fn eliminate(
+        &self,
+        carried: (&mut ArticulatedInertia<f64>, &mut Vector6<f64>),
+        columns: &[Vector6<f64>],
+        armature_and_forces: (&[f64], &[f64]),
+        pivots: &mut [Pivot<f64>],
+        loads: &mut [f64],
+    ) -> Result<(), PivotFailure>;
+
     /// The joint's `rates` (speeds or accelerations), added to the `motion` that its parent carries it along with.
     fn resolve(
         &self,
@@ -74,6 +101,14 @@ pub trait Steps {
         pivots: &[Pivot<f64>],
         loads: &[f64],
         rates: &mut [f64],
+    );
+
+    /// `N X̄` of a rigid inertia into `out`, one momentum a speed.
+    fn momenta(
+        &self,
+        inertia: &SpatialInertia<f64>,
+        columns: &[Vector6<f64>],
+        out: &mut [Vector6<f64>],
     );
 
     /// `X̄ᵀ F` into `out`.
@@ -97,30 +132,42 @@ impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps
 where
     J: Joint<N, K, S, C>,
 {
+    fn slides(&self) -> bool {
+        place::Parts::any::<J, N, K, S, C>().1
+    }
+
     fn place(
         &self,
         q: &[f64],
         joint_frame: &Pose<f64>,
         parent: &Placement<f64>,
         own: &mut Placement<f64>,
+    ) {
+        let q = SVector::from(*sized::<_, N>(q));
+        *own = place::child(self.joint(), &q, joint_frame, parent);
+    }
+
+    fn columns(&self, q: &[f64], rotation: &Matrix3<f64>, columns: &mut [Vector6<f64>]) {
+        let q = SVector::from(*sized::<_, N>(q));
+        *sized_mut(columns) = place::columns(self.joint(), &q, rotation);
+    }
+
+    fn advance(
+        &self,
+        (q, speeds, accelerations): (&[f64], &[f64], &[f64]),
+        joint_frame: &Pose<f64>,
+        parent: &Motion<f64>,
+        own: &mut Motion<f64>,
         columns: &mut [Vector6<f64>],
     ) {
         let q = SVector::from(*sized::<_, N>(q));
-        let placed = place::child(self.joint(), &q, joint_frame, parent);
-        *own = placed;
-        *sized_mut(columns) = place::columns(self.joint(), &q, &placed.rotation);
-    }
-
-    fn velocity_product(
-        &self,
-        q: &[f64],
-        speeds: &[f64],
-        rotation: &Matrix3<f64>,
-        carried: &Vector6<f64>,
-        columns: &[Vector6<f64>],
-    ) -> (Vector6<f64>, Vector6<f64>) {
-        let (q, speeds) = (sized::<_, N>(q), SVector::from(*sized::<_, S>(speeds)));
-        place::velocity_product(self.joint(), q, &speeds, rotation, carried, sized(columns))
+        let speeds = SVector::from(*sized::<_, S>(speeds));
+        let columns: &mut [Vector6<f64>; S] = sized_mut(columns);
+        *own = place::advance(self.joint(), (&q, &speeds), joint_frame, parent, columns);
+        if !accelerations.is_empty() {
+            let accelerations = SVector::from(*sized::<_, S>(accelerations));
+            own.rate = place::add_columns::<f64, J, N, K, S, C>(&own.rate, columns, &accelerations);
+        }
     }
 
     fn articulate(
@@ -130,12 +177,7 @@ where
         armature: &[f64],
         pivots: &mut [Pivot<f64>],
     ) -> Result<(), PivotFailure> {
-        articulate::inertia::<J, f64, N, K, S, C>(
-            inertia,
-            sized(columns),
-            armature,
-            sized_mut(pivots),
-        )
+        articulate::inertia::<J, N, K, S, C>(inertia, sized(columns), armature, sized_mut(pivots))
     }
 
     fn reduce(
@@ -155,6 +197,19 @@ where
         );
     }
 
+    fn eliminate(
+        &self,
+        (inertia, wrench): (&mut ArticulatedInertia<f64>, &mut Vector6<f64>),
+        columns: &[Vector6<f64>],
+        (armature, forces): (&[f64], &[f64]),
+        pivots: &mut [Pivot<f64>],
+        loads: &mut [f64],
+    ) -> Result<(), PivotFailure> {
+        self.articulate(inertia, columns, armature, pivots)?;
+        self.reduce(wrench, columns, pivots, forces, loads);
+        Ok(())
+    }
+
     fn resolve(
         &self,
         motion: &mut Vector6<f64>,
@@ -170,6 +225,18 @@ where
             sized(loads),
             sized_mut(rates),
         );
+    }
+
+    fn momenta(
+        &self,
+        inertia: &SpatialInertia<f64>,
+        columns: &[Vector6<f64>],
+        out: &mut [Vector6<f64>],
+    ) {
+        let out: &mut [Vector6<f64>; S] = sized_mut(out);
+        for (momentum, column) in out.iter_mut().zip(sized::<_, S>(columns)) {
+            *momentum = articulate::momentum::<J, f64, N, K, S, C>(inertia, column);
+        }
     }
 
     fn gather(&self, wrench: &Vector6<f64>, columns: &[Vector6<f64>], out: &mut [f64]) {

@@ -1,9 +1,11 @@
 //! Where a joint puts its child, and how it moves it.
 
+use super::Motion;
 use crate::joint::{Entry, Joint};
 use crate::scalar::Scalar;
 use crate::spatial::fused::{add_scaled, apply, cross, product};
-use crate::spatial::{Pose, bracket_product, join, split};
+use crate::spatial::{Pose, bracket_product, join, shift_twist, split};
+
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
 /// The child frame of a joint in the world.
@@ -106,7 +108,8 @@ impl Parts {
 
     /// Whether any column has an angular, and whether any has a linear part.
     #[inline(always)]
-    pub(super) fn any<J, const N: usize, const K: usize, const S: usize, const C: usize>() -> (bool, bool)
+    pub(super) fn any<J, const N: usize, const K: usize, const S: usize, const C: usize>()
+    -> (bool, bool)
     where
         J: Joint<N, K, S, C>,
     {
@@ -166,32 +169,39 @@ where
     map * joint.speed_basis(q)
 }
 
-/// `X̄ v̄` and `c + ad_V X̄ v̄` with `V = carried + X̄ v̄`.
+/// The child's motion at v̄̇ = 0, and the columns of X̄.
 #[inline(always)]
-pub(super) fn velocity_product<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(super) fn advance<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
-    q: &[T; N],
-    speeds: &SVector<T, S>,
-    rotation: &Matrix3<T>,
-    carried: &Vector6<T>,
-    columns: &[Vector6<T>; S],
-) -> (Vector6<T>, Vector6<T>)
+    (q, speeds): (&SVector<T, N>, &SVector<T, S>),
+    joint_frame: &Pose<T>,
+    parent: &Motion<T>,
+    columns: &mut [Vector6<T>; S],
+) -> Motion<T>
 where
     T: Scalar,
     J: Joint<N, K, S, C>,
 {
+    let placement = child(joint, q, joint_frame, &parent.placement);
+    *columns = self::columns(joint, q, &placement.rotation);
     let relative = relative::<T, J, N, K, S, C>(speeds, columns);
-    // ad_V X̄ v̄ with V = carried + X̄ v̄, where the second bracket with itself vanishes.
-    let turned = bracket::<T, J, N, K, S, C>(carried, &relative);
-    if J::STRUCTURES.bias_acceleration.is_zero() {
-        return (relative, turned);
+    let carried = shift_twist(&parent.twist, &placement.offset);
+    // ad_V X̄ v̄ with V = carried + X̄ v̄, where the bracket of the second with itself vanishes.
+    let turned = bracket::<T, J, N, K, S, C>(&carried, &relative);
+    let mut rate = shift_twist(&parent.rate, &placement.offset) + turned;
+    if !J::STRUCTURES.bias_acceleration.is_zero() {
+        let (angular, linear) = split(&joint.bias_acceleration(q, speeds));
+        let turn = |part: &Vector3<T>| apply(&placement.rotation, part);
+        rate += join(&turn(&angular), &turn(&linear));
     }
-    let (angular, linear) = split(&joint.bias_acceleration(&SVector::from(*q), speeds));
-    let own = join(&apply(rotation, &angular), &apply(rotation, &linear));
-    (relative, own + turned)
+    Motion {
+        placement,
+        twist: carried + relative,
+        rate,
+    }
 }
 
-/// `X̄ v̄`, part by part.
+/// `X̄ v̄`.
 #[inline(always)]
 fn relative<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     speeds: &SVector<T, S>,
@@ -201,15 +211,29 @@ where
     T: Scalar,
     J: Joint<N, K, S, C>,
 {
-    let (mut angular, mut linear) = (Vector3::zeros(), Vector3::zeros());
+    add_columns::<T, J, N, K, S, C>(&Vector6::zeros(), columns, speeds)
+}
+
+/// `start + X̄ weights`, without the parts that the joint type does not have.
+#[inline(always)]
+pub(super) fn add_columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    start: &Vector6<T>,
+    columns: &[Vector6<T>; S],
+    weights: &SVector<T, S>,
+) -> Vector6<T>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let (mut angular, mut linear) = split(start);
     for j in 0..S {
         let (column_angular, column_linear) = split(&columns[j]);
         let (turns, slides) = Parts::of::<J, N, K, S, C>(j);
         if turns {
-            angular = add_scaled(&angular, &column_angular, speeds[j]);
+            angular = add_scaled(&angular, &column_angular, weights[j]);
         }
         if slides {
-            linear = add_scaled(&linear, &column_linear, speeds[j]);
+            linear = add_scaled(&linear, &column_linear, weights[j]);
         }
     }
     join(&angular, &linear)

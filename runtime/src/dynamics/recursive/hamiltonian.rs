@@ -12,7 +12,7 @@ impl Recursive {
     /// The momentum of each body alone into its node, from twists and inertias.
     pub(super) fn set_momenta(&mut self) {
         for node in &mut self.nodes {
-            node.wrench = node.rigid.apply(&node.twist);
+            node.wrench = node.rigid.apply(&node.motion.twist);
         }
     }
 
@@ -22,14 +22,14 @@ impl Recursive {
         self.set_momenta();
         for node in &mut self.nodes {
             // The rate is not needed here: its place holds the composite external wrench.
-            node.rate = weight(&gravity, node.rigid.mass, &node.rigid.first_moment);
+            node.motion.rate = weight(&gravity, node.rigid.mass, &node.rigid.first_moment);
         }
         for (index, link) in self.links.iter().enumerate().rev() {
             let (before, rest) = self.nodes.split_at_mut(index);
             let own = &rest[0];
             let speed_range = link.speeds.clone();
             let out = &mut rates[speed_range.clone()];
-            let turned = own.rate + bracket_dual_product(&own.twist, &own.wrench);
+            let turned = own.motion.rate + bracket_dual_product(&own.motion.twist, &own.wrench);
             link.joint
                 .gather(&turned, &self.columns[speed_range.clone()], out);
             let forces = &self.forces[speed_range.clone()];
@@ -38,7 +38,7 @@ impl Recursive {
             }
             if !link.joint.structures().bias_momentum.is_zero() {
                 let (moment, momentum) = split(&own.wrench);
-                let rotation = &own.placement.rotation;
+                let rotation = &own.motion.placement.rotation;
                 let in_child = join(
                     &apply_transposed(rotation, &moment),
                     &apply_transposed(rotation, &momentum),
@@ -53,9 +53,9 @@ impl Recursive {
                 }
             }
             if let Some(parent) = link.parent {
-                let offset = &own.placement.offset;
+                let offset = &own.motion.placement.offset;
                 before[parent].wrench += shift_wrench(&own.wrench, offset);
-                before[parent].rate += shift_wrench(&own.rate, offset);
+                before[parent].motion.rate += shift_wrench(&own.motion.rate, offset);
             }
         }
     }
@@ -64,7 +64,7 @@ impl Recursive {
     pub(super) fn potential_energy_here(&self) -> f64 {
         let gravity = self.mechanism.gravity();
         let work = self.nodes.iter().map(|node| {
-            let moment = node.rigid.first_moment + node.placement.origin * node.rigid.mass;
+            let moment = node.rigid.first_moment + node.motion.placement.origin * node.rigid.mass;
             dot(gravity, &moment)
         });
         -work.sum::<f64>()

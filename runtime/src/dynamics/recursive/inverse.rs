@@ -55,7 +55,7 @@ impl Recursive {
     pub fn joint_wrench(&self, body: usize) -> Option<Vector6<f64>> {
         let node = self.nodes.get(body)?;
         let (moment, force) = split(&node.wrench);
-        let rotation = &node.placement.rotation;
+        let rotation = &node.motion.placement.rotation;
         Some(join(
             &apply_transposed(rotation, &moment),
             &apply_transposed(rotation, &force),

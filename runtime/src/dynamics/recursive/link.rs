@@ -3,8 +3,9 @@
 use crate::erased::AnyJoint;
 use crate::mechanism::Body;
 use crate::spatial::{Pose, SpatialInertia, join};
-use crate::steps::Placement;
+use crate::steps::{Motion, Placement};
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 use core::ops::Range;
 use nalgebra::{Vector3, Vector6};
 
@@ -20,10 +21,27 @@ pub(super) struct Link {
     pub(super) frame: Pose<f64>,
     /// Inertia in the joint's child frame.
     pub(super) inertia: SpatialInertia<f64>,
+    /// Whether any column of X̄ has a linear part.
+    pub(super) slides: bool,
+    /// Whether any body hangs on this one.
+    pub(super) carries: bool,
+    /// Whether this is the last of the bodies that hang on its parent, and so the first in an inward sweep.
+    pub(super) last: bool,
 }
 
 impl Link {
-    pub(super) fn new(body: &Body) -> Self {
+    pub(super) fn all(bodies: &[Body]) -> Vec<Self> {
+        let mut links: Vec<Self> = bodies.iter().map(Self::new).collect();
+        for index in (0..links.len()).rev() {
+            if let Some(parent) = links[index].parent {
+                links[index].last = !links[parent].carries;
+                links[parent].carries = true;
+            }
+        }
+        links
+    }
+
+    fn new(body: &Body) -> Self {
         let ranges = body.ranges();
         Self {
             joint: body.shared_joint(),
@@ -33,6 +51,9 @@ impl Link {
             speeds: ranges.speeds.clone(),
             frame: *body.joint_frame(),
             inertia: *body.joint_inertia(),
+            slides: body.joint().slides(),
+            carries: false,
+            last: false,
         }
     }
 }
@@ -40,11 +61,8 @@ impl Link {
 /// The state of one body in a sweep; all vectors at the child frame's origin, in world axes.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
-    pub(super) placement: Placement<f64>,
-    /// V.
-    pub(super) twist: Vector6<f64>,
-    /// V̇, from −g at the world.
-    pub(super) rate: Vector6<f64>,
+    /// Placement, V and V̇, the latter from −g at the world.
+    pub(super) motion: Motion<f64>,
     /// The body's own inertia.
     pub(super) rigid: SpatialInertia<f64>,
     /// What a sweep carries rootward: a wrench or a momentum.
@@ -55,9 +73,11 @@ impl Node {
     /// The world, which a base that accelerates upwards makes as heavy as gravity does.
     pub(super) fn world(gravity: &Vector3<f64>) -> Self {
         Self {
-            placement: Placement::world(),
-            twist: Vector6::zeros(),
-            rate: join(&Vector3::zeros(), &-gravity),
+            motion: Motion {
+                placement: Placement::world(),
+                twist: Vector6::zeros(),
+                rate: join(&Vector3::zeros(), &-gravity),
+            },
             rigid: SpatialInertia::zero(),
             wrench: Vector6::zeros(),
         }

@@ -1,6 +1,7 @@
 //! M̄ by composite rigid bodies, and its factorisation along the branches of the tree.
 
 use super::Recursive;
+use super::inverse::MOST_FREEDOMS;
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use crate::spatial::fused::dot;
@@ -182,18 +183,22 @@ impl Recursive {
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
         self.check(q, &[("rows of the mass matrix", mass.size)])?;
         self.place(q);
+        self.set_columns(q);
         for (link, node) in self.links.iter().zip(&mut self.nodes) {
-            node.rigid = link.inertia.rotated(&node.placement.rotation);
+            node.rigid = link.inertia.rotated(&node.motion.placement.rotation);
         }
         for (index, link) in self.links.iter().enumerate().rev() {
             let own = self.nodes[index].rigid;
-            for speed in link.speeds.clone() {
-                let momentum = own.apply(&self.columns[speed]);
+            let mut momenta = [Vector6::zeros(); MOST_FREEDOMS];
+            let momenta = &mut momenta[..link.speeds.len()];
+            let columns = &self.columns[link.speeds.clone()];
+            link.joint.momenta(&own, columns, momenta);
+            for (speed, momentum) in link.speeds.clone().zip(momenta) {
                 let row = &mut mass.rows[speed * mass.size..=speed * mass.size + speed];
-                self.fill_row(row, index, momentum);
+                self.fill_row(row, index, *momentum);
             }
             if let Some(parent) = link.parent {
-                let carried = own.shifted(&self.nodes[index].placement.offset);
+                let carried = own.shifted(&self.nodes[index].motion.placement.offset);
                 self.nodes[parent].rigid = self.nodes[parent].rigid.combine(&carried);
             }
         }
@@ -211,24 +216,41 @@ impl Recursive {
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("rows of the mass matrix", inverse.size)])?;
         self.place(q);
+        self.set_columns(q);
         self.weigh();
         self.articulate()?;
-        let mut unit = core::mem::take(&mut self.forces);
-        let mut column = core::mem::take(&mut self.rates);
-        unit.fill(0.0);
-        for i in 0..inverse.size {
-            unit[i] = 1.0;
-            for node in &mut self.nodes {
-                node.wrench = Vector6::zeros();
+        for body in 0..self.links.len() {
+            for speed in self.links[body].speeds.clone() {
+                let row = speed * inverse.size;
+                let row = &mut inverse.rows[row..row + self.links[body].speeds.end];
+                self.inverse_row(row, body, speed);
             }
-            self.load(&unit);
-            self.resolve(&mut column);
-            inverse.rows[i * inverse.size..=i * inverse.size + i].copy_from_slice(&column[..=i]);
-            unit[i] = 0.0;
         }
-        self.forces = unit;
-        self.rates = column;
         Ok(())
+    }
+
+    /// One row of M̄⁻¹, up to the last speed of `body`: the rates under a unit force on `speed`, one of its joint's.
+    fn inverse_row(&mut self, row: &mut [f64], body: usize, speed: usize) {
+        let (mut next, mut wrench) = (Some(body), Vector6::zeros());
+        self.loads[..row.len()].fill(0.0);
+        while let Some(index) = next {
+            let link = &self.links[index];
+            let speeds = link.speeds.clone();
+            let mut unit = [0.0; MOST_FREEDOMS];
+            if speeds.contains(&speed) {
+                unit[speed - speeds.start] = 1.0;
+            }
+            link.joint.reduce(
+                &mut wrench,
+                &self.columns[speeds.clone()],
+                &self.pivots[speeds.clone()],
+                &unit[..speeds.len()],
+                &mut self.loads[speeds],
+            );
+            wrench = shift_wrench(&wrench, &self.nodes[index].motion.placement.offset);
+            next = link.parent;
+        }
+        self.resolve_up_to(body, row);
     }
 
     /// `X_kᵀ F` for all speeds k from `body` to the root, and up to the length of the row.
@@ -240,12 +262,15 @@ impl Recursive {
             let columns = &self.columns[link.speeds.start..end];
             for (entry, column) in row[link.speeds.start..end].iter_mut().zip(columns) {
                 let (angular, linear) = split(column);
-                *entry = dot(&angular, &moment) + dot(&linear, &force);
+                *entry = match link.slides {
+                    true => dot(&angular, &moment) + dot(&linear, &force),
+                    false => dot(&angular, &moment),
+                };
             }
             let Some(parent) = link.parent else {
                 return;
             };
-            momentum = shift_wrench(&momentum, &self.nodes[body].placement.offset);
+            momentum = shift_wrench(&momentum, &self.nodes[body].motion.placement.offset);
             body = parent;
         }
     }

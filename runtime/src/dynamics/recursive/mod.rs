@@ -17,7 +17,7 @@ mod sweeps;
 pub use mass::MassMatrix;
 
 use super::{Dynamics, DynamicsError};
-use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
+use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
 use crate::spatial::ArticulatedInertia;
 use crate::steps::Pivot;
 use alloc::sync::Arc;
@@ -30,6 +30,8 @@ use nalgebra::Vector6;
 #[derive(Clone, Debug)]
 pub struct Recursive {
     mechanism: Arc<Mechanism>,
+    /// Whether S̄ is the identity for every joint.
+    holonomic: bool,
     links: Vec<Link>,
     world: Node,
     nodes: Vec<Node>,
@@ -53,7 +55,8 @@ impl Recursive {
         let count = mechanism.bodies().len();
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
         Self {
-            links: mechanism.bodies().iter().map(Link::new).collect(),
+            holonomic: mechanism.bodies().iter().all(is_holonomic),
+            links: Link::all(mechanism.bodies()),
             nodes: vec![world.clone(); count],
             world,
             columns: vec![Vector6::zeros(); speeds],
@@ -103,11 +106,14 @@ impl Recursive {
 
     /// Loads of the forces, against the wrenches of the nodes, to rates.
     fn solve(&mut self, forces: &[f64], rates: &mut [f64]) -> Result<(), DynamicsError> {
-        self.articulate()?;
-        self.load(forces);
+        self.eliminate(forces)?;
         self.resolve(rates);
         Ok(())
     }
+}
+
+fn is_holonomic(body: &Body) -> bool {
+    body.joint().structures().speed_basis.is_identity()
 }
 
 impl Dynamics for Recursive {
@@ -125,6 +131,9 @@ impl Dynamics for Recursive {
         self.check(q, &[("speeds", speeds.len()), ("rates", rates.len())])?;
         self.check_efforts(efforts)?;
         self.advance(q, speeds, None);
+        if self.holonomic {
+            return self.solve(efforts, rates);
+        }
         self.reduce_efforts(q, efforts);
         let forces = core::mem::take(&mut self.forces);
         let solved = self.solve(&forces, rates);
@@ -140,6 +149,7 @@ impl Dynamics for Recursive {
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("speeds", speeds.len()), ("momenta", momenta.len())])?;
         self.place(q);
+        self.set_columns(q);
         self.weigh();
         self.set_twists(speeds);
         self.set_momenta();
@@ -155,6 +165,7 @@ impl Dynamics for Recursive {
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("momenta", momenta.len()), ("speeds", speeds.len())])?;
         self.place(q);
+        self.set_columns(q);
         self.weigh();
         self.solve(momenta, speeds)
     }

@@ -1,7 +1,7 @@
 //! The sweeps that all of the recursive form is made of: outward for motion, inward for inertia and wrenches.
 
 use super::Recursive;
-use super::link::Node;
+use super::link::{Link, Node};
 use crate::dynamics::DynamicsError;
 use crate::spatial::{ArticulatedInertia, add_weighted, shift_twist, shift_wrench};
 use crate::steps::PivotFailure;
@@ -19,46 +19,50 @@ fn with_parent<'a>(
 }
 
 impl Recursive {
-    /// Outward: where every joint puts its child, and X̄.
+    /// Outward: where every joint puts its child.
     pub(super) fn place(&mut self, q: &[f64]) {
         for (index, link) in self.links.iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
-            let columns = &mut self.columns[link.speeds.clone()];
+            let (from, to) = (&parent.motion.placement, &mut own.motion.placement);
             let q = &q[link.configuration.clone()];
-            let (from, to) = (&parent.placement, &mut own.placement);
-            link.joint.place(q, &link.frame, from, to, columns);
+            link.joint.place(q, &link.frame, from, to);
         }
     }
 
-    /// Outward: placements, V, and V̇ under `accelerations` = v̄̇ (zero when absent); each body's own inertia and the wrench that it takes.
+    /// After [`Recursive::place`]: X̄ of every joint.
+    pub(super) fn set_columns(&mut self, q: &[f64]) {
+        for (link, node) in self.links.iter().zip(&self.nodes) {
+            let columns = &mut self.columns[link.speeds.clone()];
+            let rotation = &node.motion.placement.rotation;
+            link.joint
+                .columns(&q[link.configuration.clone()], rotation, columns);
+        }
+    }
+
+    /// Outward: placements, X̄, V, and V̇ under `accelerations` = v̄̇ (zero when absent); each body's own inertia and the wrench
+    /// that it takes.
     pub(super) fn advance(&mut self, q: &[f64], speeds: &[f64], accelerations: Option<&[f64]>) {
         for (index, link) in self.links.iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let columns = &mut self.columns[link.speeds.clone()];
-            let q = &q[link.configuration.clone()];
-            let v = &speeds[link.speeds.clone()];
-            let (from, to) = (&parent.placement, &mut own.placement);
-            link.joint.place(q, &link.frame, from, to, columns);
-
-            let carried = shift_twist(&parent.twist, &own.placement.offset);
-            let rotation = &own.placement.rotation;
-            let (relative, product) =
-                link.joint.velocity_product(q, v, rotation, &carried, columns);
-            own.twist = carried + relative;
-            own.rate = shift_twist(&parent.rate, &own.placement.offset) + product;
-            if let Some(accelerations) = accelerations {
-                let own_accelerations = &accelerations[link.speeds.clone()];
-                own.rate = combine(own.rate, columns, own_accelerations);
-            }
-            own.rigid = link.inertia.rotated(rotation);
-            own.wrench = own.rigid.wrench(&own.twist, &own.rate);
+            let accelerations = accelerations.map_or(&[][..], |all| &all[link.speeds.clone()]);
+            let state = (
+                &q[link.configuration.clone()],
+                &speeds[link.speeds.clone()],
+                accelerations,
+            );
+            let motion = &mut own.motion;
+            link.joint
+                .advance(state, &link.frame, &parent.motion, motion, columns);
+            own.rigid = link.inertia.rotated(&motion.placement.rotation);
+            own.wrench = own.rigid.wrench(&motion.twist, &motion.rate);
         }
     }
 
     /// Outward, after [`Recursive::place`]: each body's own inertia, and no wrench.
     pub(super) fn weigh(&mut self) {
         for (link, node) in self.links.iter().zip(&mut self.nodes) {
-            node.rigid = link.inertia.rotated(&node.placement.rotation);
+            node.rigid = link.inertia.rotated(&node.motion.placement.rotation);
             node.wrench = Vector6::zeros();
         }
     }
@@ -67,29 +71,50 @@ impl Recursive {
     pub(super) fn set_twists(&mut self, speeds: &[f64]) {
         for (index, link) in self.links.iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
-            let carried = shift_twist(&parent.twist, &own.placement.offset);
+            let carried = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
             let columns = &self.columns[link.speeds.clone()];
-            own.twist = combine(carried, columns, &speeds[link.speeds.clone()]);
+            own.motion.twist = combine(carried, columns, &speeds[link.speeds.clone()]);
         }
     }
 
     /// Inward: the articulated inertias, and the pivots of every joint.
     pub(super) fn articulate(&mut self) -> Result<(), DynamicsError> {
-        for (inertia, node) in self.inertias.iter_mut().zip(&self.nodes) {
-            *inertia = ArticulatedInertia::from(&node.rigid);
-        }
         for (index, link) in self.links.iter().enumerate().rev() {
-            let (before, rest) = self.inertias.split_at_mut(index);
-            let (columns, pivots) = (
-                &self.columns[link.speeds.clone()],
-                &mut self.pivots[link.speeds.clone()],
-            );
+            let speeds = link.speeds.clone();
+            let (columns, pivots) = (&self.columns[speeds.clone()], &mut self.pivots[speeds]);
+            let node = &self.nodes[index];
+            let mut inertia = whole(link, node, &self.inertias[index]);
             link.joint
-                .articulate(&mut rest[0], columns, &[], pivots)
+                .articulate(&mut inertia, columns, &[], pivots)
                 .map_err(|failure| self.mechanism.singular(index, &failure))?;
             if let Some(parent) = link.parent {
-                let offset = &self.nodes[index].placement.offset;
-                before[parent].add(&rest[0].shifted(offset));
+                let carried = inertia.shifted(&node.motion.placement.offset);
+                hand_over(link, &mut self.inertias[parent], &carried);
+            }
+        }
+        Ok(())
+    }
+
+    /// Inward: [`Recursive::articulate`] and [`Recursive::load`] in one sweep.
+    pub(super) fn eliminate(&mut self, forces: &[f64]) -> Result<(), DynamicsError> {
+        for (index, link) in self.links.iter().enumerate().rev() {
+            let speeds = link.speeds.clone();
+            let (before, rest) = self.nodes.split_at_mut(index);
+            let node = &mut rest[0];
+            let mut inertia = whole(link, node, &self.inertias[index]);
+            link.joint
+                .eliminate(
+                    (&mut inertia, &mut node.wrench),
+                    &self.columns[speeds.clone()],
+                    (&[], &forces[speeds.clone()]),
+                    &mut self.pivots[speeds.clone()],
+                    &mut self.loads[speeds],
+                )
+                .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            if let Some(parent) = link.parent {
+                let offset = &node.motion.placement.offset;
+                hand_over(link, &mut self.inertias[parent], &inertia.shifted(offset));
+                before[parent].wrench += shift_wrench(&node.wrench, offset);
             }
         }
         Ok(())
@@ -106,21 +131,33 @@ impl Recursive {
             link.joint
                 .reduce(&mut own.wrench, columns, pivots, &forces[speeds], loads);
             if let Some(parent) = link.parent {
-                before[parent].wrench += shift_wrench(&own.wrench, &own.placement.offset);
+                before[parent].wrench += shift_wrench(&own.wrench, &own.motion.placement.offset);
             }
         }
     }
 
     /// Outward, after [`Recursive::load`]: the rates that the loads amount to. The twists become those of the rates.
     pub(super) fn resolve(&mut self, rates: &mut [f64]) {
-        for (index, link) in self.links.iter().enumerate() {
+        if let Some(last) = self.links.len().checked_sub(1) {
+            self.resolve_up_to(last, rates);
+        }
+    }
+
+    /// [`Recursive::resolve`] for the bodies up to `last`.
+    pub(super) fn resolve_up_to(&mut self, last: usize, rates: &mut [f64]) {
+        for (index, link) in self.links[..=last].iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let speeds = link.speeds.clone();
             let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds.clone()]);
             let loads = &self.loads[speeds.clone()];
-            own.twist = shift_twist(&parent.twist, &own.placement.offset);
-            link.joint
-                .resolve(&mut own.twist, columns, pivots, loads, &mut rates[speeds]);
+            own.motion.twist = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
+            link.joint.resolve(
+                &mut own.motion.twist,
+                columns,
+                pivots,
+                loads,
+                &mut rates[speeds],
+            );
         }
     }
 
@@ -133,9 +170,27 @@ impl Recursive {
             link.joint
                 .gather(&own.wrench, columns, &mut out[link.speeds.clone()]);
             if let Some(parent) = link.parent {
-                before[parent].wrench += shift_wrench(&own.wrench, &own.placement.offset);
+                before[parent].wrench += shift_wrench(&own.wrench, &own.motion.placement.offset);
             }
         }
+    }
+}
+
+/// What a joint carries: the body itself and what its children have handed over.
+#[inline(always)]
+fn whole(link: &Link, node: &Node, handed: &ArticulatedInertia<f64>) -> ArticulatedInertia<f64> {
+    match link.carries {
+        true => handed.with_rigid(&node.rigid),
+        false => ArticulatedInertia::from(&node.rigid),
+    }
+}
+
+/// Adds a child's share to its parent's; the first of an inward sweep overwrites what the last sweep left.
+#[inline(always)]
+fn hand_over(link: &Link, parent: &mut ArticulatedInertia<f64>, carried: &ArticulatedInertia<f64>) {
+    match link.last {
+        true => *parent = *carried,
+        false => parent.add(carried),
     }
 }
 
