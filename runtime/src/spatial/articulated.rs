@@ -82,8 +82,14 @@ impl<T: Scalar> ArticulatedInertia<T> {
         };
         let coupling = Matrix3::from_columns(&[column(0, &mx), column(1, &my), column(2, &mz)]);
         // (r~Hᵀ)_ij = (r × row j of H)_i and −(H′r~)_ij = (r × row i of H′)_j.
-        let before = [0, 1, 2].map(|j| cross(offset, &row(&self.coupling, j)));
-        let after = [0, 1, 2].map(|i| cross(offset, &row(&coupling, i)));
+        let turned = |m: &Matrix3<T>, i: usize| cross(offset, &row(m, i));
+        let own = &self.coupling;
+        let before = [turned(own, 0), turned(own, 1), turned(own, 2)];
+        let after = [
+            turned(&coupling, 0),
+            turned(&coupling, 1),
+            turned(&coupling, 2),
+        ];
         let entry = |own: T, i: usize, j: usize| own + (before[j][i] + after[i][j]);
         let own = &self.angular;
         Self {

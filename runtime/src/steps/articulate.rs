@@ -41,9 +41,10 @@ pub struct PivotFailure {
     pub limit: f64,
 }
 
-/// `X_jᵀ F`, without the parts that the joint type does not have.
+/// `X_jᵀ F`, without the part that this column does not have.
 #[inline(always)]
 pub(super) fn power<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
+    j: usize,
     column: &Vector6<T>,
     wrench: &Vector6<T>,
 ) -> T
@@ -52,7 +53,7 @@ where
     J: Joint<N, K, S, C>,
 {
     let ((angular, linear), (moment, force)) = (split(column), split(wrench));
-    match Parts::any::<J, N, K, S, C>() {
+    match Parts::of::<J, N, K, S, C>(j) {
         (true, true) => dot(&angular, &moment) + dot(&linear, &force),
         (true, false) => dot(&angular, &moment),
         (false, true) => dot(&linear, &force),
@@ -101,10 +102,11 @@ impl<T: Scalar> Inertia<T> for SpatialInertia<T> {
     }
 }
 
-/// `I X_j`, without the parts that the joint type does not have.
+/// `I X_j`, without the part that this column does not have.
 #[inline(always)]
 pub(super) fn momentum<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
     inertia: &impl Inertia<T>,
+    j: usize,
     column: &Vector6<T>,
 ) -> Vector6<T>
 where
@@ -112,7 +114,7 @@ where
     J: Joint<N, K, S, C>,
 {
     let (angular, linear) = split(column);
-    match Parts::any::<J, N, K, S, C>() {
+    match Parts::of::<J, N, K, S, C>(j) {
         (true, true) => inertia.of(column),
         (true, false) => inertia.of_angular(&angular),
         (false, true) => inertia.of_linear(&linear),
@@ -124,13 +126,14 @@ where
 #[inline(always)]
 fn rounding<J, const N: usize, const K: usize, const S: usize, const C: usize>(
     (moments, masses): (f64, f64),
+    j: usize,
     column: &Vector6<f64>,
 ) -> f64
 where
     J: Joint<N, K, S, C>,
 {
     let (angular, linear) = split(column);
-    let (turns, slides) = Parts::any::<J, N, K, S, C>();
+    let (turns, slides) = Parts::of::<J, N, K, S, C>(j);
     let mut size = 0.0;
     if turns {
         size += dot(&angular, &angular) * moments;
@@ -176,9 +179,9 @@ where
     let whole = (inertia.angular.trace(), inertia.linear.trace());
     for j in 0..S {
         let column = &columns[j];
-        let y = momentum::<J, f64, N, K, S, C>(inertia, column);
-        let pivot = power::<J, f64, N, K, S, C>(column, &y) + armature[j];
-        let limit = rounding::<J, N, K, S, C>(whole, column);
+        let y = momentum::<J, f64, N, K, S, C>(inertia, j, column);
+        let pivot = power::<J, f64, N, K, S, C>(j, column, &y) + armature[j];
+        let limit = rounding::<J, N, K, S, C>(whole, j, column);
         if pivot.is_nan() || pivot <= limit {
             return Err(PivotFailure {
                 speed: j,
@@ -234,7 +237,7 @@ where
 {
     let mut wrench = *wrench;
     for j in 0..S {
-        let carried = power::<J, T, N, K, S, C>(&columns[j], &wrench);
+        let carried = power::<J, T, N, K, S, C>(j, &columns[j], &wrench);
         loads[j] = (forces[j] - carried) * pivots[j].inverse;
         wrench = add_weighted(&wrench, &pivots[j].momentum, loads[j]);
     }
@@ -260,7 +263,7 @@ where
         let carried = dot(&moment, &angular) + dot(&force, &linear);
         rates[j] = loads[j] - carried * pivots[j].inverse;
         let (turn, slide) = split(&columns[j]);
-        let (turns, slides) = Parts::any::<J, N, K, S, C>();
+        let (turns, slides) = Parts::of::<J, N, K, S, C>(j);
         let turned = if turns {
             add_scaled(&angular, &turn, rates[j])
         } else {

@@ -233,16 +233,16 @@ where
         columns: &[Vector6<f64>],
         out: &mut [Vector6<f64>],
     ) {
-        let out: &mut [Vector6<f64>; S] = sized_mut(out);
-        for (momentum, column) in out.iter_mut().zip(sized::<_, S>(columns)) {
-            *momentum = articulate::momentum::<J, f64, N, K, S, C>(inertia, column);
+        let (columns, out) = (sized::<_, S>(columns), sized_mut::<_, S>(out));
+        for j in 0..S {
+            out[j] = articulate::momentum::<J, f64, N, K, S, C>(inertia, j, &columns[j]);
         }
     }
 
     fn gather(&self, wrench: &Vector6<f64>, columns: &[Vector6<f64>], out: &mut [f64]) {
-        let out: &mut [f64; S] = sized_mut(out);
-        for (value, column) in out.iter_mut().zip(sized::<_, S>(columns)) {
-            *value = articulate::power::<J, f64, N, K, S, C>(column, wrench);
+        let (columns, out) = (sized::<_, S>(columns), sized_mut::<_, S>(out));
+        for j in 0..S {
+            out[j] = articulate::power::<J, f64, N, K, S, C>(j, &columns[j], wrench);
         }
     }
 

@@ -73,11 +73,13 @@ where
 {
     let (pose, patterns) = (joint.pose(q), J::PATTERNS);
     let base = product(&parent.rotation, &joint_frame.rotation);
-    let column = |j: usize| {
-        let pattern = [0, 1, 2].map(|i| patterns.rotation[i][j]);
-        combine(&base, pattern, pose.rotation.data.0[j]).unwrap_or_else(Vector3::zeros)
-    };
-    let rotation = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+    let [x, y, z] = patterns.rotation;
+    // Array methods with closures are not reliably inlined, and then patterns would be read at run time.
+    let mut rotation = Matrix3::zeros();
+    for j in 0..3 {
+        let column = combine(&base, [x[j], y[j], z[j]], pose.rotation.data.0[j]);
+        rotation.data.0[j] = column.map_or([T::zero(); 3], |column| column.data.0[0]);
+    }
     let fixed = apply(&parent.rotation, &joint_frame.translation);
     let offset = match combine(&base, patterns.translation, pose.translation.data.0[0]) {
         Some(moved) => fixed + moved,
@@ -142,14 +144,16 @@ where
 {
     let pattern = const { J::PATTERNS.speed_columns() };
     let map = speed_map(joint, q);
-    core::array::from_fn(|j| {
-        let part = |first: usize| {
-            let rows = [0, 1, 2].map(|i| pattern[first + i][j]);
-            let weights = [0, 1, 2].map(|i| map[(first + i, j)]);
-            combine(rotation, rows, weights).unwrap_or_else(Vector3::zeros)
-        };
-        join(&part(0), &part(3))
-    })
+    let [p0, p1, p2, p3, p4, p5] = pattern;
+    let mut columns = [Vector6::zeros(); S];
+    for j in 0..S {
+        let [a, b, c, d, e, f] = map.data.0[j];
+        let angular = combine(rotation, [p0[j], p1[j], p2[j]], [a, b, c]);
+        let linear = combine(rotation, [p3[j], p4[j], p5[j]], [d, e, f]);
+        let zero = Vector3::zeros();
+        columns[j] = join(&angular.unwrap_or(zero), &linear.unwrap_or(zero));
+    }
+    columns
 }
 
 /// `X̄ = X^c S̄` in child axes.
@@ -164,7 +168,11 @@ where
 {
     let map = joint.twist_map_child(q);
     if J::STRUCTURES.speed_basis.is_identity() {
-        return SMatrix::from_fn(|i, j| map[(i, j)]);
+        let mut same = SMatrix::zeros();
+        for j in 0..S {
+            same.data.0[j] = map.data.0[j];
+        }
+        return same;
     }
     map * joint.speed_basis(q)
 }

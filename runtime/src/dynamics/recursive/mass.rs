@@ -182,11 +182,7 @@ impl Recursive {
     /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
         self.check(q, &[("rows of the mass matrix", mass.size)])?;
-        self.place(q);
-        self.set_columns(q);
-        for (link, node) in self.links.iter().zip(&mut self.nodes) {
-            node.rigid = link.inertia.rotated(&node.motion.placement.rotation);
-        }
+        self.weigh(q);
         for (index, link) in self.links.iter().enumerate().rev() {
             let own = self.nodes[index].rigid;
             let mut momenta = [Vector6::zeros(); MOST_FREEDOMS];
@@ -215,9 +211,7 @@ impl Recursive {
         inverse: &mut MassMatrix,
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("rows of the mass matrix", inverse.size)])?;
-        self.place(q);
-        self.set_columns(q);
-        self.weigh();
+        self.weigh(q);
         self.articulate()?;
         for body in 0..self.links.len() {
             for speed in self.links[body].speeds.clone() {

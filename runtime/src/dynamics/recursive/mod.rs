@@ -42,8 +42,6 @@ pub struct Recursive {
     loads: Vec<f64>,
     /// `S̄ᵀτ`, one entry a speed.
     forces: Vec<f64>,
-    /// v̄̇ or v̄, one entry a speed.
-    rates: Vec<f64>,
     /// τ, one entry a freedom.
     efforts: Vec<f64>,
 }
@@ -64,7 +62,6 @@ impl Recursive {
             pivots: vec![Pivot::zero(); speeds],
             loads: vec![0.0; speeds],
             forces: vec![0.0; speeds],
-            rates: vec![0.0; speeds],
             efforts: vec![0.0; freedoms],
             mechanism,
         }
@@ -148,9 +145,7 @@ impl Dynamics for Recursive {
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("speeds", speeds.len()), ("momenta", momenta.len())])?;
-        self.place(q);
-        self.set_columns(q);
-        self.weigh();
+        self.weigh(q);
         self.set_twists(speeds);
         self.set_momenta();
         self.gather(momenta);
@@ -164,9 +159,7 @@ impl Dynamics for Recursive {
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("momenta", momenta.len()), ("speeds", speeds.len())])?;
-        self.place(q);
-        self.set_columns(q);
-        self.weigh();
+        self.weigh(q);
         self.solve(momenta, speeds)
     }
 

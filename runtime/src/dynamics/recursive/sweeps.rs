@@ -29,13 +29,17 @@ impl Recursive {
         }
     }
 
-    /// After [`Recursive::place`]: X̄ of every joint.
-    pub(super) fn set_columns(&mut self, q: &[f64]) {
-        for (link, node) in self.links.iter().zip(&self.nodes) {
+    /// Outward: placements, X̄ and each body's own inertia; no wrench.
+    pub(super) fn weigh(&mut self, q: &[f64]) {
+        for (index, link) in self.links.iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let (from, to) = (&parent.motion.placement, &mut own.motion.placement);
+            let q = &q[link.configuration.clone()];
+            link.joint.place(q, &link.frame, from, to);
             let columns = &mut self.columns[link.speeds.clone()];
-            let rotation = &node.motion.placement.rotation;
-            link.joint
-                .columns(&q[link.configuration.clone()], rotation, columns);
+            link.joint.columns(q, &to.rotation, columns);
+            own.rigid = link.inertia.rotated(&to.rotation);
+            own.wrench = Vector6::zeros();
         }
     }
 
@@ -59,15 +63,7 @@ impl Recursive {
         }
     }
 
-    /// Outward, after [`Recursive::place`]: each body's own inertia, and no wrench.
-    pub(super) fn weigh(&mut self) {
-        for (link, node) in self.links.iter().zip(&mut self.nodes) {
-            node.rigid = link.inertia.rotated(&node.motion.placement.rotation);
-            node.wrench = Vector6::zeros();
-        }
-    }
-
-    /// Outward, after [`Recursive::place`]: V.
+    /// Outward, after [`Recursive::weigh`]: V.
     pub(super) fn set_twists(&mut self, speeds: &[f64]) {
         for (index, link) in self.links.iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
@@ -95,7 +91,7 @@ impl Recursive {
         Ok(())
     }
 
-    /// Inward: [`Recursive::articulate`] and [`Recursive::load`] in one sweep.
+    /// Inward: [`Recursive::articulate`], and the loads of generalised `forces` (one entry a speed) against the wrenches of the nodes.
     pub(super) fn eliminate(&mut self, forces: &[f64]) -> Result<(), DynamicsError> {
         for (index, link) in self.links.iter().enumerate().rev() {
             let speeds = link.speeds.clone();
@@ -120,23 +116,7 @@ impl Recursive {
         Ok(())
     }
 
-    /// Inward, after [`Recursive::articulate`]: the loads of generalised `forces` (one entry a speed) against the wrenches of the nodes.
-    pub(super) fn load(&mut self, forces: &[f64]) {
-        for (index, link) in self.links.iter().enumerate().rev() {
-            let (before, rest) = self.nodes.split_at_mut(index);
-            let own = &mut rest[0];
-            let speeds = link.speeds.clone();
-            let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds.clone()]);
-            let loads = &mut self.loads[speeds.clone()];
-            link.joint
-                .reduce(&mut own.wrench, columns, pivots, &forces[speeds], loads);
-            if let Some(parent) = link.parent {
-                before[parent].wrench += shift_wrench(&own.wrench, &own.motion.placement.offset);
-            }
-        }
-    }
-
-    /// Outward, after [`Recursive::load`]: the rates that the loads amount to. The twists become those of the rates.
+    /// Outward, after [`Recursive::eliminate`]: the rates that the loads amount to. The twists become those of the rates.
     pub(super) fn resolve(&mut self, rates: &mut [f64]) {
         if let Some(last) = self.links.len().checked_sub(1) {
             self.resolve_up_to(last, rates);
