@@ -16,7 +16,7 @@ pub use place::Placement;
 use crate::erased::Erased;
 use crate::joint::Joint;
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
-use nalgebra::{Matrix3, SVector, Vector6};
+use nalgebra::{SVector, Vector6};
 
 /// The motion of a joint's child frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,10 +43,17 @@ pub trait Steps {
         own: &mut Placement<f64>,
     );
 
-    /// The columns of X̄ at the child frame's origin, in world axes.
-    fn columns(&self, q: &[f64], rotation: &Matrix3<f64>, columns: &mut [Vector6<f64>]);
+    /// [`Steps::place`], and the columns of X̄ at the child frame's origin, in world axes.
+    fn stand(
+        &self,
+        q: &[f64],
+        joint_frame: &Pose<f64>,
+        parent: &Placement<f64>,
+        own: &mut Placement<f64>,
+        columns: &mut [Vector6<f64>],
+    );
 
-    /// [`Steps::place`] and [`Steps::columns`] at the `state` (q, v̄, v̄̇); `V = V_λ + X̄ v̄` and
+    /// [`Steps::stand`] at the `state` (q, v̄, v̄̇); `V = V_λ + X̄ v̄` and
     /// `V̇ = V̇_λ + X̄ v̄̇ + c + ad_V X̄ v̄`. An empty v̄̇ is zero.
     fn advance(
         &self,
@@ -147,9 +154,17 @@ where
         *own = place::child(self.joint(), &q, joint_frame, parent);
     }
 
-    fn columns(&self, q: &[f64], rotation: &Matrix3<f64>, columns: &mut [Vector6<f64>]) {
+    fn stand(
+        &self,
+        q: &[f64],
+        joint_frame: &Pose<f64>,
+        parent: &Placement<f64>,
+        own: &mut Placement<f64>,
+        columns: &mut [Vector6<f64>],
+    ) {
         let q = SVector::from(*sized::<_, N>(q));
-        *sized_mut(columns) = place::columns(self.joint(), &q, rotation);
+        *own = place::child(self.joint(), &q, joint_frame, parent);
+        *sized_mut(columns) = place::columns(self.joint(), &q, &own.rotation);
     }
 
     fn advance(

@@ -21,8 +21,6 @@ pub(super) struct Link {
     pub(super) frame: Pose<f64>,
     /// Inertia in the joint's child frame.
     pub(super) inertia: SpatialInertia<f64>,
-    /// Whether any column of X̄ has a linear part.
-    pub(super) slides: bool,
     /// Whether any body hangs on this one.
     pub(super) carries: bool,
     /// Whether this is the last of the bodies that hang on its parent, and so the first in an inward sweep.
@@ -51,9 +49,36 @@ impl Link {
             speeds: ranges.speeds.clone(),
             frame: *body.joint_frame(),
             inertia: *body.joint_inertia(),
-            slides: body.joint().slides(),
             carries: false,
             last: false,
+        }
+    }
+}
+
+/// The little that a walk from a body to the root needs of each body on its way.
+#[derive(Clone, Debug)]
+pub(super) struct Rung {
+    pub(super) parent: Option<usize>,
+    /// First speed of the joint.
+    pub(super) start: usize,
+    /// The speed after its last.
+    pub(super) end: usize,
+    /// Whether any column of X̄ has a linear part.
+    pub(super) slides: bool,
+    /// Whether X̄ is one column without a linear part.
+    pub(super) turns_once: bool,
+}
+
+impl Rung {
+    pub(super) fn new(body: &Body) -> Self {
+        let speeds = &body.ranges().speeds;
+        let slides = body.joint().slides();
+        Self {
+            parent: body.parent(),
+            start: speeds.start,
+            end: speeds.end,
+            slides,
+            turns_once: speeds.len() == 1 && !slides,
         }
     }
 }

@@ -4,12 +4,13 @@ use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
-use crate::spatial::fused::dot;
+use crate::spatial::fused::{add_cross, dot};
 use crate::spatial::{shift_wrench, split};
 use crate::steps::PivotFailure;
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::{DMatrix, Vector6};
+use core::ops::Range;
+use nalgebra::{DMatrix, Vector3, Vector6};
 
 /// How many roundings of its own diagonal entry a pivot must stand above, for each row: those of one update and a margin of four.
 const ROUNDINGS: f64 = 8.0;
@@ -135,7 +136,7 @@ fn subtract(target: &mut [f64], row: &[f64], weight: f64, parents: &[Option<usiz
 }
 
 fn singular(mechanism: &Mechanism, speed: usize, pivot: f64, limit: f64) -> DynamicsError {
-    let owner = |range: &core::ops::Range<usize>| range.contains(&speed);
+    let owner = |range: &Range<usize>| range.contains(&speed);
     let body = mechanism
         .bodies()
         .iter()
@@ -184,14 +185,15 @@ impl Recursive {
         self.check(q, &[("rows of the mass matrix", mass.size)])?;
         self.weigh(q);
         for (index, link) in self.links.iter().enumerate().rev() {
-            let own = self.nodes[index].rigid;
+            // By reference: a copy would wait for the stores that the child has just made.
+            let own = &self.nodes[index].rigid;
             let mut momenta = [Vector6::zeros(); MOST_FREEDOMS];
             let momenta = &mut momenta[..link.speeds.len()];
             let columns = &self.columns[link.speeds.clone()];
-            link.joint.momenta(&own, columns, momenta);
+            link.joint.momenta(own, columns, momenta);
             for (speed, momentum) in link.speeds.clone().zip(momenta) {
                 let row = &mut mass.rows[speed * mass.size..=speed * mass.size + speed];
-                self.fill_row(row, index, *momentum);
+                self.fill_row(row, index, momentum);
             }
             if let Some(parent) = link.parent {
                 let carried = own.shifted(&self.nodes[index].motion.placement.offset);
@@ -248,24 +250,39 @@ impl Recursive {
     }
 
     /// `X_kᵀ F` for all speeds k from `body` to the root, and up to the length of the row.
-    fn fill_row(&self, row: &mut [f64], mut body: usize, mut momentum: Vector6<f64>) {
-        loop {
-            let link = &self.links[body];
-            let (moment, force) = split(&momentum);
-            let end = link.speeds.end.min(row.len());
-            let columns = &self.columns[link.speeds.start..end];
-            for (entry, column) in row[link.speeds.start..end].iter_mut().zip(columns) {
-                let (angular, linear) = split(column);
-                *entry = match link.slides {
-                    true => dot(&angular, &moment) + dot(&linear, &force),
-                    false => dot(&angular, &moment),
-                };
+    fn fill_row(&self, row: &mut [f64], mut body: usize, momentum: &Vector6<f64>) {
+        let (mut moment, force) = split(momentum);
+        let own = self.rungs[body].start..row.len();
+        self.fill_block(row, own, true, &moment, &force);
+        while let Some(parent) = self.rungs[body].parent {
+            let offset = &self.nodes[body].motion.placement.offset;
+            moment = add_cross(&moment, offset, &force);
+            let rung = &self.rungs[parent];
+            if rung.turns_once {
+                let (angular, _) = split(&self.columns[rung.start]);
+                row[rung.start] = dot(&angular, &moment);
+            } else {
+                self.fill_block(row, rung.start..rung.end, rung.slides, &moment, &force);
             }
-            let Some(parent) = link.parent else {
-                return;
-            };
-            momentum = shift_wrench(&momentum, &self.nodes[body].motion.placement.offset);
             body = parent;
+        }
+    }
+
+    /// `X_kᵀ F` for the speeds k of one joint.
+    fn fill_block(
+        &self,
+        row: &mut [f64],
+        speeds: Range<usize>,
+        slides: bool,
+        moment: &Vector3<f64>,
+        force: &Vector3<f64>,
+    ) {
+        for (entry, column) in row[speeds.clone()].iter_mut().zip(&self.columns[speeds]) {
+            let (angular, linear) = split(column);
+            *entry = match slides {
+                true => dot(&angular, moment) + dot(&linear, force),
+                false => dot(&angular, moment),
+            };
         }
     }
 }

@@ -23,7 +23,7 @@ use crate::steps::Pivot;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
-use link::{Link, Node};
+use link::{Link, Node, Rung};
 use nalgebra::Vector6;
 
 /// The recursive form of a mechanism's dynamics, with its workspace: one for each thread.
@@ -33,6 +33,7 @@ pub struct Recursive {
     /// Whether S̄ is the identity for every joint.
     holonomic: bool,
     links: Vec<Link>,
+    rungs: Vec<Rung>,
     world: Node,
     nodes: Vec<Node>,
     /// X̄, one column a speed.
@@ -55,6 +56,7 @@ impl Recursive {
         Self {
             holonomic: mechanism.bodies().iter().all(is_holonomic),
             links: Link::all(mechanism.bodies()),
+            rungs: mechanism.bodies().iter().map(Rung::new).collect(),
             nodes: vec![world.clone(); count],
             world,
             columns: vec![Vector6::zeros(); speeds],

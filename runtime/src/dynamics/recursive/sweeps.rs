@@ -35,9 +35,8 @@ impl Recursive {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let (from, to) = (&parent.motion.placement, &mut own.motion.placement);
             let q = &q[link.configuration.clone()];
-            link.joint.place(q, &link.frame, from, to);
             let columns = &mut self.columns[link.speeds.clone()];
-            link.joint.columns(q, &to.rotation, columns);
+            link.joint.stand(q, &link.frame, from, to, columns);
             own.rigid = link.inertia.rotated(&to.rotation);
             own.wrench = Vector6::zeros();
         }
