@@ -20,9 +20,10 @@ impl Recursive {
     pub(super) fn momentum_rates_at(&mut self, q: &[f64], speeds: &[f64], rates: &mut [f64]) {
         let gravity = *self.mechanism.gravity();
         self.set_momenta();
-        for node in &mut self.nodes {
+        for (node, external) in self.nodes.iter_mut().zip(&self.external) {
             // The rate is not needed here: its place holds the composite external wrench.
-            node.motion.rate = weight(&gravity, node.rigid.mass, &node.rigid.first_moment);
+            let weight = weight(&gravity, node.rigid.mass, &node.rigid.first_moment);
+            node.motion.rate = weight + external;
         }
         for (index, link) in self.links.iter().enumerate().rev() {
             let (before, rest) = self.nodes.split_at_mut(index);
@@ -60,8 +61,29 @@ impl Recursive {
         }
     }
 
+    /// Kinetic and potential energy at the placements, twists and inertias of the workspace, J.
+    pub(super) fn energy_here(&self, q: &[f64], speeds: &[f64]) -> f64 {
+        let bodies: f64 = self
+            .nodes
+            .iter()
+            .map(|node| {
+                let momentum = node.rigid.apply(&node.motion.twist);
+                0.5 * node.motion.twist.dot(&momentum)
+            })
+            .sum();
+        let rotors: f64 = self
+            .links
+            .iter()
+            .map(|link| {
+                let own = link.armature.iter().zip(&speeds[link.speeds.clone()]);
+                own.map(|(a, v)| 0.5 * a * v * v).sum::<f64>()
+            })
+            .sum();
+        bodies + rotors + self.potential_energy_here() + self.element_energy_here(q, speeds)
+    }
+
     /// Potential energy in gravity at the placements of the workspace, zero at the world's origin, J.
-    pub(super) fn potential_energy_here(&self) -> f64 {
+    fn potential_energy_here(&self) -> f64 {
         let gravity = self.mechanism.gravity();
         let work = self.nodes.iter().map(|node| {
             let moment = node.rigid.first_moment + node.motion.placement.origin * node.rigid.mass;

@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, Matrix6, Vector6};
 pub(super) const MOST_FREEDOMS: usize = 6;
 
 impl Recursive {
-    /// `S̄ᵀτ` into `efforts` (one entry a speed): what the joints must exert for the mechanism to accelerate with
+    /// `S̄ᵀτ` into `efforts` (one entry a speed): what inputs must exert, beside the elements, for the mechanism to accelerate with
     /// `accelerations` = v̄̇ at `q` and v̄.
     ///
     /// # Errors
@@ -30,7 +30,8 @@ impl Recursive {
         ];
         self.check(q, &sizes)?;
         self.advance(q, speeds, Some(accelerations));
-        self.gather(efforts);
+        self.gather_needed(q, speeds, efforts);
+        self.add_armature(accelerations, efforts);
         Ok(())
     }
 
@@ -46,8 +47,21 @@ impl Recursive {
     ) -> Result<(), StateError> {
         self.check(q, &[("speeds", speeds.len()), ("efforts", efforts.len())])?;
         self.advance(q, speeds, None);
-        self.gather(efforts);
+        self.gather_needed(q, speeds, efforts);
         Ok(())
+    }
+
+    /// What inputs must do beside the elements for the bodies to take the wrenches of the nodes.
+    fn gather_needed(&mut self, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
+        if self.mechanism.elements().is_empty() {
+            return self.gather(efforts);
+        }
+        self.act(q, speeds, None);
+        self.relieve();
+        self.gather(efforts);
+        for (effort, element) in efforts.iter_mut().zip(&self.forces) {
+            *effort -= element;
+        }
     }
 
     /// The wrench that the joint of `body` exerts on its child, in the joint's child frame, as of the last
@@ -110,6 +124,12 @@ impl Recursive {
             self.joint_effort(index, q, carried);
             for (effort, applied) in carried.iter_mut().zip(&efforts[ranges.freedoms.clone()]) {
                 *effort -= applied;
+            }
+            if !self.mechanism.elements().is_empty() {
+                let elements = &self.efforts[ranges.freedoms.clone()];
+                for (effort, element) in carried.iter_mut().zip(elements) {
+                    *effort -= element;
+                }
             }
             let own = &mut forces[ranges.constraints.clone()];
             let mut constraint = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];

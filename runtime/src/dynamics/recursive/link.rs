@@ -1,7 +1,7 @@
 //! What the recursion keeps of each body: a compact copy of what never changes, and the workspace.
 
 use crate::erased::AnyJoint;
-use crate::mechanism::Body;
+use crate::mechanism::{Body, Mechanism};
 use crate::spatial::{Pose, SpatialInertia, join};
 use crate::steps::{Motion, Placement};
 use alloc::sync::Arc;
@@ -21,6 +21,10 @@ pub(super) struct Link {
     pub(super) frame: Pose<f64>,
     /// Inertia in the joint's child frame.
     pub(super) inertia: SpatialInertia<f64>,
+    /// Rotor inertias, one a freedom; empty where there are none.
+    pub(super) armature: Vec<f64>,
+    /// Whether the joint's motion is prescribed.
+    pub(super) driven: bool,
     /// Whether any body hangs on this one.
     pub(super) carries: bool,
     /// Whether this is the last of the bodies that hang on its parent, and so the first in an inward sweep.
@@ -28,8 +32,15 @@ pub(super) struct Link {
 }
 
 impl Link {
-    pub(super) fn all(bodies: &[Body]) -> Vec<Self> {
-        let mut links: Vec<Self> = bodies.iter().map(Self::new).collect();
+    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let bodies = mechanism.bodies().iter().enumerate();
+        let mut links: Vec<Self> = bodies
+            .map(|(index, body)| Self {
+                armature: mechanism.armature(index).to_vec(),
+                driven: mechanism.is_driven(index),
+                ..Self::new(body)
+            })
+            .collect();
         for index in (0..links.len()).rev() {
             if let Some(parent) = links[index].parent {
                 links[index].last = !links[parent].carries;
@@ -49,6 +60,8 @@ impl Link {
             speeds: ranges.speeds.clone(),
             frame: *body.joint_frame(),
             inertia: *body.joint_inertia(),
+            armature: Vec::new(),
+            driven: false,
             carries: false,
             last: false,
         }

@@ -195,6 +195,9 @@ impl Recursive {
                 let row = &mut mass.rows[speed * mass.size..=speed * mass.size + speed];
                 self.fill_row(row, index, momentum);
             }
+            for (speed, armature) in link.speeds.clone().zip(&link.armature) {
+                mass.rows[speed * mass.size + speed] += armature;
+            }
             if let Some(parent) = link.parent {
                 let carried = own.shifted(&self.nodes[index].motion.placement.offset);
                 self.nodes[parent].rigid = self.nodes[parent].rigid.combine(&carried);

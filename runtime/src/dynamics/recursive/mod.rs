@@ -8,6 +8,7 @@
 //!
 //! After construction nothing allocates.
 
+mod elements;
 mod hamiltonian;
 mod inverse;
 mod link;
@@ -30,8 +31,8 @@ use nalgebra::Vector6;
 #[derive(Clone, Debug)]
 pub struct Recursive {
     mechanism: Arc<Mechanism>,
-    /// Whether S̄ is the identity for every joint.
-    holonomic: bool,
+    /// Whether every joint is holonomic and nothing but gravity and inputs acts: τ is then all there is to solve for.
+    plain: bool,
     links: Vec<Link>,
     rungs: Vec<Rung>,
     world: Node,
@@ -45,6 +46,12 @@ pub struct Recursive {
     forces: Vec<f64>,
     /// τ, one entry a freedom.
     efforts: Vec<f64>,
+    /// τ of the inputs, one entry a freedom.
+    inputs: Vec<f64>,
+    /// Wrenches of elements on the bodies, at the child frames' origins, in world axes.
+    external: Vec<Vector6<f64>>,
+    /// Prescribed rates of driven joints, one entry a speed; zero for the others.
+    driven: Vec<f64>,
 }
 
 impl Recursive {
@@ -54,8 +61,8 @@ impl Recursive {
         let count = mechanism.bodies().len();
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
         Self {
-            holonomic: mechanism.bodies().iter().all(is_holonomic),
-            links: Link::all(mechanism.bodies()),
+            plain: is_plain(&mechanism),
+            links: Link::all(&mechanism),
             rungs: mechanism.bodies().iter().map(Rung::new).collect(),
             nodes: vec![world.clone(); count],
             world,
@@ -65,6 +72,9 @@ impl Recursive {
             loads: vec![0.0; speeds],
             forces: vec![0.0; speeds],
             efforts: vec![0.0; freedoms],
+            inputs: vec![0.0; freedoms],
+            external: vec![Vector6::zeros(); count],
+            driven: vec![0.0; speeds],
             mechanism,
         }
     }
@@ -111,8 +121,11 @@ impl Recursive {
     }
 }
 
-fn is_holonomic(body: &Body) -> bool {
-    body.joint().structures().speed_basis.is_identity()
+fn is_plain(mechanism: &Mechanism) -> bool {
+    let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
+    mechanism.bodies().iter().all(holonomic)
+        && mechanism.elements().is_empty()
+        && mechanism.drives().is_empty()
 }
 
 impl Dynamics for Recursive {
@@ -129,14 +142,20 @@ impl Dynamics for Recursive {
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("speeds", speeds.len()), ("rates", rates.len())])?;
         self.check_efforts(efforts)?;
-        self.advance(q, speeds, None);
-        if self.holonomic {
+        if self.plain {
+            self.advance(q, speeds, None);
             return self.solve(efforts, rates);
         }
-        self.reduce_efforts(q, efforts);
+        self.set_driven_rates(efforts);
+        let driven = core::mem::take(&mut self.driven);
+        self.advance(q, speeds, Some(&driven));
+        self.act(q, speeds, Some(efforts));
+        self.relieve();
         let forces = core::mem::take(&mut self.forces);
         let solved = self.solve(&forces, rates);
         self.forces = forces;
+        self.driven = driven;
+        self.copy_driven(&self.driven, rates);
         solved
     }
 
@@ -151,6 +170,8 @@ impl Dynamics for Recursive {
         self.set_twists(speeds);
         self.set_momenta();
         self.gather(momenta);
+        self.add_armature(speeds, momenta);
+        self.copy_driven(speeds, momenta);
         Ok(())
     }
 
@@ -162,7 +183,18 @@ impl Dynamics for Recursive {
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("momenta", momenta.len()), ("speeds", speeds.len())])?;
         self.weigh(q);
-        self.solve(momenta, speeds)
+        if self.mechanism.drives().is_empty() {
+            return self.solve(momenta, speeds);
+        }
+        let mut driven = core::mem::take(&mut self.driven);
+        self.copy_driven(momenta, &mut driven);
+        self.set_twists(&driven);
+        self.set_momenta();
+        let solved = self.solve(momenta, speeds);
+        self.copy_driven(&driven, speeds);
+        self.driven = driven;
+        self.set_twists(speeds);
+        solved
     }
 
     fn momentum_rates(
@@ -175,19 +207,22 @@ impl Dynamics for Recursive {
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("rates", rates.len())])?;
         self.speeds(q, momenta, speeds)?;
-        let mut tau = core::mem::take(&mut self.efforts);
+        let mut tau = core::mem::take(&mut self.inputs);
+        tau.fill(0.0);
         efforts(speeds, &mut tau);
-        self.reduce_efforts(q, &tau);
-        self.efforts = tau;
+        self.act(q, speeds, Some(&tau));
         self.momentum_rates_at(q, speeds, rates);
+        self.set_driven_rates(&tau);
+        self.copy_driven(&self.driven, rates);
+        self.inputs = tau;
         Ok(())
     }
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
         let mut speeds = core::mem::take(&mut self.forces);
         let solved = self.speeds(q, momenta, &mut speeds);
-        let kinetic: f64 = momenta.iter().zip(&speeds).map(|(p, v)| 0.5 * p * v).sum();
+        let energy = self.energy_here(q, &speeds);
         self.forces = speeds;
-        solved.map(|()| kinetic + self.potential_energy_here())
+        solved.map(|()| energy)
     }
 }

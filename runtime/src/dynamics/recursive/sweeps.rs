@@ -79,9 +79,11 @@ impl Recursive {
             let (columns, pivots) = (&self.columns[speeds.clone()], &mut self.pivots[speeds]);
             let node = &self.nodes[index];
             let mut inertia = whole(link, node, &self.inertias[index]);
-            link.joint
-                .articulate(&mut inertia, columns, &[], pivots)
-                .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            if !link.driven {
+                link.joint
+                    .articulate(&mut inertia, columns, &link.armature, pivots)
+                    .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            }
             if let Some(parent) = link.parent {
                 let carried = inertia.shifted(&node.motion.placement.offset);
                 hand_over(link, &mut self.inertias[parent], &carried);
@@ -97,15 +99,17 @@ impl Recursive {
             let (before, rest) = self.nodes.split_at_mut(index);
             let node = &mut rest[0];
             let mut inertia = whole(link, node, &self.inertias[index]);
-            link.joint
-                .eliminate(
-                    (&mut inertia, &mut node.wrench),
-                    &self.columns[speeds.clone()],
-                    (&[], &forces[speeds.clone()]),
-                    &mut self.pivots[speeds.clone()],
-                    &mut self.loads[speeds],
-                )
-                .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            if !link.driven {
+                link.joint
+                    .eliminate(
+                        (&mut inertia, &mut node.wrench),
+                        &self.columns[speeds.clone()],
+                        (&link.armature, &forces[speeds.clone()]),
+                        &mut self.pivots[speeds.clone()],
+                        &mut self.loads[speeds],
+                    )
+                    .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            }
             if let Some(parent) = link.parent {
                 let offset = &node.motion.placement.offset;
                 hand_over(link, &mut self.inertias[parent], &inertia.shifted(offset));
