@@ -1,7 +1,8 @@
-//! `hamel`: simulates scenes and explains joints from the command line.
+//! `hamel`: simulates scenes and robots, and explains joints, from the command line.
 //!
 //! Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood.
 
+mod import;
 mod joints;
 mod output;
 mod simulate;
@@ -21,6 +22,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Simulate(simulate::Args),
+    Import(import::Args),
     Joints(joints::Args),
 }
 
@@ -28,6 +30,7 @@ fn main() -> ExitCode {
     let registry = hamel_joints::registry();
     let result = match Cli::parse().command {
         Command::Simulate(args) => simulate::run(&args, &registry),
+        Command::Import(args) => import::run(&args, &registry),
         Command::Joints(args) => joints::run(&args),
     };
     match result {

@@ -1,6 +1,6 @@
 //! What goes wrong, and how it is told: in plain words on stderr.
 
-use hamel_scene::Diagnostics;
+use hamel_scene::{Diagnostics, Notice};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
@@ -79,6 +79,14 @@ pub fn report(failure: &Failure) {
         other => writeln!(stderr, "error: {other}"),
     };
     drop(told);
+}
+
+/// Tells on stderr what is not simulated. If stderr is gone nobody is left to tell.
+pub fn tell(notices: &[Notice]) {
+    let mut stderr = io::stderr().lock();
+    for notice in notices {
+        drop(writeln!(stderr, "note: {notice}"));
+    }
 }
 
 fn colour(stderr: &impl IsTerminal) -> bool {

@@ -123,6 +123,57 @@ fn a_new_spec_can_be_checked_at_once_and_is_never_overwritten() {
 }
 
 #[test]
+fn a_robot_moves_as_the_scene_that_is_made_of_it() {
+    let robot = "tests/data/urdf/panda7.urdf";
+    let scene = format!("{}/panda7.toml", env!("CARGO_TARGET_TMPDIR"));
+    let imported = hamel(&["import", robot, "--output", &scene]);
+    let told = String::from_utf8_lossy(&imported.stderr).into_owned();
+    assert!(
+        imported.status.success() && imported.stdout.is_empty(),
+        "{told}"
+    );
+    assert!(
+        told.contains("note: limits of position are not simulated"),
+        "{told}"
+    );
+    let bodies = |file: &str| {
+        let options = ["--at", "0.05", "--tol", "1e-8", "--json"];
+        let text = stdout(&[["simulate", file].as_slice(), &options].concat());
+        let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+        report["samples"][0]["bodies"].clone()
+    };
+    let (robot, scene) = (bodies(robot), bodies(&scene));
+    let numbers = |bodies: &Value| -> Vec<f64> {
+        let bodies = bodies.as_array().expect("a list").iter();
+        let positions = bodies.filter_map(|body| body["position_com"].as_array());
+        positions.flatten().filter_map(Value::as_f64).collect()
+    };
+    let (robot, scene) = (numbers(&robot), numbers(&scene));
+    assert_eq!((robot.len(), scene.len()), (21, 21));
+    for (a, b) in robot.iter().zip(&scene) {
+        // The steps are the same; positions of the order of 1 m differ by roundings of the placements.
+        assert!((a - b).abs() <= 1e-12, "{a} {b}");
+    }
+}
+
+#[test]
+fn a_base_floats_where_it_is_asked_to() {
+    let falling = [
+        "simulate",
+        "tests/data/urdf/anymal.urdf",
+        "--at",
+        "0.1",
+        "--json",
+    ];
+    let text = stdout(&[falling.as_slice(), &["--floating-base"]].concat());
+    let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+    let velocity = report["samples"][0]["bodies"][0]["velocity_com_world"][2].as_f64();
+    let fall = velocity.expect("a number") + 0.981;
+    // At rest and without contact the whole robot falls as one; dopri5 is exact for that but for rounding.
+    assert!(fall.abs() <= 1e-12, "{fall:e}");
+}
+
+#[test]
 fn mistakes_are_told_in_words() {
     for (arguments, code, told) in [
         (vec!["joints", "explain", "bal"], 2, "did you mean `ball`"),
@@ -132,6 +183,16 @@ fn mistakes_are_told_in_words() {
             vec!["simulate", "scenes/free_body.toml", "--form", "newtonian"],
             2,
             "newtonian",
+        ),
+        (
+            vec!["simulate", "scenes/free_body.toml", "--floating-base"],
+            2,
+            "--floating-base is for robots in URDF",
+        ),
+        (
+            vec!["import", "tests/corpus/urdf-bad/mass_negative.urdf"],
+            1,
+            "mass is -2.0 kg",
         ),
         (
             vec!["simulate", "scenes/free_body.toml", "--dt", "-1"],

@@ -10,6 +10,7 @@ pub mod oracle;
 pub mod peers;
 pub mod random;
 pub mod reference_form;
+pub mod refusals;
 pub mod scenes;
 pub mod specs;
 

@@ -2,58 +2,10 @@
 //!
 //! `cargo test` takes a slice. The whole: `cargo test --release --package hamel-tests --test fuzz -- --ignored --nocapture --test-threads 1`.
 
-use hamel_tests::fuzz::{Corpus, Figures, Mutator, check, peak_memory, pipeline, run};
-use std::time::Duration;
-
-/// What an input may take, of the thread's own time: 1 s, and three times as long where the generator is hardly optimised.
-const LONGEST: Duration = Duration::from_secs(if cfg!(debug_assertions) { 3 } else { 1 });
-/// What the whole run may hold, bytes.
-const LARGEST: u64 = 1 << 30;
+use hamel_tests::fuzz::{Corpus, Mutator, check, pipeline, report, run};
 
 fn mutator() -> Mutator {
     Mutator::new(Corpus::read())
-}
-
-fn report(name: &str, figures: &Figures, texts: impl Fn(u64) -> Option<String>) {
-    let Figures {
-        count,
-        accepted,
-        slowest,
-        broken,
-    } = figures;
-    let memory = peak_memory().map_or("unknown".into(), |bytes| format!("{} MiB", bytes >> 20));
-    println!(
-        "{name}: {count} inputs, {accepted} accepted, slowest {:?} (input {}), peak memory {memory}",
-        slowest.0, slowest.1
-    );
-    let shown: Vec<String> = broken
-        .iter()
-        .take(5)
-        .map(|(number, why)| {
-            format!(
-                "input {number}: {why}\n{}",
-                texts(*number).unwrap_or_default()
-            )
-        })
-        .collect();
-    assert!(
-        broken.is_empty(),
-        "{} inputs broke {name}\n{}",
-        broken.len(),
-        shown.join("\n")
-    );
-    if slowest.0 > LONGEST {
-        panic!(
-            "input {} takes {:?}\n{}",
-            slowest.1,
-            slowest.0,
-            texts(slowest.1).unwrap_or_default()
-        );
-    }
-    // Where the system does not tell, the bound cannot be checked.
-    if let Some(bytes) = peak_memory() {
-        assert!(bytes < LARGEST, "{bytes} bytes held");
-    }
 }
 
 fn parser(count: u64) {

@@ -4,6 +4,7 @@
 //! A new case is a new file. `UPDATE_EXPECT=1 cargo test` accepts the messages as they are.
 
 use hamel_scene::Scene;
+use hamel_tests::refusals::{self, files};
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,64 +18,16 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-fn files(folder: &Path, ending: &str) -> std::io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.extension().is_some_and(|found| found == ending) {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
-fn refusal(path: &Path) -> Result<String, Box<dyn Error>> {
-    let name = path
-        .file_name()
-        .ok_or("a file has a name")?
-        .to_string_lossy();
-    let text = fs::read_to_string(path)?;
-    match Scene::parse(&text, &name, &hamel_tests::paper_registry()) {
-        Ok(_) => Ok(String::from("accepted\n")),
-        Err(diagnostics) => Ok(diagnostics.to_string()),
-    }
+fn refusal(text: &str, name: &str) -> Option<String> {
+    let scene = Scene::parse(text, name, &hamel_tests::paper_registry());
+    scene.err().map(|diagnostics| diagnostics.to_string())
 }
 
 #[test]
 fn broken_scenes_are_refused_with_their_messages() -> Result<(), Box<dyn Error>> {
     let folder = root().join("tests/corpus/scenes-bad");
-    let update = std::env::var_os("UPDATE_EXPECT").is_some();
-    let scenes = files(&folder, "toml")?;
-    assert!(scenes.len() >= 25, "the corpus has {} files", scenes.len());
-    let mut differing = Vec::new();
-    for path in &scenes {
-        let message = refusal(path)?;
-        assert_ne!(message, "accepted\n", "{} is not refused", path.display());
-        let expected = path.with_extension("expected");
-        if update {
-            fs::write(&expected, &message)?;
-        } else if fs::read_to_string(&expected).ok().as_ref() != Some(&message) {
-            differing.push(format!("{}:\n{message}", path.display()));
-        }
-    }
-    assert!(
-        differing.is_empty(),
-        "other messages than expected:\n{}",
-        differing.join("\n")
-    );
-    Ok(())
-}
-
-#[test]
-fn every_expected_message_has_its_scene() -> Result<(), Box<dyn Error>> {
-    for expected in files(&root().join("tests/corpus/scenes-bad"), "expected")? {
-        assert!(
-            expected.with_extension("toml").exists(),
-            "{}",
-            expected.display()
-        );
-    }
+    let count = refusals::check(&folder, "toml", refusal)?;
+    assert!(count >= 100, "the corpus has {count} files");
     Ok(())
 }
 
@@ -97,23 +50,68 @@ fn every_scene_loads_at_home_on_its_manifolds() -> Result<(), Box<dyn Error>> {
 
 #[test]
 fn examples_of_the_description_load() -> Result<(), Box<dyn Error>> {
+    for example in examples()? {
+        Scene::parse(&example, "scenes/README.md", &hamel_joints::registry())
+            .map_err(|error| format!("in scenes/README.md:\n{error}"))?;
+    }
+    Ok(())
+}
+
+/// The examples of the description, each a whole scene.
+fn examples() -> Result<Vec<String>, Box<dyn Error>> {
     let text = fs::read_to_string(root().join("scenes/README.md"))?;
     let examples = text
         .split("```toml\n")
         .skip(1)
         .filter_map(|rest| rest.split("```").next());
-    let mut count = 0;
-    for example in examples {
-        let whole = match example.split_once('\n') {
-            Some(("[[body]]", _)) => format!("{HEADER}{example}"),
-            Some(("[simulation]", _)) => format!("{HEADER}{BODY}{example}"),
-            _ => example.to_owned(),
-        };
-        Scene::parse(&whole, "scenes/README.md", &hamel_joints::registry())
-            .map_err(|error| format!("in scenes/README.md:\n{error}"))?;
-        count += 1;
+    let examples: Vec<String> = examples.map(completed).collect();
+    assert!(
+        examples.len() >= 6,
+        "the description has {} examples",
+        examples.len()
+    );
+    Ok(examples)
+}
+
+/// A fragment of the description with what it needs to be a scene.
+fn completed(example: &str) -> String {
+    match example.split_once('\n') {
+        Some(("[[body]]", _)) => format!("{HEADER}{example}"),
+        Some(("[simulation]", _)) => format!("{HEADER}{BODY}{example}"),
+        _ => example.to_owned(),
     }
-    assert!(count >= 4, "the description has {count} examples");
+}
+
+/// What is written of a scene is written again of what is read from it: no key is lost on either way.
+#[test]
+fn scenes_come_through_their_own_text() -> Result<(), Box<dyn Error>> {
+    let mut texts = examples()?;
+    for path in files(&root().join("scenes"), "toml")? {
+        texts.push(fs::read_to_string(path)?);
+    }
+    for text in texts {
+        let description = Scene::from_toml(&text, "scene.toml")?;
+        let written = description.to_toml(&[], |_| Vec::new());
+        let again = Scene::from_toml(&written, "written.toml")?;
+        assert_eq!(again.to_toml(&[], |_| Vec::new()), written);
+        let keys = [
+            "spring",
+            "damping",
+            "armature",
+            "effort",
+            "motion",
+            "[[frame]]",
+            "[[wrench]]",
+            "[[constraint]]",
+        ];
+        for key in keys {
+            assert_eq!(
+                text.contains(&format!("\n{key}")),
+                written.contains(&format!("\n{key}")),
+                "{written}"
+            );
+        }
+    }
     Ok(())
 }
 

@@ -13,6 +13,8 @@ Examples:
       with fixed steps, trajectory to swing.csv
   hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
       the state at three times, as JSON on stdout
+  hamel simulate anymal.urdf --floating-base --t-end 0.5
+      a robot in URDF, from its home position at rest; `hamel import` makes a scene of it that can be edited
 
 The CSV file has one row a sample: `t_s`, `energy_J`, and for each body NAME
   NAME.x_m, .y_m, .z_m                       position of the centre of mass, world axes
@@ -28,9 +30,13 @@ Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a fil
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, group = ArgGroup::new("accuracy"))]
 pub struct Args {
-    /// Scene file (TOML; the format is described in scenes/README.md)
+    /// Scene file (TOML; the format is described in scenes/README.md), or a robot in URDF (`.urdf`)
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
+
+    /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
+    #[arg(long)]
+    pub floating_base: bool,
 
     /// Form of the equations of motion
     #[arg(long, value_enum)]
@@ -84,7 +90,7 @@ pub struct Args {
     #[arg(long)]
     pub json: bool,
 
-    /// Print nothing but errors
+    /// Print nothing but errors; also what is not simulated is not told
     #[arg(long, conflicts_with = "json")]
     pub quiet: bool,
 }

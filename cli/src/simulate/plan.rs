@@ -2,10 +2,10 @@
 
 use super::args::Args;
 use super::{settings, times};
-use crate::output::Failure;
+use crate::output::{Failure, tell};
 use hamel::integrate::Options;
 use hamel::registry::JointRegistry;
-use hamel_scene::{Scene, Settings};
+use hamel_scene::{Scene, Settings, urdf};
 use std::path::{Path, PathBuf};
 
 /// A run, decided in every respect.
@@ -27,7 +27,10 @@ impl Plan {
     /// # Errors
     /// Mistakes in the scene; options out of range.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
-        let scene = Scene::load(&args.scene, registry)?;
+        let scene = load(args, registry)?;
+        if !args.quiet {
+            tell(&scene.notices);
+        }
         let mut settings = settings::overridden(&scene.settings, args)?;
         let times = if args.at.is_empty() {
             times::regular(settings.t_end, settings.sample_step)?
@@ -54,6 +57,25 @@ impl Plan {
             samples: self.times.clone(),
         }
     }
+}
+
+/// The scene, or the robot in URDF, as the file's ending says.
+fn load(args: &Args, registry: &JointRegistry) -> Result<Scene, Failure> {
+    let ending = args.scene.extension().unwrap_or_default();
+    if ending.eq_ignore_ascii_case("urdf") {
+        let options = urdf::Options {
+            floating_base: args.floating_base,
+            ..urdf::Options::default()
+        };
+        return Ok(urdf::load(&args.scene, &options)?.build(registry)?);
+    }
+    if args.floating_base {
+        return Err(Failure::Options(format!(
+            "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
+            args.scene.display()
+        )));
+    }
+    Ok(Scene::load(&args.scene, registry)?)
 }
 
 /// The file asked for; else, unless JSON is wanted, the scene's file name with `.csv` in the current folder.

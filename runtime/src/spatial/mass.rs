@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Rounding that an inertia matrix may show, in units of its trace.
+/// Rounding that an inertia matrix may show, in units of the trace of the inertia about the frame's origin: an inertia about
+/// the centre of mass is often what is left of that one.
 const INERTIA_TOLERANCE: f64 = 16.0 * f64::EPSILON;
 
 /// The numbers of [`MassProperties`] in the order in which they are checked.
@@ -113,7 +114,8 @@ impl MassProperties {
         }
     }
 
-    /// Whether a rigid body can have these properties, to 16 ε of the trace of its inertia.
+    /// Whether a rigid body can have these properties, to 16 ε of the trace of its inertia about the
+    /// body frame's origin.
     ///
     /// # Errors
     /// NaN or infinity; a negative mass; an inertia that is not symmetric, not positive, or breaks the triangle
@@ -123,7 +125,9 @@ impl MassProperties {
         if self.mass < 0.0 {
             return Err(MassError::NegativeMass { mass: self.mass });
         }
-        let limit = INERTIA_TOLERANCE * self.inertia_com.trace().abs();
+        let about_origin =
+            self.inertia_com.trace().abs() + 2.0 * self.mass * self.com.norm_squared();
+        let limit = INERTIA_TOLERANCE * about_origin;
         self.check_symmetric(limit)?;
         self.check_principal_moments(limit)
     }

@@ -1,5 +1,8 @@
 //! What a scene file says, checked as far as that goes without knowing the joints.
 
+use crate::forces::{
+    ConstraintDescription, FrameDescription, JointForces, PointSpring, WrenchDescription,
+};
 use crate::settings::Settings;
 use crate::source::{Located, Span};
 use hamel::spatial::{MassProperties, Pose};
@@ -16,9 +19,35 @@ pub struct SceneDescription {
     pub gravity: Vector3<f64>,
     /// The bodies, each after its parent.
     pub bodies: Vec<BodyDescription>,
+    /// Named frames.
+    pub frames: Vec<FrameDescription>,
+    /// Springs between points.
+    pub springs: Vec<PointSpring>,
+    /// Constant wrenches on bodies.
+    pub wrenches: Vec<WrenchDescription>,
+    /// Forbidden velocities of points.
+    pub constraints: Vec<ConstraintDescription>,
     /// Simulation settings.
     pub settings: Settings,
     pub(crate) source: Source,
+}
+
+impl SceneDescription {
+    /// A scene without anything in it.
+    pub(crate) fn empty(source: Source) -> Self {
+        Self {
+            name: String::new(),
+            description: String::new(),
+            gravity: Vector3::zeros(),
+            bodies: Vec::new(),
+            frames: Vec::new(),
+            springs: Vec::new(),
+            wrenches: Vec::new(),
+            constraints: Vec::new(),
+            settings: Settings::default(),
+            source,
+        }
+    }
 }
 
 /// A source text and what messages call it.
@@ -47,6 +76,8 @@ pub struct BodyDescription {
     pub body_at: Pose<f64>,
     /// State at time 0.
     pub initial: InitialDescription,
+    /// What acts at the joint.
+    pub forces: JointForces,
 }
 
 /// A joint by name, with its parameters.

@@ -8,18 +8,27 @@
 mod build;
 mod description;
 mod diagnostics;
+mod forces;
+mod notice;
 mod parse;
 mod read;
 mod scene;
 mod settings;
 mod source;
 mod suggest;
+pub mod urdf;
+mod write;
 
 pub use description::{
     BodyDescription, InitialDescription, JointDescription, Motion, Position, SceneDescription,
     TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};
+pub use forces::{
+    BodyPoint, ConstraintDescription, FrameDescription, JointForces, JointSpring, PerFreedom,
+    PointSpring, SpeedOverTime, SpringEnergy, WrenchAxes, WrenchDescription,
+};
+pub use notice::Notice;
 pub use scene::Scene;
 pub use settings::Settings;
 pub use source::{Located, Span};

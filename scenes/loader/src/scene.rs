@@ -3,6 +3,8 @@
 use crate::build::{self, State};
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::forces::FrameDescription;
+use crate::notice::Notice;
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
 use crate::settings::Settings;
@@ -10,6 +12,26 @@ use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::path::Path;
 use std::sync::Arc;
+
+/// The text of a file, and what messages call it.
+///
+/// # Errors
+/// A file that cannot be read or is not UTF-8.
+pub(crate) fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
+    let name = path.display().to_string();
+    let refuse =
+        |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
+    let bytes =
+        std::fs::read(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        refuse(format!("cannot read {name}: its byte {valid} is not UTF-8"))
+    })?;
+    Ok((text, name))
+}
+
+/// What is said of a scene that cannot be read, should no error say more.
+const INCOMPLETE: &str = "the scene is not complete";
 
 /// A mechanism with its state at time 0 and its simulation settings.
 #[derive(Clone, Debug)]
@@ -24,8 +46,12 @@ pub struct Scene {
     pub configuration: Vec<f64>,
     /// Speeds v̄ of all joints at time 0, one joint after the other.
     pub speeds: Vec<f64>,
+    /// Named frames.
+    pub frames: Vec<FrameDescription>,
     /// Simulation settings.
     pub settings: Settings,
+    /// What the scene says and the simulation leaves out.
+    pub notices: Vec<Notice>,
 }
 
 impl Scene {
@@ -59,7 +85,7 @@ impl Scene {
             if let Some(draft) = &draft {
                 check_joints(draft, registry, &mut sink);
             }
-            return Err(Diagnostics::new(source_name, text, sink.into_errors()));
+            return Err(sink.refuse(source_name, text, INCOMPLETE));
         }
         let source = Source {
             name: source_name.to_owned(),
@@ -73,16 +99,7 @@ impl Scene {
     /// # Errors
     /// A file that cannot be read or is not UTF-8, and all mistakes of its text.
     pub fn load(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Self, Diagnostics> {
-        let path = path.as_ref();
-        let name = path.display().to_string();
-        let refuse =
-            |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
-        let bytes =
-            std::fs::read(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            refuse(format!("cannot read {name}: its byte {valid} is not UTF-8"))
-        })?;
+        let (text, name) = read_file(path.as_ref())?;
         Self::parse(&text, &name, registry)
     }
 }
@@ -98,7 +115,15 @@ impl SceneDescription {
         let states: Vec<Option<State>> = self
             .bodies
             .iter()
-            .map(|body| build::state(&body.joint, &body.initial, registry, &mut sink))
+            .map(|body| {
+                build::state(
+                    &body.joint,
+                    &body.initial,
+                    &body.forces,
+                    registry,
+                    &mut sink,
+                )
+            })
             .collect();
         let states: Option<Vec<State>> = states.into_iter().collect();
         let scene = states.and_then(|states| build::scene(self, states, &mut sink));
@@ -106,7 +131,7 @@ impl SceneDescription {
     }
 
     fn refuse(&self, sink: Sink) -> Diagnostics {
-        Diagnostics::new(&self.source.name, &self.source.text, sink.into_errors())
+        sink.refuse(&self.source.name, &self.source.text, INCOMPLETE)
     }
 }
 
@@ -115,7 +140,8 @@ fn check_joints(draft: &Draft, registry: &JointRegistry, sink: &mut Sink) {
     for body in &draft.bodies {
         if let Some(joint) = &body.joint {
             let initial = body.initial.clone().unwrap_or_default();
-            build::state(joint, &initial, registry, sink);
+            let forces = body.forces.clone().unwrap_or_default();
+            build::state(joint, &initial, &forces, registry, sink);
         }
     }
 }
@@ -123,7 +149,7 @@ fn check_joints(draft: &Draft, registry: &JointRegistry, sink: &mut Sink) {
 /// The description that a draft without errors makes.
 fn describe(
     draft: Option<Draft>,
-    mut sink: Sink,
+    sink: Sink,
     source: Source,
 ) -> Result<SceneDescription, Diagnostics> {
     let complete = draft.and_then(complete);
@@ -133,24 +159,19 @@ fn describe(
             description: draft.description,
             gravity: draft.gravity,
             bodies,
+            frames: draft.elements.frames,
+            springs: draft.elements.springs,
+            wrenches: draft.elements.wrenches,
+            constraints: draft.elements.constraints,
             settings: draft.settings,
-            source,
+            ..SceneDescription::empty(source)
         }),
-        _ => {
-            if sink.len() == 0 {
-                sink.push(Diagnostic::without_place("the scene is not complete"));
-            }
-            Err(Diagnostics::new(
-                &source.name,
-                &source.text,
-                sink.into_errors(),
-            ))
-        }
+        _ => Err(sink.refuse(&source.name, &source.text, INCOMPLETE)),
     }
 }
 
 /// Name of a file without folder and ending.
-fn stem(source_name: &str) -> String {
+pub(crate) fn stem(source_name: &str) -> String {
     let stem = Path::new(source_name).file_stem();
     stem.map_or_else(
         || source_name.to_owned(),
@@ -172,6 +193,7 @@ fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
             at: body.at,
             body_at: body.body_at,
             initial: body.initial?,
+            forces: body.forces?,
         })
     });
     let bodies: Option<Vec<_>> = bodies.collect();

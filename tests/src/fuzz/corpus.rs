@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 pub struct Corpus {
     /// Whole specs.
     pub texts: Vec<String>,
-    /// Statements, with their semicolons.
+    /// What ends a statement.
+    pub separator: char,
+    /// Statements, with their ends.
     pub statements: Vec<String>,
     /// Bracketed parts of expressions.
     pub groups: Vec<String>,
@@ -35,14 +37,14 @@ impl Corpus {
             .collect();
         texts.extend(examples(&here.join("../joint-specs/README.md")));
         texts.extend((0..16).map(crate::specs::random));
-        Self::of(texts)
+        Self::of(texts, ';')
     }
 
-    /// The corpus of these texts.
-    pub fn of(texts: Vec<String>) -> Self {
+    /// The corpus of these texts, whose statements end with `separator`.
+    pub fn of(texts: Vec<String>, separator: char) -> Self {
         let statements = texts
             .iter()
-            .flat_map(|text| text.split_inclusive(';'))
+            .flat_map(|text| text.split_inclusive(separator))
             .map(str::to_owned);
         let words = texts.iter().flat_map(|text| words(text)).map(str::to_owned);
         let groups = texts
@@ -50,6 +52,7 @@ impl Corpus {
             .flat_map(|text| groups(text))
             .map(str::to_owned);
         Self {
+            separator,
             statements: distinct(statements),
             groups: distinct(groups),
             words: distinct(words),

@@ -102,7 +102,7 @@ impl Mutator {
 
     /// One statement deleted, doubled, swapped or replaced by one of another spec.
     fn statement(&self, text: &str, random: &mut ChaCha8Rng) -> String {
-        let mut statements: Vec<&str> = text.split_inclusive(';').collect();
+        let mut statements: Vec<&str> = text.split_inclusive(self.corpus.separator).collect();
         if statements.is_empty() {
             return text.to_owned();
         }

@@ -58,7 +58,8 @@ fn refused(text: &str, errors: &Diagnostics) -> Outcome {
     }
 }
 
-fn guarded(work: impl FnOnce() -> Outcome) -> Outcome {
+/// The outcome of `work`; a panic breaks the input.
+pub(super) fn guarded(work: impl FnOnce() -> Outcome) -> Outcome {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());

@@ -1,5 +1,6 @@
 //! From what a scene file says to a mechanism and its state at time 0.
 
+mod forces;
 mod joint;
 mod state;
 
@@ -18,6 +19,7 @@ pub(crate) fn scene(
     states: Vec<State>,
     sink: &mut Sink,
 ) -> Option<Scene> {
+    let notices = forces::left_out(description, &states);
     let mut configuration = Vec::new();
     let mut speeds = Vec::new();
     let mut bodies = Vec::with_capacity(states.len());
@@ -46,6 +48,8 @@ pub(crate) fn scene(
         mechanism: Arc::new(mechanism),
         configuration,
         speeds,
+        frames: description.frames.clone(),
         settings: description.settings,
+        notices,
     })
 }

@@ -1,10 +1,12 @@
 //! The state of one joint at time 0, solved from whatever the file gives.
 
+use super::forces::{self, Acting};
 use super::joint;
 use crate::description::{
     InitialDescription, JointDescription, Motion, Position, TwistDescription, TwistFrame,
 };
 use crate::diagnostics::Diagnostic;
+use crate::forces::JointForces;
 use crate::read::Sink;
 use crate::source::{Located, Span};
 use hamel::erased::AnyJoint;
@@ -20,12 +22,14 @@ pub(crate) struct State {
     pub(crate) joint: Arc<dyn AnyJoint>,
     pub(crate) configuration: Vec<f64>,
     pub(crate) speeds: Vec<f64>,
+    pub(crate) acting: Acting,
 }
 
 /// Builds the joint and solves for its state.
 pub(crate) fn state(
     description: &JointDescription,
     initial: &InitialDescription,
+    forces: &JointForces,
     registry: &JointRegistry,
     sink: &mut Sink,
 ) -> Option<State> {
@@ -39,20 +43,23 @@ pub(crate) fn state(
             let speeds = stand.speeds(&configuration, &initial.motion)?;
             Ok((configuration, speeds))
         });
-    let (configuration, speeds) = solved.map_err(|error| sink.push(error)).ok()?;
+    let solved = solved.map_err(|error| sink.push(error)).ok();
+    let acting = forces::acting(&stand, initial, forces, sink);
+    let (configuration, speeds) = solved?;
     Some(State {
         joint,
         configuration,
         speeds,
+        acting: acting?,
     })
 }
 
 /// The joint alone, between the world and a body without mass: its state is solved there, so that the errors of one joint do
 /// not hide those of another.
-struct Stand {
-    name: String,
+pub(super) struct Stand {
+    pub(super) name: String,
     mechanism: Mechanism,
-    joint: Arc<dyn AnyJoint>,
+    pub(super) joint: Arc<dyn AnyJoint>,
 }
 
 impl Stand {
@@ -78,7 +85,19 @@ impl Stand {
         })
     }
 
-    fn configuration(&self, position: &Position) -> Result<Vec<f64>, Diagnostic> {
+    /// Whether the child can turn at home.
+    pub(super) fn turns(&self) -> bool {
+        let mut twists = vec![0.0; 6 * self.joint.layout().freedoms];
+        let home = self.mechanism.home();
+        self.joint.twist_map_child(&home, &mut twists);
+        // Columns of an angular and a linear part.
+        twists
+            .chunks(6)
+            .any(|twist| twist[..3].iter().any(|&rate| rate != 0.0))
+    }
+
+    /// The configuration that `position` means.
+    pub(super) fn configuration(&self, position: &Position) -> Result<Vec<f64>, Diagnostic> {
         match position {
             Position::Home => Ok(self.mechanism.home()),
             Position::Configuration(q) => self.projected(q),
@@ -151,7 +170,18 @@ impl Stand {
         values: &Located<Vec<f64>>,
         entries: &[&str],
     ) -> Result<(), Diagnostic> {
-        let (found, expected) = (values.value.len(), entries.len());
+        self.check_count(key, values.value.len(), &values.span, entries)
+    }
+
+    /// Whether as many numbers are given under `key` as the joint has `entries`.
+    pub(super) fn check_count(
+        &self,
+        key: &str,
+        found: usize,
+        span: &Span,
+        entries: &[&str],
+    ) -> Result<(), Diagnostic> {
+        let expected = entries.len();
         if found == expected {
             return Ok(());
         }
@@ -162,7 +192,7 @@ impl Stand {
         let kind = self.joint.name();
         let entries = entries.join(", ");
         let help = format!("`{key}` of a joint of type `{kind}` is [{entries}]");
-        Err(Diagnostic::new(values.span.clone(), message).help(help))
+        Err(Diagnostic::new(span.clone(), message).help(help))
     }
 }
 

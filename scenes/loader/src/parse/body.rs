@@ -1,13 +1,13 @@
 //! One `[[body]]`.
 
-use super::{BodyDraft, initial, joint, mass, placement};
+use super::{BodyDraft, forces, initial, joint, mass, placement};
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink};
 use crate::source::Located;
 use hamel::spatial::Pose;
 
 /// Name by which a body's `parent` means the inertial frame.
-pub(super) const WORLD: &str = "world";
+pub(crate) const WORLD: &str = "world";
 
 /// Reads a body.
 pub(super) fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {
@@ -24,6 +24,7 @@ pub(super) fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {
         at: pose(&mut fields, "at", sink),
         body_at: pose(&mut fields, "body_at", sink),
         initial: initial::initial(&mut fields, sink),
+        forces: forces::forces(&mut fields, sink),
         name,
     };
     fields.finish(sink);

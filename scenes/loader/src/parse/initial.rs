@@ -21,7 +21,8 @@ pub(super) fn initial(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Initia
     })
 }
 
-fn position(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Position> {
+/// Where a joint stands; home where nothing is given.
+pub(super) fn position(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Position> {
     match fields.at_most_one(&["configuration", "phi", "pose"], sink) {
         None => Some(Position::Home),
         Some((0, value)) => Some(Position::Configuration(value.numbers(sink)?)),

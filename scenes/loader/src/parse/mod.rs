@@ -1,20 +1,27 @@
 //! From the text of a scene file to its parts. Errors are noted and reading goes on, so that one run finds them all.
 
 mod body;
+mod elements;
+mod forces;
 mod initial;
 mod joint;
 mod mass;
 mod placement;
-mod rotation;
+pub(crate) mod rotation;
 mod simulation;
 mod syntax;
 mod tree;
 
+pub(crate) use body::WORLD;
+pub(crate) use tree::{cycles, order};
+
 use crate::description::{InitialDescription, JointDescription};
 use crate::diagnostics::Diagnostic;
+use crate::forces::JointForces;
 use crate::read::{Fields, Sink};
 use crate::settings::Settings;
 use crate::source::Located;
+use elements::Elements;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::Vector3;
 use toml::de::DeTable;
@@ -31,6 +38,7 @@ pub(crate) struct Draft {
     pub(crate) bodies: Vec<BodyDraft>,
     /// Order in which every body follows its parent, and the parents; `None` if there is no such order.
     pub(crate) tree: Option<Tree>,
+    pub(crate) elements: Elements,
     pub(crate) settings: Settings,
 }
 
@@ -44,6 +52,7 @@ pub(crate) struct BodyDraft {
     pub(crate) at: Pose<f64>,
     pub(crate) body_at: Pose<f64>,
     pub(crate) initial: Option<InitialDescription>,
+    pub(crate) forces: Option<JointForces>,
 }
 
 /// The bodies as a tree.
@@ -72,13 +81,16 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
     let description = fields.optional("description");
     let gravity = gravity(fields, sink);
     let bodies = bodies(fields, sink);
+    let tree = tree::tree(&bodies, sink);
+    let elements = elements::elements(fields, &bodies, tree.as_ref(), sink);
     Draft {
         name: name.map(|name| name.value),
         description: description
             .and_then(|text| text.prose(sink))
             .map_or_else(String::new, |text| text.value),
         gravity: gravity.unwrap_or_else(Vector3::zeros),
-        tree: tree::tree(&bodies, sink),
+        tree,
+        elements,
         bodies,
         settings: simulation::settings(fields, sink),
     }

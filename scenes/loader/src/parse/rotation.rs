@@ -13,7 +13,7 @@ const QUATERNION_TOLERANCE: f64 = 1e-9;
 const LARGEST_ANGLE: f64 = 1e6;
 
 /// exp(r~) of a rotation vector `r`, rad.
-pub(super) fn from_rotation_vector(
+pub(crate) fn from_rotation_vector(
     path: &str,
     r: Located<Vector3<f64>>,
     sink: &mut Sink,
@@ -23,7 +23,7 @@ pub(super) fn from_rotation_vector(
 }
 
 /// The rotation of a unit quaternion `(w, x, y, z)`.
-pub(super) fn from_quaternion(
+pub(crate) fn from_quaternion(
     path: &str,
     quaternion: Located<Vector4<f64>>,
     sink: &mut Sink,
@@ -39,8 +39,23 @@ pub(super) fn from_quaternion(
     Some(unit_quaternion(&quaternion.value))
 }
 
+/// The rotation of a quaternion `(w, x, y, z)` of any length but 0.
+pub(crate) fn from_any_quaternion(
+    path: &str,
+    quaternion: Located<Vector4<f64>>,
+    sink: &mut Sink,
+) -> Option<Matrix3<f64>> {
+    let scale = quaternion.value.amax();
+    if scale == 0.0 {
+        let message = format!("{path} is zero; a quaternion must have a length");
+        sink.push(Diagnostic::new(quaternion.span, message));
+        return None;
+    }
+    Some(unit_quaternion(&(quaternion.value / scale)))
+}
+
 /// Rotations about the fixed x, y and z axes in turn, rad: `Rz(yaw) Ry(pitch) Rx(roll)`.
-pub(super) fn from_roll_pitch_yaw(
+pub(crate) fn from_roll_pitch_yaw(
     path: &str,
     rpy: Located<Vector3<f64>>,
     sink: &mut Sink,
@@ -63,7 +78,7 @@ fn check_angles(path: &str, angles: &Located<Vector3<f64>>, sink: &mut Sink) -> 
 }
 
 /// A rotation matrix given by rows, freed of its rounding.
-pub(super) fn from_matrix(
+pub(crate) fn from_matrix(
     path: &str,
     rotation: Located<Matrix3<f64>>,
     sink: &mut Sink,
@@ -78,19 +93,28 @@ pub(super) fn from_matrix(
     Some(r * (Matrix3::identity() * 3.0 - gram) * 0.5)
 }
 
+/// The vector of length 1 in the direction of `vector`.
+pub(super) fn unit(
+    path: &str,
+    vector: Located<Vector3<f64>>,
+    sink: &mut Sink,
+) -> Option<Vector3<f64>> {
+    let scale = vector.value.amax();
+    if scale == 0.0 {
+        let message = format!("{path} is zero; an axis must have a direction");
+        sink.push(Diagnostic::new(vector.span, message));
+        return None;
+    }
+    Some((vector.value / scale).normalize())
+}
+
 /// The shortest rotation that turns the z axis onto `axis`; about the x axis where `axis` is −z.
-pub(super) fn from_axis(
+pub(crate) fn from_axis(
     path: &str,
     axis: Located<Vector3<f64>>,
     sink: &mut Sink,
 ) -> Option<Matrix3<f64>> {
-    let scale = axis.value.amax();
-    if scale == 0.0 {
-        let message = format!("{path} is zero; an axis must have a direction");
-        sink.push(Diagnostic::new(axis.span, message));
-        return None;
-    }
-    let a = (axis.value / scale).normalize();
+    let a = unit(path, axis, sink)?;
     let across = a.x.hypot(a.y);
     // The quaternion is along (1 + z, −y, x, 0); below the horizontal 1 + z cancels, but equals across² / (1 − z).
     let quaternion = if a.z >= 0.0 {

@@ -1,7 +1,7 @@
 //! The `[simulation]` table.
 
 use crate::diagnostics::Diagnostic;
-use crate::read::{Fields, Sink, Value};
+use crate::read::{Fields, Sink};
 use crate::settings::{FORM_NAMES, METHOD_NAMES, Settings, form_named};
 use hamel::integrate::Method;
 
@@ -66,41 +66,19 @@ fn unused(
 }
 
 fn positive(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
-    limited(
-        &table.optional(key)?,
-        |number| number > 0.0,
-        "above 0",
-        sink,
-    )
+    let value = table.optional(key)?;
+    let number = value.number_within(|number| number > 0.0, "above 0", sink)?;
+    Some(number.value)
 }
 
 fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
     let (least, largest) = (Settings::LEAST_TOL, Settings::LARGEST_TOL);
     let limit = format!("between {least:?} and {largest:?}");
     let holds = |number| (least..=largest).contains(&number);
-    limited(&table.optional("tol")?, holds, &limit, sink)
+    let number = table.optional("tol")?.number_within(holds, &limit, sink)?;
+    Some(number.value)
 }
 
 fn not_negative(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
-    let value = table.optional(key)?;
-    limited(&value, |number| number >= 0.0, "at least 0", sink)
-}
-
-fn limited(
-    value: &Value<'_>,
-    holds: impl Fn(f64) -> bool,
-    limit: &str,
-    sink: &mut Sink,
-) -> Option<f64> {
-    let number = value.number(sink)?;
-    if holds(number.value) {
-        return Some(number.value);
-    }
-    let message = format!(
-        "{} is {:?}, but must be {limit}",
-        value.path(),
-        number.value
-    );
-    sink.push(Diagnostic::new(number.span, message));
-    None
+    Some(table.optional(key)?.not_negative(sink)?.value)
 }

@@ -111,7 +111,7 @@ fn parent(
 }
 
 /// Every body whose ancestors lead to the world, parents first; among those that could come next, the first in the file.
-fn order(parents: &[Option<usize>]) -> Vec<usize> {
+pub(crate) fn order(parents: &[Option<usize>]) -> Vec<usize> {
     let mut children = vec![Vec::new(); parents.len()];
     let mut ready = BinaryHeap::new();
     for (place, parent) in parents.iter().enumerate() {
@@ -129,7 +129,7 @@ fn order(parents: &[Option<usize>]) -> Vec<usize> {
 }
 
 /// The cycles among the bodies that `order` could not reach, each once, from its first body in the file.
-fn cycles(parents: &[Option<usize>], order: &[usize]) -> Vec<Vec<usize>> {
+pub(crate) fn cycles(parents: &[Option<usize>], order: &[usize]) -> Vec<Vec<usize>> {
     let mut seen = vec![false; parents.len()];
     for &place in order {
         seen[place] = true;

@@ -6,7 +6,7 @@ mod value;
 pub(crate) use fields::Fields;
 pub(crate) use value::Value;
 
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::{Diagnostic, Diagnostics};
 
 /// Collects the errors of one source text.
 #[derive(Debug, Default)]
@@ -25,8 +25,16 @@ impl Sink {
         self.errors.len()
     }
 
-    /// The errors noted.
-    pub(crate) fn into_errors(self) -> Vec<Diagnostic> {
-        self.errors
+    /// The errors noted, about the text `source`; `otherwise` is said where there are none.
+    pub(crate) fn refuse(
+        mut self,
+        source_name: &str,
+        source: &str,
+        otherwise: &str,
+    ) -> Diagnostics {
+        if self.errors.is_empty() {
+            self.push(Diagnostic::without_place(otherwise));
+        }
+        Diagnostics::new(source_name, source, self.errors)
     }
 }

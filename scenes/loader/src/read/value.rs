@@ -4,7 +4,7 @@ use super::{Fields, Sink};
 use crate::diagnostics::Diagnostic;
 use crate::source::{Located, Span};
 use crate::suggest::{nearest, one_of};
-use nalgebra::{Matrix3, SVector};
+use nalgebra::{DMatrix, Matrix3, SVector};
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
@@ -138,6 +138,61 @@ impl<'a> Value<'a> {
         Some(numbers.map(SVector::from_iterator))
     }
 
+    /// Whether this is a list whose first item is a list.
+    pub(crate) fn has_rows(&self) -> bool {
+        let DeValue::Array(items) = self.value.get_ref() else {
+            return false;
+        };
+        let first = items.iter().next();
+        first.is_some_and(|item| matches!(item.get_ref(), DeValue::Array(_)))
+    }
+
+    /// Whether this is a list.
+    pub(crate) fn is_list(&self) -> bool {
+        matches!(self.value.get_ref(), DeValue::Array(_))
+    }
+
+    /// Whether this is a table.
+    pub(crate) fn is_table(&self) -> bool {
+        matches!(self.value.get_ref(), DeValue::Table(_))
+    }
+
+    /// As many rows as columns of finite numbers, at least one.
+    pub(crate) fn square_matrix(&self, sink: &mut Sink) -> Option<Located<DMatrix<f64>>> {
+        let items = self.items("row", "rows of numbers", sink)?;
+        let size = items.len();
+        let rows: Vec<_> = items.iter().map(|row| row.numbers(sink)).collect();
+        let mut matrix = DMatrix::zeros(size, size);
+        for (index, (row, item)) in rows.into_iter().zip(&items).enumerate() {
+            let row = row?.value;
+            item.check_length(row.len(), size, sink)?;
+            matrix.row_mut(index).copy_from_slice(&row);
+        }
+        Some(Located::new(matrix, self.span()))
+    }
+
+    /// A finite number within a limit, which the message tells.
+    pub(crate) fn number_within(
+        &self,
+        holds: impl Fn(f64) -> bool,
+        limit: &str,
+        sink: &mut Sink,
+    ) -> Option<Located<f64>> {
+        let number = self.number(sink)?;
+        if holds(number.value) {
+            return Some(number);
+        }
+        let (path, value) = (self.path(), number.value);
+        let message = format!("{path} is {value:?}, but must be {limit}");
+        sink.push(Diagnostic::new(number.span, message));
+        None
+    }
+
+    /// A finite number of at least 0.
+    pub(crate) fn not_negative(&self, sink: &mut Sink) -> Option<Located<f64>> {
+        self.number_within(|number| number >= 0.0, "at least 0", sink)
+    }
+
     /// Three rows of three finite numbers.
     pub(crate) fn matrix3(&self, sink: &mut Sink) -> Option<Located<Matrix3<f64>>> {
         let items = self.items("row", "three rows of three numbers", sink)?;
@@ -183,7 +238,12 @@ impl<'a> Value<'a> {
     }
 
     /// The items of a list, which messages call `item` 1, 2, …
-    fn items(&self, item: &str, expected: &str, sink: &mut Sink) -> Option<Vec<Value<'a>>> {
+    pub(crate) fn items(
+        &self,
+        item: &str,
+        expected: &str,
+        sink: &mut Sink,
+    ) -> Option<Vec<Value<'a>>> {
         let DeValue::Array(items) = self.value.get_ref() else {
             return self.wrong_type(expected, sink);
         };

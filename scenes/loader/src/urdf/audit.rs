@@ -1,0 +1,292 @@
+//! Compares a document with the schema: all errors at once, notices of what is not read, and the rest written out for the
+//! parser, which would stop at the first error and drop what it does not know.
+
+use super::document::tag;
+use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need};
+use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
+use crate::read::Sink;
+use crate::suggest::{nearest, one_of};
+use roxmltree::Node;
+
+/// Reads a document element by element.
+pub(super) struct Audit<'s> {
+    /// Errors.
+    pub(super) sink: &'s mut Sink,
+    /// What is not read.
+    pub(super) notices: &'s mut Notices,
+    /// Major and minor version of URDF.
+    pub(super) version: (u32, u32),
+    /// What is read, as XML.
+    pub(super) distilled: String,
+}
+
+impl Audit<'_> {
+    /// Reads `node`, which has the name of `schema`. Messages begin with `owner`.
+    pub(super) fn element(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
+        let owner = owner_of(node, owner);
+        self.distilled.push_str(&format!("<{}", schema.name));
+        for attribute in schema.attributes {
+            self.attribute(node, attribute, &owner);
+        }
+        self.unknown_attributes(node, schema, &owner);
+        if schema.name == "limit" && self.version >= (1, 2) {
+            self.limits(node, &owner);
+        }
+        self.distilled.push('>');
+        self.text(node, &owner);
+        for child in node.children().filter(Node::is_element) {
+            self.child(child, node, schema, &owner);
+        }
+        self.missing_children(node, schema, &owner);
+        self.distilled.push_str(&format!("</{}>", schema.name));
+    }
+
+    fn child(&mut self, node: Node<'_, '_>, parent: Node<'_, '_>, schema: &Element, owner: &str) {
+        let name = node.tag_name().name();
+        let known = schema
+            .children
+            .iter()
+            .find(|child| child.element.name == name && node.tag_name().namespace().is_none());
+        let Some(child) = known else {
+            return self.not_read(node, schema, owner);
+        };
+        let first = parent.children().find(|other| other.has_tag_name(name));
+        match first.filter(|first| *first != node && !child.several) {
+            Some(first) => self.second(node, first, owner),
+            None => self.element(node, child.element, owner),
+        }
+    }
+
+    fn second(&mut self, node: Node<'_, '_>, first: Node<'_, '_>, owner: &str) {
+        let message = format!("{owner}there are two <{}>", node.tag_name().name());
+        let error = Diagnostic::new(tag(node), message).label("the second one");
+        self.sink.push(error.context(tag(first), "the first one"));
+    }
+
+    fn missing_children(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
+        let is_there = |child: &Child| {
+            let mut children = node.children();
+            children.any(|found| found.has_tag_name(child.element.name))
+        };
+        for child in schema.children {
+            if child.need == Need::Required && !is_there(child) {
+                let (name, inside) = (child.element.name, schema.name);
+                let message = format!("{owner}<{inside}> has no <{name}>");
+                self.sink.push(Diagnostic::new(tag(node), message));
+            }
+        }
+    }
+
+    /// An element that the schema does not have here.
+    fn not_read(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
+        let name = node.tag_name().name();
+        let namespace = node.tag_name().namespace().unwrap_or_default();
+        if namespace.contains("xacro") {
+            let message = format!("<xacro:{name}>: the file is a xacro template, not a URDF");
+            let error = Diagnostic::new(tag(node), message);
+            self.sink
+                .push(error.help("expand it first: `xacro robot.urdf.xacro > robot.urdf`"));
+            return;
+        }
+        let element = match owner {
+            "" => named(node),
+            owner => owner.trim_end_matches(": ").to_owned(),
+        };
+        if let Some((_, message)) = NOT_READ.iter().find(|(known, _)| *known == name) {
+            return self.notices.add(*message, element);
+        }
+        let known = schema.children.iter().map(|child| child.element.name);
+        let hint = match nearest(name, known) {
+            Some(near) => format!(" (did you mean <{near}>?)"),
+            None => String::new(),
+        };
+        let message = format!(
+            "elements <{}> in <{}> are not read{hint}",
+            safe(name),
+            schema.name
+        );
+        self.notices.add(message, element);
+    }
+
+    fn unknown_attributes(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
+        for attribute in node.attributes() {
+            let known = schema.attributes.iter().map(|known| known.name);
+            if known.clone().any(|name| name == attribute.name()) {
+                continue;
+            }
+            let hint = match nearest(attribute.name(), known) {
+                Some(near) => format!(" (did you mean `{near}`?)"),
+                None => String::new(),
+            };
+            let name = safe(attribute.name());
+            let message = format!(
+                "attributes `{name}` of <{}> are not read{hint}",
+                schema.name
+            );
+            let element = owner.trim_end_matches(": ");
+            let element = if element.is_empty() {
+                "<robot>"
+            } else {
+                element
+            };
+            self.notices.add(message, element);
+        }
+    }
+
+    fn attribute(&mut self, node: Node<'_, '_>, attribute: &Attribute, owner: &str) {
+        let (name, element) = (attribute.name, node.tag_name().name());
+        let Some(found) = node.attribute_node(name) else {
+            let needed = match attribute.need {
+                Need::Optional => false,
+                Need::Required => true,
+                Need::Before12 => self.version < (1, 2),
+            };
+            if needed {
+                let message = format!("{owner}<{element}> has no attribute `{name}`");
+                self.sink.push(Diagnostic::new(tag(node), message));
+            }
+            return;
+        };
+        let value = found.value();
+        match refusal(value, attribute.kind) {
+            Some((why, hint)) => {
+                let path = format!("{owner}`{name}` of <{element}>");
+                let message = format!("{path} is {}, {why}", quoted(value));
+                let error = Diagnostic::new(found.range_value(), message);
+                self.sink.push(match hint {
+                    Some(hint) => error.label(hint),
+                    None => error,
+                });
+            }
+            // The parser turns quaternions into angles, with rounding or worse; they are read from the tree.
+            None if name == "quat_xyzw" => {}
+            None => {
+                let text = format!(" {name}=\"{}\"", escaped(value));
+                self.distilled.push_str(&text);
+            }
+        }
+    }
+
+    /// Since version 1.2 limits must make sense; before, URDF does not say so.
+    fn limits(&mut self, node: Node<'_, '_>, owner: &str) {
+        let number = |name: &str| node.attribute(name)?.trim().parse::<f64>().ok();
+        let place = |name: &str| {
+            node.attribute_node(name)
+                .map_or(tag(node), |a| a.range_value())
+        };
+        if let (Some(lower), Some(upper)) = (number("lower"), number("upper"))
+            && lower > upper
+        {
+            let message = format!("{owner}`lower` is {lower:?}, above `upper`, which is {upper:?}");
+            self.sink.push(Diagnostic::new(place("lower"), message));
+        }
+        for name in ["effort", "velocity", "acceleration", "deceleration", "jerk"] {
+            if let Some(value) = number(name).filter(|value| *value < 0.0) {
+                let message = format!("{owner}`{name}` is {value:?}, but must be at least 0");
+                self.sink.push(Diagnostic::new(place(name), message));
+            }
+        }
+    }
+
+    fn text(&mut self, node: Node<'_, '_>, owner: &str) {
+        let mut texts = node.children().filter(|child| child.is_text());
+        let stray = texts.find(|text| text.text().is_some_and(|text| !text.trim().is_empty()));
+        if let Some(stray) = stray {
+            let text = stray.text().unwrap_or_default();
+            let start = stray.range().start + (text.len() - text.trim_start().len());
+            let end = (start + text.trim().len()).min(stray.range().end);
+            let name = node.tag_name().name();
+            let message = format!("{owner}<{name}> holds the text {}", quoted(text.trim()));
+            let error = Diagnostic::new(start..end.max(start), message);
+            self.sink
+                .push(error.help("a URDF has elements and attributes only"));
+        }
+    }
+}
+
+/// Links and joints begin the messages about what is in them.
+fn owner_of(node: Node<'_, '_>, owner: &str) -> String {
+    match node.tag_name().name() {
+        "link" | "joint" if owner.is_empty() => format!("{}: ", named(node)),
+        _ => owner.to_owned(),
+    }
+}
+
+/// What messages call an element of the robot: by its name, or by what it refers to.
+fn named(node: Node<'_, '_>) -> String {
+    let kind = safe(node.tag_name().name());
+    let name = node.attribute("name").or(node.attribute("reference"));
+    match name {
+        Some(name) => format!("{kind} `{}`", safe(name)),
+        None => {
+            let before = node.prev_siblings().skip(1);
+            let place = before
+                .filter(|other| other.tag_name() == node.tag_name())
+                .count();
+            format!("{kind} {}", place + 1)
+        }
+    }
+}
+
+/// Why the text of an attribute is refused, and a hint.
+fn refusal(text: &str, kind: Kind) -> Option<(String, Option<String>)> {
+    let plain = |why: &str| Some((why.to_owned(), None));
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    match kind {
+        Kind::Name if text.is_empty() => plain("but must be a name"),
+        Kind::Name if text.contains(char::is_control) => plain("with a control character"),
+        Kind::Name => None,
+        Kind::Number => match number(text) {
+            Some(number) if number.is_finite() => None,
+            _ => plain("not a finite number"),
+        },
+        Kind::Bound => match number(text) {
+            Some(number) if !number.is_nan() => None,
+            _ => plain("not a number"),
+        },
+        Kind::Vector(size) => {
+            let numbers: Option<Vec<f64>> = text.split_whitespace().map(number).collect();
+            let sound = numbers.is_some_and(|numbers| {
+                numbers.len() == size && numbers.iter().all(|number| number.is_finite())
+            });
+            (!sound).then(|| (format!("not {size} finite numbers"), None))
+        }
+        Kind::Choice(words) if words.contains(&text) => None,
+        Kind::Choice(words) => {
+            let near = nearest(text, words.iter().copied());
+            let why = format!("but must be {}", one_of(words.iter().copied()));
+            Some((why, near.map(|near| format!("did you mean `{near}`?"))))
+        }
+    }
+}
+
+/// A text as messages show it: in one line, without control characters, not too long.
+fn quoted(text: &str) -> String {
+    const LONGEST: usize = 60;
+    match text.chars().count() {
+        0..=LONGEST => format!("{text:?}"),
+        _ => format!("{:?}…", text.chars().take(LONGEST).collect::<String>()),
+    }
+}
+
+/// A name as messages show it: control characters would do harm on a terminal.
+pub(super) fn safe(name: &str) -> String {
+    let shown = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+    name.chars().map(shown).collect()
+}
+
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&apos;"),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,65 @@
+//! The XML under a URDF: a tree that knows the place of everything, or its syntax error.
+
+use crate::diagnostics::Diagnostic;
+use crate::read::Sink;
+use crate::source::Span;
+use roxmltree::{Document, Error, Node};
+
+/// Reads the tree. Of several syntax errors XML tells the first.
+pub(super) fn parse<'a>(text: &'a str, sink: &mut Sink) -> Option<Document<'a>> {
+    Document::parse(text)
+        .map_err(|error| sink.push(refusal(text, &error)))
+        .ok()
+}
+
+fn refusal(text: &str, error: &Error) -> Diagnostic {
+    let position = error.pos();
+    let message = error.to_string().replace(&format!(" at {position}"), "");
+    let span = match error {
+        Error::UnclosedRootNode | Error::UnexpectedEndOfStream => text.len()..text.len(),
+        Error::DtdDetected => text.find("<!DOCTYPE").map_or(0..0, |at| at..at + 9),
+        _ => byte_at(text, position.row, position.col),
+    };
+    let refusal = Diagnostic::new(span, format!("not valid XML: {message}"));
+    match error {
+        Error::UnknownNamespace(..) => {
+            refusal.help("a prefix is declared by an attribute `xmlns:prefix` of <robot>")
+        }
+        Error::DtdDetected => refusal.help("a URDF has no document type"),
+        _ => refusal,
+    }
+}
+
+/// The character in that row and column, both from 1.
+fn byte_at(text: &str, row: u32, column: u32) -> Span {
+    let lines = text.split_inclusive('\n').take(row.max(1) as usize - 1);
+    let line_start: usize = lines.map(str::len).sum();
+    let mut characters = text[line_start..].char_indices();
+    let start = characters
+        .nth(column.max(1) as usize - 1)
+        .map_or(text.len(), |(at, _)| line_start + at);
+    let length = text[start..].chars().next().map_or(0, char::len_utf8);
+    start..start + length
+}
+
+/// Where the tag of an element begins: what messages underline.
+pub(super) fn tag(node: Node<'_, '_>) -> Span {
+    let start = node.range().start;
+    start..start + 1 + node.tag_name().name().len()
+}
+
+/// The child element of that name.
+pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+    node.children().find(|child| child.has_tag_name(name))
+}
+
+/// Where the value of an attribute of the child element stands; failing that the child's tag, failing that the node's.
+pub(super) fn place(node: Node<'_, '_>, name: &str, attribute: &str) -> Span {
+    let child = child(node, name);
+    let value = child.and_then(|child| child.attribute_node(attribute));
+    match (value, child) {
+        (Some(value), _) => value.range_value(),
+        (None, Some(child)) => tag(child),
+        (None, None) => tag(node),
+    }
+}

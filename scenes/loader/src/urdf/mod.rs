@@ -1,0 +1,188 @@
+//! Robots in URDF, the XML format of ROS: read to the same description as a scene file.
+//!
+//! | URDF | here |
+//! |---|---|
+//! | `revolute`, `continuous`, `prismatic` | `revolute`, `revolute_circle`, `prismatic`; the axis is turned onto z by `at`, and back by `body_at`, so that body frames are link frames |
+//! | `fixed` | the child link becomes a part of its parent's body: masses and inertias add up, its frame stays as a named frame |
+//! | `floating`, `spherical` | `free`, `ball_child`: velocities in child axes |
+//! | `planar` | `planar`: turns about the axis and slides across it, velocities in child axes; x and y of the plane are those of the joint's frame where its axis is z, else where the shortest rotation from z to the axis takes them |
+//! | root link | fixed to the world, or on a `free` joint: [`Options::floating_base`] |
+//! | `<inertial>` absent | no mass |
+//! | limits, mimic, friction, safety controllers, transmissions, shapes, unknown elements | not simulated, and told as [`Notice`]s |
+//!
+//! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
+
+mod audit;
+mod convert;
+mod document;
+mod joint;
+mod mass;
+mod masses;
+mod schema;
+mod tree;
+
+pub use joint::{JointFacts, Limits, Mimic};
+
+use crate::description::{SceneDescription, Source};
+use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::notice::{Notice, Notices};
+use crate::read::Sink;
+use crate::scene::{Scene, read_file};
+use audit::Audit;
+use document::tag;
+use hamel::registry::JointRegistry;
+use nalgebra::Vector3;
+use roxmltree::{Document, Node};
+use std::path::Path;
+use tree::Parsed;
+use urdf_rs::Robot;
+
+/// What a URDF does not say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Whether the root link moves freely; otherwise it is fixed to the world.
+    pub floating_base: bool,
+    /// Acceleration of free fall, world axes, m/s².
+    pub gravity: Vector3<f64>,
+}
+
+impl Default for Options {
+    /// A fixed base, and 9.81 m/s² against z.
+    fn default() -> Self {
+        Self {
+            floating_base: false,
+            gravity: Vector3::new(0.0, 0.0, -9.81),
+        }
+    }
+}
+
+/// A robot as a scene, and what the scene leaves out.
+#[derive(Clone, Debug)]
+pub struct Import {
+    /// The robot at home and at rest.
+    pub scene: SceneDescription,
+    /// What is not simulated, and what URDF leaves open.
+    pub notices: Vec<Notice>,
+    /// What the file says of each joint beyond its motion, in the order of the file.
+    pub joints: Vec<JointFacts>,
+}
+
+/// The robot that a text in URDF describes. Messages call the text `source_name`.
+///
+/// # Errors
+/// All mistakes of the text: XML that is not well-formed; missing or malformed elements and attributes; links and joints that
+/// make no tree; mass properties that no body can have; a link without mass at the end of a moving joint.
+pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, Diagnostics> {
+    let mut sink = Sink::default();
+    let import = document::parse(text, &mut sink).and_then(|document| {
+        let source = Source {
+            name: source_name.to_owned(),
+            text: text.to_owned(),
+        };
+        import(&document, source, options, &mut sink)
+    });
+    match import {
+        Some(import) if sink.len() == 0 => Ok(import),
+        _ => Err(sink.refuse(source_name, text, "the robot cannot be read")),
+    }
+}
+
+/// The robot in the file `path`.
+///
+/// # Errors
+/// A file that cannot be read or is not UTF-8, and those of [`read`].
+pub fn load(path: impl AsRef<Path>, options: &Options) -> Result<Import, Diagnostics> {
+    let (text, name) = read_file(path.as_ref())?;
+    read(&text, &name, options)
+}
+
+impl Import {
+    /// The scene, built; its notices and those of the import together.
+    ///
+    /// # Errors
+    /// Those of [`SceneDescription::build`].
+    pub fn build(&self, registry: &JointRegistry) -> Result<Scene, Diagnostics> {
+        let mut scene = self.scene.build(registry)?;
+        scene.notices.splice(0..0, self.notices.iter().cloned());
+        Ok(scene)
+    }
+
+    /// The scene as the text of a scene file, with the notices and what else the file says of the joints as comments.
+    pub fn to_toml(&self) -> String {
+        let mut head = Vec::new();
+        if !self.notices.is_empty() {
+            head.push(String::from(
+                "What the robot's file says and the scene does not, or what it leaves open:",
+            ));
+            head.extend(self.notices.iter().map(|notice| format!("- {notice}")));
+        }
+        let facts = |name: &str| self.joints.iter().find(|joint| joint.name == name);
+        self.scene.to_toml(&head, |name| {
+            facts(name).map_or_else(Vec::new, JointFacts::lines)
+        })
+    }
+}
+
+fn import(
+    document: &Document<'_>,
+    source: Source,
+    options: &Options,
+    sink: &mut Sink,
+) -> Option<Import> {
+    let root = document.root_element();
+    if !root.has_tag_name("robot") {
+        let name = audit::safe(root.tag_name().name());
+        let message = format!("the document is a <{name}>, not a <robot>");
+        sink.push(Diagnostic::new(tag(root), message));
+        return None;
+    }
+    let mut notices = Notices::default();
+    let version = version(root);
+    let mut audit = Audit {
+        sink,
+        notices: &mut notices,
+        version,
+        distilled: String::new(),
+    };
+    audit.element(root, &schema::ROBOT, "");
+    let distilled = audit.distilled;
+    if sink.len() > 0 {
+        return None;
+    }
+    let robot = urdf_rs::read_from_string(&distilled)
+        .map_err(|error| sink.push(Diagnostic::new(tag(root), error.to_string())))
+        .ok()?;
+    let parsed = parsed(&robot, root, sink)?;
+    convert::convert(&parsed, version, source, options, notices, sink)
+}
+
+/// Version of URDF: 1.0 where the file does not say.
+fn version(root: Node<'_, '_>) -> (u32, u32) {
+    let text = root.attribute("version").unwrap_or("1.0");
+    let parts = text.trim().split_once('.').unwrap_or((text.trim(), "0"));
+    (parts.0.parse().unwrap_or(1), parts.1.parse().unwrap_or(0))
+}
+
+/// Joins what the parser read with the document.
+fn parsed<'a, 'i>(robot: &'a Robot, root: Node<'a, 'i>, sink: &mut Sink) -> Option<Parsed<'a, 'i>> {
+    let named = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
+    let links: Vec<_> = named("link").collect();
+    let joints: Vec<_> = named("joint").collect();
+    if links.is_empty() {
+        sink.push(Diagnostic::new(tag(root), "the robot has no link"));
+        return None;
+    }
+    // Should the parser ever leave one out, places and elements would not fit.
+    if (links.len(), joints.len()) != (robot.links.len(), robot.joints.len()) {
+        sink.push(Diagnostic::new(
+            tag(root),
+            "not every link and joint was read",
+        ));
+        return None;
+    }
+    Some(Parsed {
+        robot,
+        links,
+        joints,
+    })
+}
