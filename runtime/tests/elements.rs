@@ -99,7 +99,7 @@ fn equipped(
     for body in 0..mechanism.bodies().len() {
         let size = mechanism.bodies()[body].ranges().freedoms.len();
         let inertia: Vec<f64> = random.vec(size).into_iter().map(f64::abs).collect();
-        // Joints whose v are no rates refuse, as they should.
+        // Nonholonomic joints refuse, as they should.
         if let Ok(with_rotor) = equipped.clone().with_armature(body, &inertia) {
             equipped = with_rotor;
         }

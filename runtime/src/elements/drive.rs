@@ -7,7 +7,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use num_traits::Float;
 
-/// One freedom as a function of time: displacement `rate t + amplitude sin(frequency t + phase)`.
+/// One speed as a function of time: `rate + amplitude · frequency · cos(frequency · t + phase)`, which for the rate of a coordinate is the
+/// displacement `rate · t + amplitude · sin(frequency · t + phase)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Law {
     /// Mean speed, rad/s or m/s.
@@ -36,15 +37,15 @@ impl Law {
 
 /// A joint whose motion is given: its velocity is a function of time, whatever it takes.
 ///
-/// In the dynamics its entries of τ are its accelerations v̇, and its entries of p̄ its speeds. The effort that it takes is
-/// inverse dynamics at the accelerations found.
+/// In the dynamics its first entries of τ, one a speed, are its accelerations v̄̇, and its entries of p̄ its speeds v̄. The effort that
+/// it takes is inverse dynamics at the accelerations found.
 #[derive(Clone, Debug)]
 pub struct Drive {
     /// Name, for messages.
     pub name: String,
     /// The body whose joint is driven.
     pub body: usize,
-    /// One law a freedom.
+    /// One law a speed.
     pub laws: Vec<Law>,
 }
 
@@ -52,19 +53,12 @@ impl Drive {
     /// Whether the drive fits the mechanism.
     ///
     /// # Errors
-    /// A body that is not there, a nonholonomic joint, a wrong number of laws, a number that is not finite.
+    /// A body that is not there, a wrong number of laws, a number that is not finite.
     pub fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
         let body = body(&self.name, mechanism, self.body)?;
-        if !body.joint().structures().speed_basis.is_identity() {
-            return Err(ElementError::Joint {
-                element: self.name.clone(),
-                joint: body.joint_name().into(),
-                reason: "is nonholonomic: only the motion of a holonomic joint can be prescribed",
-            });
-        }
         let rates: Vec<f64> = self.laws.iter().map(|law| law.rate).collect();
-        let freedoms = body.ranges().freedoms.len();
-        values(&self.name, "motion", &rates, freedoms, true)?;
+        let speeds = body.ranges().speeds.len();
+        values(&self.name, "motion", &rates, speeds, true)?;
         for law in &self.laws {
             let numbers = [law.amplitude, law.frequency, law.phase];
             values(&self.name, "motion", &numbers, 3, true)?;

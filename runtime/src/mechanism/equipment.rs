@@ -34,11 +34,10 @@ impl Mechanism {
     }
 
     /// The mechanism with `inertia` (kg m² or kg, one entry a freedom) added to that which the joint under `body` feels: a rotor behind a
-    /// gear. Kinetic energy grows by `½ Σ a v²`.
+    /// gear. Kinetic energy grows by `½ Σ a v²`, and with γ ≠ 0 the equations by `Σ_k γ_k v_k (a v)`, as (16) has it.
     ///
     /// # Errors
-    /// No such body; a wrong size; a negative inertia; a joint whose v are not the rates of coordinates (γ ≠ 0) or that is nonholonomic, where
-    /// such an energy would need terms of its own.
+    /// No such body; a wrong size; a negative inertia; a nonholonomic joint.
     pub fn with_armature(mut self, body: usize, inertia: &[f64]) -> Result<Self, MechanismError> {
         let element = || format!("armature of body {body}");
         let Some(owner) = self.bodies.get(body) else {
@@ -66,12 +65,11 @@ impl Mechanism {
                 requirement: "finite and not negative",
             }));
         }
-        let structures = owner.joint().structures();
-        if !structures.gamma.is_zero() || !structures.speed_basis.is_identity() {
+        if !owner.joint().structures().speed_basis.is_identity() {
             return Err(MechanismError::Element(ElementError::Joint {
                 element: element(),
                 joint: owner.joint_name().into(),
-                reason: "has a velocity that is not the rate of coordinates (γ ≠ 0), or is nonholonomic",
+                reason: "is nonholonomic: only a holonomic joint can have an armature",
             }));
         }
         if self.equipment.armature.is_empty() {
@@ -139,7 +137,7 @@ impl Mechanism {
         }
     }
 
-    /// The accelerations that drives prescribe at time `t`, into their entries of τ.
+    /// The accelerations v̄̇ that drives prescribe at time `t`, into the first entries of τ of their joints.
     pub fn set_driven_accelerations(&self, t: f64, efforts: &mut [f64]) {
         for drive in &self.equipment.drives {
             let own = &mut efforts[self.bodies[drive.body].ranges.freedoms.clone()];

@@ -1,6 +1,7 @@
 //! Elements, rotor inertias and drives in the recursive form.
 
 use super::Recursive;
+use super::inverse::MOST_FREEDOMS;
 use super::link::Node;
 use crate::elements::{Action, Motions, View};
 use crate::mechanism::StateError;
@@ -66,6 +67,24 @@ impl Recursive {
         let efforts = core::mem::take(&mut self.efforts);
         self.reduce_efforts(q, &efforts);
         self.efforts = efforts;
+        self.add_rotor_forces(q, speeds);
+    }
+
+    /// `−Σ_k γ_k v_k (a v)` of rotors whose v are not the rates of coordinates.
+    fn add_rotor_forces(&mut self, q: &[f64], speeds: &[f64]) {
+        for link in self.links.iter().filter(|link| link.turns_rotors()) {
+            let v = &speeds[link.speeds.clone()];
+            let mut gamma = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
+            let gamma = &mut gamma[..v.len() * v.len()];
+            link.joint.gamma(&q[link.configuration.clone()], v, gamma);
+            let forces = &mut self.forces[link.speeds.clone()];
+            let momenta = link.armature.iter().zip(v).map(|(a, v)| a * v);
+            for (column, momentum) in gamma.chunks_exact(v.len()).zip(momenta) {
+                for (force, entry) in forces.iter_mut().zip(column) {
+                    *force -= entry * momentum;
+                }
+            }
+        }
     }
 
     /// Energy that the elements store at the placements of the nodes, J.
@@ -87,11 +106,12 @@ impl Recursive {
         }
     }
 
-    /// The prescribed accelerations of driven joints among `efforts`; zero for the others. S̄ is the identity for driven joints.
+    /// The prescribed accelerations of driven joints, which are the first of their `efforts`; zero for the others.
     pub(super) fn set_driven_rates(&mut self, efforts: &[f64]) {
         for link in self.links.iter().filter(|link| link.driven) {
             let own = &efforts[link.freedoms.clone()];
-            self.driven[link.speeds.clone()].copy_from_slice(own);
+            let rates = &mut self.driven[link.speeds.clone()];
+            rates.copy_from_slice(&own[..rates.len()]);
         }
     }
 

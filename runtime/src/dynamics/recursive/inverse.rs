@@ -53,7 +53,7 @@ impl Recursive {
 
     /// What inputs must do beside the elements for the bodies to take the wrenches of the nodes.
     fn gather_needed(&mut self, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
-        if self.mechanism.elements().is_empty() {
+        if !self.acted_on {
             return self.gather(efforts);
         }
         self.act(q, speeds, None);

@@ -50,6 +50,11 @@ impl Link {
         links
     }
 
+    /// Whether it has rotors whose v are not the rates of coordinates: they add velocity terms.
+    pub(super) fn turns_rotors(&self) -> bool {
+        !self.armature.is_empty() && !self.joint.structures().gamma.is_zero()
+    }
+
     fn new(body: &Body) -> Self {
         let ranges = body.ranges();
         Self {

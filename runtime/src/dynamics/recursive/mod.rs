@@ -33,6 +33,8 @@ pub struct Recursive {
     mechanism: Arc<Mechanism>,
     /// Whether every joint is holonomic and nothing but gravity and inputs acts: τ is then all there is to solve for.
     plain: bool,
+    /// Whether there are elements, or rotors that add velocity terms.
+    acted_on: bool,
     links: Vec<Link>,
     rungs: Vec<Rung>,
     world: Node,
@@ -61,7 +63,8 @@ impl Recursive {
         let count = mechanism.bodies().len();
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
         Self {
-            plain: is_plain(&mechanism),
+            plain: false,
+            acted_on: false,
             links: Link::all(&mechanism),
             rungs: mechanism.bodies().iter().map(Rung::new).collect(),
             nodes: vec![world.clone(); count],
@@ -77,6 +80,18 @@ impl Recursive {
             driven: vec![0.0; speeds],
             mechanism,
         }
+        .classified()
+    }
+
+    /// What the sweeps can leave out.
+    fn classified(mut self) -> Self {
+        let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
+        self.acted_on =
+            !self.mechanism.elements().is_empty() || self.links.iter().any(Link::turns_rotors);
+        self.plain = !self.acted_on
+            && self.mechanism.drives().is_empty()
+            && self.mechanism.bodies().iter().all(holonomic);
+        self
     }
 
     /// Places all frames: what the other readings of one configuration start from.
@@ -119,13 +134,6 @@ impl Recursive {
         self.resolve(rates);
         Ok(())
     }
-}
-
-fn is_plain(mechanism: &Mechanism) -> bool {
-    let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
-    mechanism.bodies().iter().all(holonomic)
-        && mechanism.elements().is_empty()
-        && mechanism.drives().is_empty()
 }
 
 impl Dynamics for Recursive {
