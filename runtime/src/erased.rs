@@ -5,6 +5,7 @@
 
 use crate::joint::{Joint, Structures, VelocityFrame};
 use crate::spatial::Pose;
+use crate::steps::Steps;
 use alloc::sync::Arc;
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector, Vector6};
@@ -26,7 +27,7 @@ pub struct Layout {
 ///
 /// With (N, K, S, C) of [`AnyJoint::layout`], shapes are as in [`Joint`]. The caller hands over slices of exactly these
 /// sizes; a method panics on any other, as an index out of bounds does.
-pub trait AnyJoint: Debug + Send + Sync {
+pub trait AnyJoint: Steps + Debug + Send + Sync {
     /// Name of the spec.
     fn name(&self) -> &'static str;
     /// N, K, S and C.
@@ -139,7 +140,14 @@ where
 
 /// The adapter behind [`erase`]; its constants make the sizes part of the type.
 #[derive(Debug)]
-struct Erased<J, const N: usize, const K: usize, const S: usize, const C: usize>(J);
+pub(crate) struct Erased<J, const N: usize, const K: usize, const S: usize, const C: usize>(J);
+
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Erased<J, N, K, S, C> {
+    /// The joint itself.
+    pub(crate) const fn joint(&self) -> &J {
+        &self.0
+    }
+}
 
 fn vector<const D: usize>(slice: &[f64]) -> SVector<f64, D> {
     SVector::from_column_slice(slice)

@@ -11,11 +11,11 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Version of the [`Joint`] trait. Generated code asserts it at compile time.
-pub const KERNEL_INTERFACE: u32 = 2;
+pub const KERNEL_INTERFACE: u32 = 3;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(2);`.
+/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(3);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,
@@ -80,6 +80,116 @@ pub struct Structures {
     pub bias_momentum: Structure,
 }
 
+/// What is known of one entry of a kernel's value at compile time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entry {
+    /// 0 at every configuration.
+    Zero,
+    /// 1 at every configuration.
+    One,
+    /// Anything else.
+    Other,
+}
+
+/// The [`Entry`] of each place in the kernels that recursions spend their time on, so that they multiply by nothing that is
+/// known to be 0 or 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patterns<const K: usize, const S: usize> {
+    /// The rotation matrix of H, by rows.
+    pub rotation: [[Entry; 3]; 3],
+    /// The translation of H.
+    pub translation: [Entry; 3],
+    /// X^c, by rows.
+    pub twist_map_child: [[Entry; K]; 6],
+    /// S̄, by rows.
+    pub speed_basis: [[Entry; S]; K],
+}
+
+impl<const K: usize, const S: usize> Patterns<K, S> {
+    /// Nothing is known.
+    pub const DENSE: Self = Self {
+        rotation: [[Entry::Other; 3]; 3],
+        translation: [Entry::Other; 3],
+        twist_map_child: [[Entry::Other; K]; 6],
+        speed_basis: [[Entry::Other; S]; K],
+    };
+
+    /// A pattern from rows of the signs `0`, `1` and `x` for anything else, as generated code writes it.
+    pub const fn new(
+        rotation: [&str; 3],
+        translation: &str,
+        twist_map_child: [&str; 6],
+        speed_basis: [&str; K],
+    ) -> Self {
+        let [translation] = entries([translation]);
+        Self {
+            rotation: entries(rotation),
+            translation,
+            twist_map_child: entries(twist_map_child),
+            speed_basis: entries(speed_basis),
+        }
+    }
+
+    /// The pattern of `X^c S̄`, by rows.
+    pub const fn speed_columns(&self) -> [[Entry; S]; 6] {
+        let mut columns = [[Entry::Zero; S]; 6];
+        let mut i = 0;
+        while i < 6 {
+            let mut j = 0;
+            while j < S {
+                let mut k = 0;
+                while k < K {
+                    let term = product(self.twist_map_child[i][k], self.speed_basis[k][j]);
+                    columns[i][j] = sum(columns[i][j], term);
+                    k += 1;
+                }
+                j += 1;
+            }
+            i += 1;
+        }
+        columns
+    }
+}
+
+const fn entries<const R: usize, const C: usize>(rows: [&str; R]) -> [[Entry; C]; R] {
+    let mut entries = [[Entry::Other; C]; R];
+    let mut i = 0;
+    while i < R {
+        let row = rows[i].as_bytes();
+        assert!(
+            row.len() == C,
+            "a row of a pattern has another length than its matrix"
+        );
+        let mut j = 0;
+        while j < C {
+            entries[i][j] = match row[j] {
+                b'0' => Entry::Zero,
+                b'1' => Entry::One,
+                b'x' => Entry::Other,
+                _ => panic!("a pattern is written in the signs 0, 1 and x"),
+            };
+            j += 1;
+        }
+        i += 1;
+    }
+    entries
+}
+
+const fn product(a: Entry, b: Entry) -> Entry {
+    match (a, b) {
+        (Entry::Zero, _) | (_, Entry::Zero) => Entry::Zero,
+        (Entry::One, other) | (other, Entry::One) => other,
+        (Entry::Other, Entry::Other) => Entry::Other,
+    }
+}
+
+const fn sum(a: Entry, b: Entry) -> Entry {
+    match (a, b) {
+        (Entry::Zero, other) | (other, Entry::Zero) => other,
+        _ => Entry::Other,
+    }
+}
+
 /// The frame in which a joint's velocity is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VelocityFrame {
@@ -111,6 +221,8 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     const VELOCITY_FRAME: VelocityFrame;
     /// Which kernels are trivial.
     const STRUCTURES: Structures;
+    /// Which entries of H, X^c and S̄ are known.
+    const PATTERNS: Patterns<K, S>;
     /// Basis of the spatial inertias in the child frame that the joint cannot feel (N_X):
     /// `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`, inertia about the frame origin.
     const IMPERCEPTIBLE: &'static [[f64; 10]];

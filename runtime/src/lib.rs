@@ -17,6 +17,8 @@ pub use nalgebra;
 #[cfg(feature = "alloc")]
 pub mod dynamics;
 #[cfg(feature = "alloc")]
+pub mod elements;
+#[cfg(feature = "alloc")]
 pub mod erased;
 #[cfg(not(feature = "alloc"))]
 #[path = "unshared.rs"]
@@ -30,3 +32,5 @@ pub mod mechanism;
 pub mod registry;
 pub mod scalar;
 pub mod spatial;
+#[cfg(feature = "alloc")]
+pub mod steps;

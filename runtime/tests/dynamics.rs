@@ -5,7 +5,7 @@ mod common;
 use common::random::Random;
 use common::trees::{configuration, trees};
 use common::{joints, trees as support};
-use hamel::dynamics::{Dynamics, DynamicsError, NewtonEuler, Reference};
+use hamel::dynamics::{Dynamics, DynamicsError, Recursive, Reference};
 use hamel::mechanism::Mechanism;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{DVector, Matrix3, Vector3};
@@ -124,7 +124,7 @@ fn theorem_3_is_the_newton_euler_recursion() {
         let expansion = reference.expansion(&case.q).expect("sizes fit");
         let expected = expansion.speed_basis.tr_mul(&vector(&case.efforts));
 
-        let mut recursion = NewtonEuler::new(Arc::clone(&case.mechanism));
+        let mut recursion = Recursive::new(Arc::clone(&case.mechanism));
         let mut efforts = vec![0.0; case.speeds.len()];
         recursion
             .inverse_dynamics(&case.q, &case.speeds, &rates, &mut efforts)
@@ -133,7 +133,7 @@ fn theorem_3_is_the_newton_euler_recursion() {
 
         let mut forces = vec![0.0; case.mechanism.layout().constraints];
         recursion
-            .constraint_force(&case.efforts, &mut forces)
+            .constraint_force(&case.q, &case.efforts, &mut forces)
             .expect("independent");
         let lambda = reference
             .constraint_force(&case.q, &case.speeds, &case.efforts)
@@ -302,7 +302,7 @@ fn wrong_sizes_are_errors() {
         error.to_string(),
         "configuration of the mechanism has 8 entries: it must have 9"
     );
-    let error = NewtonEuler::new(mechanism)
+    let error = Recursive::new(mechanism)
         .inverse_dynamics(&[0.0; 9], &[0.0; 3], &[0.0; 2], &mut [0.0; 3])
         .expect_err("three accelerations");
     assert_eq!(

@@ -7,6 +7,7 @@ pub mod fuzz;
 pub mod laws;
 pub mod motion;
 pub mod oracle;
+pub mod peers;
 pub mod random;
 pub mod reference_form;
 pub mod refusals;

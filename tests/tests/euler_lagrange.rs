@@ -1,6 +1,6 @@
 //! The equations of motion against Euler–Lagrange in ϕ, from H and Φ alone, and that oracle against a textbook.
 
-use hamel::dynamics::{NewtonEuler, Reference};
+use hamel::dynamics::{Recursive, Reference};
 use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{DVector, Matrix3, Vector3};
@@ -89,13 +89,13 @@ fn newton_euler_is_euler_lagrange() {
         let expected = oracle
             .efforts(&motion.expect("S₀ is invertible"))
             .expect("S₀ is invertible");
-        let mut recursion = NewtonEuler::new(Arc::clone(&case.mechanism));
+        let mut recursion = Recursive::new(Arc::clone(&case.mechanism));
         let mut reduced = vec![0.0; case.speeds.len()];
         recursion
             .inverse_dynamics(&case.q, &case.speeds, &case.rates, &mut reduced)
             .expect("sizes fit");
         let mut found = vec![0.0; case.efforts.len()];
-        recursion.joint_efforts(&mut found).expect("sizes fit");
+        recursion.joint_efforts(&case.q, &mut found).expect("sizes fit");
         let error = difference(&found, expected.as_slice()) / size(expected.as_slice());
         worst.meet(error, case.seed);
     }

@@ -8,7 +8,7 @@ use super::progress::Progress;
 use super::sample::Sample;
 use super::table::Summary;
 use crate::output::Failure;
-use hamel::dynamics::Reference;
+use hamel::dynamics::Recursive;
 use hamel::integrate::{IntegrateError, Solution, State, Step, integrate, no_inputs};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
@@ -36,7 +36,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
 fn simulate(plan: &Plan, quiet: bool) -> Result<(Solution, Statistics), Failure> {
     let mechanism = &plan.scene.mechanism;
     let mut recorder = Recorder::new(plan, quiet)?;
-    let mut dynamics = Reference::new(Arc::clone(mechanism));
+    let mut dynamics = Recursive::new(Arc::clone(mechanism));
     let start = Instant::now();
     let result = integrate(
         &mut dynamics,

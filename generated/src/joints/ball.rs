@@ -37,13 +37,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Ball joint: three rotations about the common origin of both frames (Examples 1 and 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +78,12 @@ impl Joint<9, 3, 3, 0> for Ball {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<3, 3> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "000",
+        ["xxx", "xxx", "xxx", "000", "000", "000"],
+        ["100", "010", "001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     ];

@@ -35,13 +35,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Ball joint with its velocity in child axes: what a gyroscope on the child measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +76,12 @@ impl Joint<9, 3, 3, 0> for BallChild {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
     };
+    const PATTERNS: Patterns<3, 3> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "000",
+        ["100", "010", "001", "000", "000", "000"],
+        ["100", "010", "001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     ];

@@ -52,13 +52,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Ball rolling without slipping on the plane z = 0 of the parent; it may spin about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,6 +105,12 @@ impl Joint<11, 5, 3, 2> for BallOnPlane {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<5, 3> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "xxx",
+        ["xxx00", "xxx00", "xxx00", "000xx", "000xx", "000xx"],
+        ["100", "010", "001", "0x0", "x00"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

@@ -40,13 +40,13 @@
 //! - `fibres`: Q and −Q have one pose: a double cover (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Ball joint on unit quaternions: four stored scalars instead of nine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +71,12 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<3, 3> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "000",
+        ["xxx", "xxx", "xxx", "000", "000", "000"],
+        ["100", "010", "001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     ];

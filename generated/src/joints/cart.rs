@@ -45,13 +45,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Cart: a planar joint that rolls and turns, sideways velocity forbidden (Examples 3 and 6; nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +76,12 @@ impl Joint<6, 3, 2, 1> for Cart {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
     };
+    const PATTERNS: Patterns<3, 2> = Patterns::new(
+        ["xx0", "xx0", "001"],
+        "xx0",
+        ["000", "000", "100", "010", "001", "000"],
+        ["10", "01", "00"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];

@@ -34,13 +34,13 @@
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Cylindrical joint: a turn about and a slide along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +65,12 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
     };
+    const PATTERNS: Patterns<2, 2> = Patterns::new(
+        ["xx0", "xx0", "001"],
+        "00x",
+        ["00", "00", "10", "00", "00", "01"],
+        ["10", "01"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];

@@ -36,13 +36,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +79,12 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<1, 1> = Patterns::new(
+        ["xx0", "xx0", "001"],
+        "xx0",
+        ["0", "0", "x", "x", "0", "0"],
+        ["1"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];

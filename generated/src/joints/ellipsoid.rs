@@ -61,13 +61,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +116,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<3, 3> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "xxx",
+        ["100", "010", "001", "xx0", "xx0", "xx0"],
+        ["100", "010", "001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

@@ -46,13 +46,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Falling disk (rolling coin): a thin disk that rolls without slipping on the plane z = 0 of the parent and may lean (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +99,12 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<5, 3> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "xxx",
+        ["10000", "01000", "00100", "xx0xx", "xx0xx", "xx0xx"],
+        ["100", "010", "001", "xxx", "xxx"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &["1 - R[3, 3] * R[3, 3] = 0"];
 

@@ -44,13 +44,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Free joint: all six motions of the child relative to the parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,6 +88,12 @@ impl Joint<12, 6, 6, 0> for Free {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
     };
+    const PATTERNS: Patterns<6, 6> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "xxx",
+        ["100000", "010000", "001000", "000100", "000010", "000001"],
+        ["100000", "010000", "001000", "000100", "000010", "000001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

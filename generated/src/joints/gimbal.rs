@@ -35,13 +35,13 @@
 //! - `fibres`: one pose has one Q up to full turns of yaw, pitch, roll (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +66,12 @@ impl Joint<3, 3, 3, 0> for Gimbal {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<3, 3> = Patterns::new(
+        ["xxx", "xxx", "xxx"],
+        "000",
+        ["x01", "xx0", "xx0", "000", "000", "000"],
+        ["100", "010", "001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     ];

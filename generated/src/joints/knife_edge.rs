@@ -39,13 +39,13 @@
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Knife edge (ice skate) in Euclidean coordinates: turns about its contact point and glides along its x axis (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +70,12 @@ impl Joint<3, 3, 2, 1> for KnifeEdge {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
     };
+    const PATTERNS: Patterns<3, 2> = Patterns::new(
+        ["xx0", "xx0", "001"],
+        "xx0",
+        ["000", "000", "100", "0xx", "0xx", "000"],
+        ["10", "0x", "0x"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];

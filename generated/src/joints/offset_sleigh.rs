@@ -43,13 +43,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Sleigh with an offset edge (Chaplygin): a planar body whose knife edge is ahead of its origin (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +84,12 @@ impl Joint<6, 3, 2, 1> for OffsetSleigh {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
     };
+    const PATTERNS: Patterns<3, 2> = Patterns::new(
+        ["xx0", "xx0", "001"],
+        "xx0",
+        ["000", "000", "100", "010", "001", "000"],
+        ["10", "01", "x0"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];

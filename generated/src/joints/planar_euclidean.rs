@@ -35,13 +35,13 @@
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Planar joint in the Euclidean set of coordinates (closing note of Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +66,12 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<3, 3> = Patterns::new(
+        ["xx0", "xx0", "001"],
+        "xx0",
+        ["000", "000", "100", "0xx", "0xx", "000"],
+        ["100", "010", "001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];

@@ -35,7 +35,7 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{
     JointEntry, Limit, ParameterInfo, check_parameters, check_requirement,
@@ -43,7 +43,7 @@ use ::hamel::registry::{
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +82,12 @@ impl Joint<4, 2, 2, 0> for Torus {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<2, 2> = Patterns::new(
+        ["xxx", "xxx", "x0x"],
+        "xxx",
+        ["x0", "01", "x0", "0x", "x0", "00"],
+        ["10", "01"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

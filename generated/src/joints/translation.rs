@@ -34,13 +34,13 @@
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Translation joint: the child slides in all three directions and does not turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +65,12 @@ impl Joint<3, 3, 3, 0> for Translation {
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
     };
+    const PATTERNS: Patterns<3, 3> = Patterns::new(
+        ["100", "010", "001"],
+        "xxx",
+        ["000", "000", "000", "100", "010", "001"],
+        ["100", "010", "001"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0],

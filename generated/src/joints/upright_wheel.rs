@@ -45,13 +45,13 @@
 //! - `fibres`: one pose has one Q up to full turns of roll (certificate)
 
 use ::hamel::erased::erase;
-use ::hamel::joint::{Joint, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
 use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(2);
+const _: () = ::hamel::joint::assert_kernel_interface(3);
 
 /// Upright wheel (vertical disk): rolls without slipping on the plane z = 0 of the parent and turns about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +94,12 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<4, 2> = Patterns::new(
+        ["xxx", "xxx", "x0x"],
+        "xxx",
+        ["x000", "0001", "x000", "0x00", "0010", "0x00"],
+        ["10", "0x", "00", "01"],
+    );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

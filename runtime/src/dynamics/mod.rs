@@ -1,18 +1,18 @@
 //! Equations of motion of a mechanism, in Lagrangian (v̄) and port-Hamiltonian (p̄) form.
 //!
 //! * [`Reference`]: Theorems 2 and 3 literally, matrices and all. For reading, checking and small mechanisms.
-//! * [`NewtonEuler`]: inverse dynamics by recursion, which shares no formula with the former.
+//! * [`Recursive`]: the same in O(n), by recursions that share no formula with the former. For everything else.
 //! * [`quasi`]: Theorem 1, for systems in quasi-coordinates that a caller writes down.
 //!
 //! Whatever integrates or compares equations of motion does so through [`Dynamics`].
 
 mod error;
-mod newton_euler;
 pub mod quasi;
+pub mod recursive;
 pub mod reference;
 
 pub use error::DynamicsError;
-pub use newton_euler::NewtonEuler;
+pub use recursive::{MassMatrix, Recursive};
 pub use reference::Reference;
 
 use crate::mechanism::Mechanism;

@@ -153,6 +153,7 @@ impl<'a> Flow<'a> {
         let Self {
             dynamics,
             inputs,
+            mechanism,
             configuration,
             efforts,
             ..
@@ -162,6 +163,7 @@ impl<'a> Flow<'a> {
                 rates.speeds.copy_from_slice(y);
                 efforts.fill(0.0);
                 inputs(time, configuration, y, efforts);
+                mechanism.set_driven_accelerations(time, efforts);
                 dynamics.accelerations(configuration, y, efforts, &mut rates.y)
             }
             Form::Hamiltonian => dynamics.momentum_rates(
@@ -170,6 +172,7 @@ impl<'a> Flow<'a> {
                 &mut |speeds, efforts| {
                     efforts.fill(0.0);
                     inputs(time, configuration, speeds, efforts);
+                    mechanism.set_driven_accelerations(time, efforts);
                 },
                 &mut rates.speeds,
                 &mut rates.y,

@@ -84,6 +84,11 @@ impl Body {
         &*self.spec.joint
     }
 
+    /// Its joint, shared.
+    pub fn shared_joint(&self) -> Arc<dyn AnyJoint> {
+        Arc::clone(&self.spec.joint)
+    }
+
     /// The joint's parent frame in the parent's body frame.
     pub const fn placement(&self) -> &Pose<f64> {
         &self.spec.placement

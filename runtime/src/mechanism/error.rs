@@ -109,6 +109,9 @@ pub enum MechanismError {
         /// Smallest ratio allowed.
         limit: f64,
     },
+    /// A spring, damper, rotor inertia, drive or the like does not fit.
+    #[error(transparent)]
+    Element(#[from] crate::elements::ElementError),
 }
 
 /// Why a state, or a part of one, is refused.

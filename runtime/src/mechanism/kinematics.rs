@@ -2,7 +2,9 @@
 
 use super::check::{WHOLE, check_size};
 use super::{Body, Mechanism, StateError};
-use crate::spatial::{Pose, SpatialInertia, split};
+use crate::elements::{Motions, View};
+use crate::spatial::{Pose, SpatialInertia, join, split};
+use crate::steps::Placement;
 use alloc::vec::Vec;
 use nalgebra::{DVectorView, Vector3, Vector6};
 
@@ -53,6 +55,38 @@ impl BodyState {
     }
 }
 
+/// The joint-child frames behind the states of bodies, as elements see them.
+struct JointFrames(Vec<(Placement<f64>, Vector6<f64>)>);
+
+impl JointFrames {
+    fn new(bodies: &[Body], states: &[BodyState]) -> Self {
+        let frames = bodies.iter().zip(states).map(|(body, state)| {
+            let pose = state.pose.compose(&body.child_placement().inverse());
+            let placement = Placement {
+                rotation: pose.rotation,
+                origin: pose.translation,
+                // Elements see no parents.
+                offset: Vector3::zeros(),
+            };
+            let twist = body.child_placement().act_twist(&state.twist);
+            let (angular, linear) = split(&twist);
+            let turned = join(&(pose.rotation * angular), &(pose.rotation * linear));
+            (placement, turned)
+        });
+        Self(frames.collect())
+    }
+}
+
+impl Motions for JointFrames {
+    fn placement(&self, body: usize) -> &Placement<f64> {
+        &self.0[body].0
+    }
+
+    fn twist(&self, body: usize) -> &Vector6<f64> {
+        &self.0[body].1
+    }
+}
+
 /// All bodies at one state of a mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinematics {
@@ -62,17 +96,23 @@ pub struct Kinematics {
     pub mass: f64,
     /// Centre of mass of all bodies, world axes, m; the origin when nothing has mass.
     pub center_of_mass: Vector3<f64>,
+    /// Energy stored in springs and other elements, J.
+    pub element_energy: f64,
+    /// Kinetic energy of rotors, `½ Σ a v²`, J.
+    pub rotor_energy: f64,
 }
 
 impl Kinematics {
-    /// Kinetic energy, J.
+    /// Kinetic energy of bodies and rotors, J.
     pub fn kinetic_energy(&self) -> f64 {
-        self.bodies.iter().map(|body| body.kinetic_energy).sum()
+        let bodies = self.bodies.iter().map(|body| body.kinetic_energy);
+        bodies.sum::<f64>() + self.rotor_energy
     }
 
-    /// Potential energy in gravity, zero at the world's origin, J.
+    /// Potential energy in gravity, zero at the world's origin, and in elements, J.
     pub fn potential_energy(&self) -> f64 {
-        self.bodies.iter().map(|body| body.potential_energy).sum()
+        let bodies = self.bodies.iter().map(|body| body.potential_energy);
+        bodies.sum::<f64>() + self.element_energy
     }
 
     /// Kinetic and potential energy, J.
@@ -108,10 +148,33 @@ impl Mechanism {
             .sum();
         let center_of_mass = if mass > 0.0 { moment / mass } else { moment };
         Ok(Kinematics {
-            bodies,
             mass,
             center_of_mass,
+            element_energy: self.element_energy(q, speeds, &bodies),
+            rotor_energy: self.rotor_energy(speeds),
+            bodies,
         })
+    }
+
+    fn rotor_energy(&self, speeds: &[f64]) -> f64 {
+        let joints = self.bodies.iter().enumerate().map(|(index, body)| {
+            let own = &speeds[body.ranges.speeds.clone()];
+            let terms = self.armature(index).iter().zip(own);
+            terms.map(|(a, v)| 0.5 * a * v * v).sum::<f64>()
+        });
+        joints.sum()
+    }
+
+    fn element_energy(&self, q: &[f64], speeds: &[f64], bodies: &[BodyState]) -> f64 {
+        let motions = JointFrames::new(&self.bodies, bodies);
+        let view = View {
+            mechanism: self,
+            configuration: q,
+            speeds,
+            motions: &motions,
+        };
+        let elements = self.elements().iter();
+        elements.map(|element| element.energy(&view)).sum()
     }
 
     fn body_states(&self, q: &[f64], speeds: &[f64]) -> Vec<BodyState> {

@@ -6,6 +6,7 @@
 mod body;
 mod build;
 mod check;
+mod equipment;
 mod error;
 mod initial;
 mod kinematics;
@@ -30,6 +31,7 @@ pub struct Mechanism {
     gravity: Vector3<f64>,
     bodies: Vec<Body>,
     layout: Layout,
+    equipment: equipment::Equipment,
 }
 
 impl Mechanism {
@@ -47,6 +49,7 @@ impl Mechanism {
             gravity,
             bodies,
             layout,
+            equipment: equipment::Equipment::default(),
         })
     }
 

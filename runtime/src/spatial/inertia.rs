@@ -1,6 +1,7 @@
 //! Spatial inertia of a rigid body.
 
-use super::{MassProperties, Pose, hat, join, split};
+use super::fused::{add_cross, apply, dot};
+use super::{MassProperties, Pose, Symmetric3, hat, join, split};
 use crate::scalar::Scalar;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
@@ -12,7 +13,7 @@ pub struct SpatialInertia<T> {
     /// mc: mass times the position of the centre of mass, kg m.
     pub first_moment: Vector3<T>,
     /// I about the **origin of the frame**, not about the centre of mass, kg m².
-    pub inertia: Matrix3<T>,
+    pub inertia: Symmetric3<T>,
 }
 
 impl<T: Scalar> SpatialInertia<T> {
@@ -21,7 +22,7 @@ impl<T: Scalar> SpatialInertia<T> {
         Self {
             mass: T::zero(),
             first_moment: Vector3::zeros(),
-            inertia: Matrix3::zeros(),
+            inertia: Symmetric3::zero(),
         }
     }
 
@@ -29,7 +30,9 @@ impl<T: Scalar> SpatialInertia<T> {
     pub fn matrix(&self) -> Matrix6<T> {
         let mut matrix = Matrix6::zeros();
         let cross = hat(&self.first_moment);
-        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.inertia);
+        matrix
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&self.inertia.matrix());
         matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&cross);
         matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&-cross);
         matrix
@@ -39,46 +42,82 @@ impl<T: Scalar> SpatialInertia<T> {
     }
 
     /// Momentum `N T` of a body that moves with twist `T`, both in this frame.
+    #[inline(always)]
     pub fn apply(&self, twist: &Vector6<T>) -> Vector6<T> {
         let (angular, linear) = split(twist);
         join(
-            &(self.inertia * angular + self.first_moment.cross(&linear)),
-            &(linear * self.mass - self.first_moment.cross(&angular)),
+            &add_cross(&self.inertia.apply(&angular), &self.first_moment, &linear),
+            &add_cross(&(linear * self.mass), &angular, &self.first_moment),
         )
+    }
+
+    /// The same inertia in a frame of the same origin, of which `rotation` holds this frame's axes as columns.
+    #[inline(always)]
+    pub fn rotated(&self, rotation: &Matrix3<T>) -> Self {
+        Self {
+            mass: self.mass,
+            first_moment: apply(rotation, &self.first_moment),
+            inertia: self.inertia.rotated(rotation),
+        }
+    }
+
+    /// The same inertia at a frame whose origin is `−offset` from this one's, axes parallel.
+    ///
+    /// Steiner's terms: `I′ = I + 2 (r·mc) 1 − r mcᵀ − mc rᵀ + m (r·r 1 − r rᵀ)` with r = `offset`.
+    #[inline(always)]
+    pub fn shifted(&self, offset: &Vector3<T>) -> Self {
+        // With s = mc + ½ m r both groups of terms become one: 2 (r·s) 1 − r sᵀ − s rᵀ.
+        let half = offset * (self.mass * T::from_f64(0.5));
+        let middle = self.first_moment + half;
+        let along = dot(offset, &middle);
+        let mut inertia = self.inertia.add_symmetric_product(&-offset, &middle);
+        inertia += Symmetric3::diagonal(along + along);
+        Self {
+            mass: self.mass,
+            first_moment: middle + half,
+            inertia,
+        }
     }
 
     /// The same inertia in the parent frame of `pose`, when `self` is in its child frame: `Ad⁻ᵀ N Ad⁻¹`.
     pub fn transform(&self, pose: &Pose<T>) -> Self {
-        let moment = pose.rotation * self.first_moment;
-        let (shift, turned) = (hat(&pose.translation), hat(&moment));
-        let rotated = pose.rotation * self.inertia * pose.rotation.transpose();
-        let steiner = shift * turned + turned * shift + shift * shift * self.mass;
-        Self {
-            mass: self.mass,
-            first_moment: moment + pose.translation * self.mass,
-            inertia: rotated - steiner,
-        }
+        self.rotated(&pose.rotation).shifted(&pose.translation)
     }
 
     /// Inertia of both bodies fixed to each other, in one frame.
+    #[inline(always)]
     pub fn combine(&self, other: &Self) -> Self {
+        let mut inertia = self.inertia;
+        inertia += other.inertia;
         Self {
             mass: self.mass + other.mass,
             first_moment: self.first_moment + other.first_moment,
-            inertia: self.inertia + other.inertia,
+            inertia,
         }
+    }
+
+    /// The wrench `N V̇ − ad_Vᵀ N V` that moves the body with twist V and twist rate V̇, all in this frame.
+    #[inline(always)]
+    pub fn wrench(&self, twist: &Vector6<T>, rate: &Vector6<T>) -> Vector6<T> {
+        let (angular, linear) = split(twist);
+        let (moment, momentum) = split(&self.apply(twist));
+        let (rate_moment, rate_force) = split(&self.apply(rate));
+        let turned = add_cross(&rate_moment, &angular, &moment);
+        join(
+            &add_cross(&turned, &linear, &momentum),
+            &add_cross(&rate_force, &angular, &momentum),
+        )
     }
 }
 
 impl From<&MassProperties> for SpatialInertia<f64> {
     /// About the body origin; the symmetric part of the given inertia is taken.
     fn from(properties: &MassProperties) -> Self {
-        let symmetric = (properties.inertia_com + properties.inertia_com.transpose()) * 0.5;
-        let cross = hat(&properties.com);
-        Self {
+        let central = Self {
             mass: properties.mass,
-            first_moment: properties.com * properties.mass,
-            inertia: symmetric - cross * cross * properties.mass,
-        }
+            first_moment: Vector3::zeros(),
+            inertia: Symmetric3::from_matrix(&properties.inertia_com),
+        };
+        central.shifted(&properties.com)
     }
 }

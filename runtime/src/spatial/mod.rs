@@ -3,19 +3,24 @@
 //! A twist `T = (ω; v)` and a wrench `W = (moment; force)` are 6-vectors, angular part first; their power is `Wᵀ T`. A
 //! pose takes child coordinates to parent coordinates. SI units, radians.
 
+mod articulated;
 mod check;
+pub mod fused;
 mod inertia;
 mod mass;
 mod pose;
 pub mod se3;
 pub mod so3;
+mod symmetric;
 mod twist;
 
+pub use articulated::{ArticulatedInertia, add_weighted, shift_twist, shift_wrench};
 pub use check::{PoseError, ROTATION_TOLERANCE};
 pub use inertia::SpatialInertia;
 pub use mass::{MassError, MassProperties};
 pub use pose::Pose;
 pub use so3::nearest as nearest_rotation;
+pub use symmetric::Symmetric3;
 pub use twist::{bracket, bracket_dual_product, bracket_product, join, split};
 
 use crate::scalar::Scalar;

@@ -1,5 +1,6 @@
 //! Rigid displacements.
 
+use super::fused::{add_cross, apply, apply_transposed, product};
 use super::{hat, join, split};
 use crate::scalar::Scalar;
 use core::ops::Mul;
@@ -41,8 +42,8 @@ impl<T: Scalar> Pose<T> {
     /// `self · other`: the pose of `other`'s child in `self`'s parent.
     pub fn compose(&self, other: &Self) -> Self {
         Self::new(
-            self.rotation * other.rotation,
-            self.rotation * other.translation + self.translation,
+            product(&self.rotation, &other.rotation),
+            apply(&self.rotation, &other.translation) + self.translation,
         )
     }
 
@@ -86,36 +87,36 @@ impl<T: Scalar> Pose<T> {
     /// `Ad_H T`: child coordinates of a twist to parent coordinates.
     pub fn act_twist(&self, twist: &Vector6<T>) -> Vector6<T> {
         let (angular, linear) = split(twist);
-        let angular = self.rotation * angular;
-        let linear = self.rotation * linear + self.translation.cross(&angular);
-        join(&angular, &linear)
+        let angular = apply(&self.rotation, &angular);
+        let linear = apply(&self.rotation, &linear);
+        join(&angular, &add_cross(&linear, &self.translation, &angular))
     }
 
     /// `Ad_H⁻¹ T`: parent coordinates of a twist to child coordinates.
     pub fn act_twist_inverse(&self, twist: &Vector6<T>) -> Vector6<T> {
         let (angular, linear) = split(twist);
-        let linear = linear - self.translation.cross(&angular);
+        let linear = add_cross(&linear, &angular, &self.translation);
         join(
-            &self.rotation.tr_mul(&angular),
-            &self.rotation.tr_mul(&linear),
+            &apply_transposed(&self.rotation, &angular),
+            &apply_transposed(&self.rotation, &linear),
         )
     }
 
     /// `Ad_H⁻ᵀ W`: child coordinates of a wrench or momentum to parent coordinates.
     pub fn act_wrench(&self, wrench: &Vector6<T>) -> Vector6<T> {
         let (moment, force) = split(wrench);
-        let force = self.rotation * force;
-        let moment = self.rotation * moment + self.translation.cross(&force);
-        join(&moment, &force)
+        let force = apply(&self.rotation, &force);
+        let moment = apply(&self.rotation, &moment);
+        join(&add_cross(&moment, &self.translation, &force), &force)
     }
 
     /// `Ad_Hᵀ W`: parent coordinates of a wrench or momentum to child coordinates.
     pub fn act_wrench_inverse(&self, wrench: &Vector6<T>) -> Vector6<T> {
         let (moment, force) = split(wrench);
-        let moment = moment - self.translation.cross(&force);
+        let moment = add_cross(&moment, &force, &self.translation);
         join(
-            &self.rotation.tr_mul(&moment),
-            &self.rotation.tr_mul(&force),
+            &apply_transposed(&self.rotation, &moment),
+            &apply_transposed(&self.rotation, &force),
         )
     }
 

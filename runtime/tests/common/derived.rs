@@ -3,7 +3,7 @@
 //! Slow, but nothing in it is derived by hand, so that no sign can be wrong twice.
 
 use core::array;
-use hamel::joint::{Joint, Structure, Structures, VelocityFrame};
+use hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame};
 use hamel::scalar::{Dual, Scalar};
 use hamel::spatial::{Pose, join, vee};
 use nalgebra::{SMatrix, SVector, Vector6};
@@ -181,6 +181,7 @@ where
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
     };
+    const PATTERNS: Patterns<K, S> = Patterns::DENSE;
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = D::SINGULARITIES;
 

@@ -2,6 +2,7 @@
 
 use crate::description::Position;
 use crate::source::Located;
+use hamel::elements::Law;
 use hamel::spatial::Pose;
 use nalgebra::{DMatrix, Vector3};
 
@@ -17,7 +18,7 @@ pub struct JointForces {
     /// Constant efforts τ, one a freedom.
     pub effort: Option<Located<Vec<f64>>>,
     /// Prescribed motion.
-    pub motion: Option<Located<Vec<SpeedOverTime>>>,
+    pub motion: Option<Located<Vec<Law>>>,
 }
 
 impl JointForces {
@@ -64,33 +65,6 @@ pub enum SpringEnergy {
     Full(DMatrix<f64>),
     /// `k (3 − tr R)/2`, R the rotation of the joint's pose relative to that at rest: smooth also at half a turn.
     Trace(f64),
-}
-
-/// One speed as a function of time: `v̄(t) = rate + amplitude · frequency · cos(frequency · t + phase)`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SpeedOverTime {
-    /// Constant part, in the speed's unit.
-    pub rate: f64,
-    /// Amplitude of the swing about the constant motion, in the unit of the speed times s.
-    pub amplitude: f64,
-    /// Angular frequency of the swing, rad/s.
-    pub frequency: f64,
-    /// Phase of the swing, rad.
-    pub phase: f64,
-}
-
-impl SpeedOverTime {
-    /// `v̄(t)`.
-    pub fn speed(&self, t: f64) -> f64 {
-        let angle = self.frequency * t + self.phase;
-        self.rate + self.amplitude * self.frequency * angle.cos()
-    }
-
-    /// `dv̄/dt`.
-    pub fn acceleration(&self, t: f64) -> f64 {
-        let angle = self.frequency * t + self.phase;
-        -self.amplitude * self.frequency * self.frequency * angle.sin()
-    }
 }
 
 /// A point of a body, or of the world.

@@ -27,7 +27,7 @@ pub use description::{
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use forces::{
     BodyPoint, ConstraintDescription, FrameDescription, JointForces, JointSpring, PerFreedom,
-    PointSpring, SpeedOverTime, SpringEnergy, WrenchAxes, WrenchDescription,
+    PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,
 };
 pub use notice::Notice;
 pub use scene::Scene;

@@ -33,7 +33,7 @@ pub fn theorem_2_is_newton_euler(kinds: &[Arc<dyn AnyJoint>]) {
         let (recursion, _) = point.newton_euler(&point.rates);
         let mut expected = DVector::zeros(point.v.len());
         recursion
-            .joint_efforts(expected.as_mut_slice())
+            .joint_efforts(&point.case.q, expected.as_mut_slice())
             .expect("sizes fit");
         let found = &inertia + &coriolis + &weight;
         worst.meet(
@@ -76,7 +76,7 @@ pub fn hamiltonian_form_of_theorem_2(kinds: &[Arc<dyn AnyJoint>]) {
         let (recursion, _) = point.newton_euler(&point.rates);
         let mut efforts = DVector::zeros(point.v.len());
         recursion
-            .joint_efforts(efforts.as_mut_slice())
+            .joint_efforts(&point.case.q, efforts.as_mut_slice())
             .expect("sizes fit");
         let found = expansion.momentum_rate(&point.v, &efforts);
         let inertia = &expansion.mass_matrix * &point.v_rate;
@@ -129,7 +129,7 @@ pub fn constraint_forces_are_those_of_the_joint_wrench(kinds: &[Arc<dyn AnyJoint
         let (recursion, _) = point.newton_euler(&point.accelerations());
         let mut expected = DVector::zeros(point.expansion.constraint.ncols());
         recursion
-            .constraint_force(&point.case.efforts, expected.as_mut_slice())
+            .constraint_force(&point.case.q, &point.case.efforts, expected.as_mut_slice())
             .expect("independent");
         let found = point
             .reference

@@ -8,7 +8,7 @@ pub mod power;
 
 use crate::random::{Case, cases};
 use hamel::dynamics::reference::Expansion;
-use hamel::dynamics::{NewtonEuler, Reference};
+use hamel::dynamics::{Recursive, Reference};
 use hamel::erased::AnyJoint;
 use hamel::nalgebra::DVector;
 use std::sync::Arc;
@@ -57,8 +57,8 @@ impl Point {
     }
 
     /// The recursion, run at this point with the given v̄̇, and S̄ᵀτ that it finds.
-    fn newton_euler(&self, rates: &DVector<f64>) -> (NewtonEuler, DVector<f64>) {
-        let mut recursion = NewtonEuler::new(Arc::clone(&self.case.mechanism));
+    fn newton_euler(&self, rates: &DVector<f64>) -> (Recursive, DVector<f64>) {
+        let mut recursion = Recursive::new(Arc::clone(&self.case.mechanism));
         let mut efforts = vec![0.0; rates.len()];
         recursion
             .inverse_dynamics(

@@ -1,7 +1,7 @@
 //! A mechanism at a random state, and the formulas in question, right and wrong.
 
 use hamel::dynamics::reference::Expansion;
-use hamel::dynamics::{NewtonEuler, Reference};
+use hamel::dynamics::{Recursive, Reference};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{Cholesky, DMatrix, DVector};
 use hamel_tests::random::{configuration, numbers};
@@ -41,7 +41,7 @@ impl Point {
     /// S̄ᵀτ by Newton–Euler.
     fn efforts(&self, rates: &DVector<f64>) -> DVector<f64> {
         let mut efforts = DVector::zeros(rates.len());
-        NewtonEuler::new(Arc::clone(&self.mechanism))
+        Recursive::new(Arc::clone(&self.mechanism))
             .inverse_dynamics(
                 &self.q,
                 self.speeds.as_slice(),

@@ -4,6 +4,7 @@ use super::docs;
 use super::kernel::Method;
 use super::limits;
 use super::numeric;
+use super::patterns;
 use super::tokens::{ident, signed_literal};
 use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
@@ -163,6 +164,7 @@ fn constants(derived: &Derived) -> TokenStream {
         VelocityFrame::Rates => "Declared",
     });
     let structures = structures(derived);
+    let patterns = patterns::tokens(derived);
     let inertias = derived.imperceptible.iter().map(inertia);
     let loci = spec.loci.iter().map(|locus| &locus.value.text);
     quote! {
@@ -172,6 +174,7 @@ fn constants(derived: &Derived) -> TokenStream {
         #speeds
         const VELOCITY_FRAME: VelocityFrame = VelocityFrame::#frame;
         const STRUCTURES: Structures = #structures;
+        #patterns
         const IMPERCEPTIBLE: &'static [[f64; 10]] = &[#(#inertias),*];
         const SINGULARITIES: &'static [&'static str] = &[#(#loci),*];
     }

@@ -10,6 +10,7 @@ mod kernel;
 mod limits;
 mod numeric;
 mod origin;
+mod patterns;
 mod result;
 mod signature;
 mod spacing;
@@ -29,7 +30,7 @@ use std::collections::BTreeSet;
 use tokens::ident;
 
 /// Version of the runtime's trait `Joint` that is emitted.
-pub const KERNEL_INTERFACE: u32 = 2;
+pub const KERNEL_INTERFACE: u32 = 3;
 
 /// The first line of an emitted file, without the comment signs. `label` is the spec's path as the reader knows it.
 pub fn header(label: &str) -> String {
@@ -79,6 +80,7 @@ fn uses(tokens: &TokenStream) -> TokenStream {
             quote! { ::hamel::joint },
             &[
                 "Joint",
+                "Patterns",
                 "Structure",
                 "Structures",
                 "VelocityFrame",

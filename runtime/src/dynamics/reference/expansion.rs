@@ -56,6 +56,7 @@ impl Expansion {
             expansion.add_constraint(body, body.configuration(q));
         }
         expansion.add_bodies(mechanism, &Tree::new(mechanism, q, &expansion.velocity_map));
+        expansion.add_armature(mechanism);
         Ok(expansion)
     }
 
@@ -87,6 +88,16 @@ impl Expansion {
         let mut slices = vec![0.0; own.len() * own.len() * speeds.len()];
         joint.speed_basis_gradient(q, &mut slices);
         set_gradient_blocks(&mut self.speed_basis_gradient, own, speeds, &slices);
+    }
+
+    /// Rotor inertias: constant, and at joints alone whose v are the rates of coordinates.
+    fn add_armature(&mut self, mechanism: &Mechanism) {
+        for (index, body) in mechanism.bodies().iter().enumerate() {
+            let freedoms = body.ranges().freedoms.clone();
+            for (k, inertia) in freedoms.zip(mechanism.armature(index)) {
+                self.mass_matrix[(k, k)] += inertia;
+            }
+        }
     }
 
     /// M = Σ JᵀGJ, ∂M/∂ϕ = Σ ∂JᵀGJ + JᵀG∂J, V and ∂V/∂ϕ, over the bodies.

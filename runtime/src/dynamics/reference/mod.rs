@@ -3,6 +3,7 @@
 //! Index patterns follow the paper, with its errata set right: (26) contracts momentum with the rows of S and velocity with
 //! S⁻¹; after (36), `p = M S̄ M̄⁻¹ p̄`. Cost grows with the cube of the number of freedoms, and matrices are allocated.
 
+mod equipment;
 mod expansion;
 mod factor;
 mod holonomic;
@@ -15,7 +16,8 @@ use super::{Dynamics, DynamicsError};
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use alloc::sync::Arc;
 use alloc::vec;
-use nalgebra::{DVector, DVectorView};
+use equipment::{ElementForces, driven, driven_freedoms};
+use nalgebra::DVector;
 
 /// The reference form of a mechanism's dynamics.
 #[derive(Clone, Debug)]
@@ -81,9 +83,11 @@ impl Dynamics for Reference {
         let speeds = vector("speeds", layout.speeds, speeds)?;
         let efforts = vector("efforts", layout.freedoms, efforts)?;
         check_size(WHOLE, "rates", layout.speeds, rates.len())?;
-        let solution =
-            self.expansion(q)?
-                .reduced_accelerations(&self.mechanism, &speeds, &efforts)?;
+        let expansion = self.expansion(q)?;
+        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds.as_slice())?;
+        let known = driven_freedoms(&self.mechanism, efforts.as_slice());
+        let efforts = efforts + elements.efforts;
+        let solution = expansion.solve_accelerations(&self.mechanism, &speeds, &efforts, &known)?;
         rates.copy_from_slice(solution.as_slice());
         Ok(())
     }
@@ -97,7 +101,10 @@ impl Dynamics for Reference {
         let size = self.mechanism.layout().speeds;
         let speeds = vector("speeds", size, speeds)?;
         check_size(WHOLE, "momenta", size, momenta.len())?;
-        let product = self.expansion(q)?.reduced_mass_matrix() * speeds;
+        let mut product = self.expansion(q)?.reduced_mass_matrix() * &speeds;
+        for (index, speed) in driven(&self.mechanism, speeds.as_slice()) {
+            product[index] = speed;
+        }
         momenta.copy_from_slice(product.as_slice());
         Ok(())
     }
@@ -133,8 +140,13 @@ impl Dynamics for Reference {
         speeds.copy_from_slice(v.as_slice());
         let mut tau = vec![0.0; layout.freedoms];
         efforts(speeds, &mut tau);
-        let tau = DVectorView::from_slice(&tau, tau.len()).into_owned();
+        let known = driven_freedoms(&self.mechanism, &tau);
+        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
+        let tau = DVector::from_vec(tau) + elements.efforts;
         rates.copy_from_slice(expansion.reduced_momentum_rate(&v, &tau).as_slice());
+        for (index, rate) in known {
+            rates[index] = rate;
+        }
         Ok(())
     }
 
@@ -142,6 +154,8 @@ impl Dynamics for Reference {
         let momenta = vector("momenta", self.mechanism.layout().speeds, momenta)?;
         let expansion = self.expansion(q)?;
         let v = expansion.speeds(&self.mechanism, &momenta)?;
-        Ok(0.5 * momenta.dot(&v) + expansion.potential)
+        let elements = ElementForces::new(&self.mechanism, &expansion, q, v.as_slice())?;
+        let kinetic = 0.5 * v.dot(&(expansion.reduced_mass_matrix() * &v));
+        Ok(kinetic + expansion.potential + elements.energy)
     }
 }

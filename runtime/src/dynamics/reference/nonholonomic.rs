@@ -2,6 +2,7 @@
 //!
 //! Where every S̄ is the identity, these are the equations of Theorem 2.
 
+use super::equipment::{driven, hold};
 use super::factor::{Space, factor};
 use super::holonomic::{combine, from_columns};
 use super::{DynamicsError, Expansion};
@@ -44,14 +45,26 @@ impl Expansion {
         speeds: &DVector<f64>,
         efforts: &DVector<f64>,
     ) -> Result<DVector<f64>, DynamicsError> {
-        let factors = factor(mechanism, Space::Speeds, self.reduced_mass_matrix())?;
-        let forces = self.speed_basis.tr_mul(efforts)
-            - self.reduced_coriolis_matrix(speeds) * speeds
-            - self.reduced_potential_forces();
-        Ok(factors.solve(&forces))
+        self.solve_accelerations(mechanism, speeds, efforts, &[])
     }
 
-    /// `v̄ = M̄⁻¹ p̄`.
+    /// [`Expansion::reduced_accelerations`] where some v̄̇ are known.
+    pub(super) fn solve_accelerations(
+        &self,
+        mechanism: &Mechanism,
+        speeds: &DVector<f64>,
+        efforts: &DVector<f64>,
+        known: &[(usize, f64)],
+    ) -> Result<DVector<f64>, DynamicsError> {
+        let mut mass = self.reduced_mass_matrix();
+        let mut forces = self.speed_basis.tr_mul(efforts)
+            - self.reduced_coriolis_matrix(speeds) * speeds
+            - self.reduced_potential_forces();
+        hold(&mut mass, &mut forces, known);
+        Ok(factor(mechanism, Space::Speeds, mass)?.solve(&forces))
+    }
+
+    /// `v̄ = M̄⁻¹ p̄`; entries of driven joints are speeds in both.
     ///
     /// # Errors
     /// A singular mass matrix.
@@ -60,8 +73,10 @@ impl Expansion {
         mechanism: &Mechanism,
         momenta: &DVector<f64>,
     ) -> Result<DVector<f64>, DynamicsError> {
-        let factors = factor(mechanism, Space::Speeds, self.reduced_mass_matrix())?;
-        Ok(factors.solve(momenta))
+        let (mut mass, mut momenta) = (self.reduced_mass_matrix(), momenta.clone());
+        let known = driven(mechanism, momenta.as_slice());
+        hold(&mut mass, &mut momenta, &known);
+        Ok(factor(mechanism, Space::Speeds, mass)?.solve(&momenta))
     }
 
     /// `J̄22 = S̄ᵀJ22S̄ + ∂(S̄ᵀp)/∂ϕ S⁻¹S̄ − S̄ᵀS⁻ᵀ ∂ᵀ(S̄ᵀp)/∂ϕ`, S×S, (36), with `p = M S̄ v̄`.

@@ -1,12 +1,13 @@
 //! What acts at joints and on bodies, on its way into the mechanism.
 
-use super::state::{Stand, State};
+use super::state::Stand;
 use crate::description::{InitialDescription, Motion, SceneDescription};
 use crate::diagnostics::Diagnostic;
-use crate::forces::{JointForces, JointSpring, PerFreedom, SpeedOverTime, SpringEnergy};
+use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
 use crate::notice::{Notice, Notices};
 use crate::read::Sink;
 use crate::source::{Located, Span};
+use hamel::elements::Law;
 use nalgebra::{DMatrix, DVector};
 
 /// What acts at one joint, in numbers that fit it.
@@ -21,7 +22,7 @@ pub(crate) struct Acting {
     /// Constant efforts τ, one a freedom; empty without.
     pub(crate) effort: Vec<f64>,
     /// Prescribed speeds, one law a speed; empty without.
-    pub(crate) motion: Vec<SpeedOverTime>,
+    pub(crate) motion: Vec<Law>,
 }
 
 /// A spring at a joint.
@@ -130,8 +131,8 @@ fn spring(stand: &Stand, spring: &Located<JointSpring>) -> Result<Spring, Diagno
 fn motion(
     stand: &Stand,
     initial: &InitialDescription,
-    motion: Option<&Located<Vec<SpeedOverTime>>>,
-) -> Result<Vec<SpeedOverTime>, Diagnostic> {
+    motion: Option<&Located<Vec<Law>>>,
+) -> Result<Vec<Law>, Diagnostic> {
     let Some(motion) = motion else {
         return Ok(Vec::new());
     };
@@ -148,33 +149,12 @@ fn motion(
     Ok(motion.value.clone())
 }
 
-/// Gives what acts to the mechanism, as far as it simulates it; the rest is told.
-pub(super) fn left_out(description: &SceneDescription, states: &[State]) -> Vec<Notice> {
+/// What of the scene is not simulated.
+pub(super) fn left_out(description: &SceneDescription) -> Vec<Notice> {
     let mut notices = Notices::default();
-    for (body, state) in description.bodies.iter().zip(states) {
-        let acting = &state.acting;
-        for (given, what) in [
-            (acting.spring.is_some(), "springs at joints"),
-            (!acting.damping.is_empty(), "dampers at joints"),
-            (!acting.armature.is_empty(), "armatures"),
-            (!acting.effort.is_empty(), "efforts of joints"),
-            (!acting.motion.is_empty(), "prescribed motions"),
-        ] {
-            if given {
-                let joint = format!("joint `{}`", body.joint.name.value);
-                notices.add(format!("{what} are not simulated"), joint);
-            }
-        }
-    }
-    for (count, what) in [
-        (description.springs.len(), "spring"),
-        (description.wrenches.len(), "wrench"),
-        (description.constraints.len(), "constraint"),
-    ] {
-        for index in 0..count {
-            let message = format!("elements [[{what}]] are not simulated");
-            notices.add(message, format!("{what} {}", index + 1));
-        }
+    for constraint in &description.constraints {
+        let name = format!("constraint `{}`", constraint.name.value);
+        notices.add("elements [[constraint]] are not simulated", name);
     }
     notices.into_vec()
 }

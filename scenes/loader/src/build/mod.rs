@@ -1,5 +1,6 @@
 //! From what a scene file says to a mechanism and its state at time 0.
 
+mod equip;
 mod forces;
 mod joint;
 mod state;
@@ -19,13 +20,15 @@ pub(crate) fn scene(
     states: Vec<State>,
     sink: &mut Sink,
 ) -> Option<Scene> {
-    let notices = forces::left_out(description, &states);
+    let notices = forces::left_out(description);
     let mut configuration = Vec::new();
     let mut speeds = Vec::new();
     let mut bodies = Vec::with_capacity(states.len());
+    let mut acting = Vec::with_capacity(states.len());
     for (body, state) in description.bodies.iter().zip(states) {
         configuration.extend(state.configuration);
         speeds.extend(state.speeds);
+        acting.push(state.acting);
         bodies.push(BodySpec {
             name: body.name.value.clone(),
             joint_name: body.joint.name.value.clone(),
@@ -37,11 +40,13 @@ pub(crate) fn scene(
         });
     }
     let mechanism = Mechanism::new(description.gravity, bodies)
+        .and_then(|mechanism| equip::equip(mechanism, description, &acting))
         .map_err(|errors| {
             let errors = errors.into_iter();
             errors.for_each(|error| sink.push(Diagnostic::without_place(error.to_string())));
         })
         .ok()?;
+    mechanism.set_driven_speeds(0.0, &mut speeds);
     Some(Scene {
         name: description.name.clone(),
         description: description.description.clone(),

@@ -3,9 +3,10 @@
 use super::initial;
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
-use crate::forces::{JointForces, JointSpring, PerFreedom, SpeedOverTime, SpringEnergy};
+use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
+use hamel::elements::Law;
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalues of a stiffness that pass for rounding, in units of its largest entry.
@@ -104,23 +105,23 @@ fn full(value: &Value<'_>, sink: &mut Sink) -> Option<DMatrix<f64>> {
     None
 }
 
-fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<SpeedOverTime>>> {
+fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<Law>>> {
     let mut fields = value.table(sink)?;
     let speeds = fields.required("speeds", sink);
     fields.finish(sink);
     let items = speeds?.items("entry", "a list of numbers and tables", sink)?;
     let speeds: Vec<_> = items.iter().map(|item| speed(item, sink)).collect();
-    let speeds: Option<Vec<SpeedOverTime>> = speeds.into_iter().collect();
+    let speeds: Option<Vec<Law>> = speeds.into_iter().collect();
     Some(Located::new(speeds?, value.span()))
 }
 
 /// One speed: a number, or the table of a swing.
-fn speed(value: &Value<'_>, sink: &mut Sink) -> Option<SpeedOverTime> {
+fn speed(value: &Value<'_>, sink: &mut Sink) -> Option<Law> {
     if !value.is_table() {
         let rate = value.number(sink)?.value;
-        return Some(SpeedOverTime {
+        return Some(Law {
             rate,
-            ..SpeedOverTime::default()
+            ..Law::default()
         });
     }
     let mut fields = value.table(sink)?;
@@ -131,7 +132,7 @@ fn speed(value: &Value<'_>, sink: &mut Sink) -> Option<SpeedOverTime> {
     let [rate, amplitude, frequency, phase] =
         ["rate", "amplitude", "frequency", "phase"].map(&mut number);
     fields.finish(sink);
-    Some(SpeedOverTime {
+    Some(Law {
         rate: rate?,
         amplitude: amplitude?,
         frequency: frequency?,

@@ -4,9 +4,8 @@ use super::body::{name_of, position};
 use super::value::{list, number, rows, table, text};
 use super::{entry, pose};
 use crate::description::SceneDescription;
-use crate::forces::{
-    BodyPoint, JointForces, JointSpring, PerFreedom, SpeedOverTime, SpringEnergy, WrenchAxes,
-};
+use crate::forces::{BodyPoint, JointForces, JointSpring, PerFreedom, SpringEnergy, WrenchAxes};
+use hamel::elements::Law;
 
 /// Appends the keys of a body that say what acts at its joint.
 pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
@@ -58,7 +57,7 @@ fn per_freedom(numbers: &PerFreedom) -> String {
     }
 }
 
-fn speed(speed: &SpeedOverTime) -> String {
+fn speed(speed: &Law) -> String {
     if speed.amplitude == 0.0 {
         return number(speed.rate);
     }

@@ -1,0 +1,53 @@
+//! Which entries of H, X^c and S̄ are 0 or 1 at every configuration, for the runtime's recursions.
+
+use super::joint::sizes;
+use crate::derived::{Derived, KernelKind};
+use crate::expr::Expr;
+use crate::matrix::Matrix;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The constant `PATTERNS`.
+pub fn tokens(derived: &Derived) -> TokenStream {
+    let [_, k, s, _] = sizes(derived);
+    let shape = derived.shape;
+    let pose = |output: usize| value(derived, KernelKind::Pose, output);
+    let rotation = rows(pose(0), 3, 3);
+    let translation = row(pose(1), 3);
+    let twist_map = rows(value(derived, KernelKind::TwistMapChild, 0), 6, shape.freedoms);
+    let basis = value(derived, KernelKind::SpeedBasis, 0);
+    let basis = rows(basis, shape.freedoms, shape.speeds);
+    quote! {
+        const PATTERNS: Patterns<#k, #s> = Patterns::new(
+            [#(#rotation),*],
+            #translation,
+            [#(#twist_map),*],
+            [#(#basis),*],
+        );
+    }
+}
+
+fn value(derived: &Derived, kind: KernelKind, output: usize) -> Option<&Matrix> {
+    derived.kernel(kind)?.outputs.get(output)
+}
+
+fn rows(matrix: Option<&Matrix>, rows: usize, columns: usize) -> Vec<String> {
+    let sign = |i: usize, j: usize| matrix.map_or('x', |matrix| sign(matrix.at(i, j)));
+    (0..rows)
+        .map(|i| (0..columns).map(|j| sign(i, j)).collect())
+        .collect()
+}
+
+/// A column vector as one row.
+fn row(vector: Option<&Matrix>, size: usize) -> String {
+    let sign = |i: usize| vector.map_or('x', |vector| sign(vector.at(i, 0)));
+    (0..size).map(sign).collect()
+}
+
+fn sign(entry: &Expr) -> char {
+    match (entry.is_zero(), entry.is_one()) {
+        (true, _) => '0',
+        (_, true) => '1',
+        _ => 'x',
+    }
+}

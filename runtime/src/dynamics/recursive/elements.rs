@@ -1,0 +1,135 @@
+//! Elements, rotor inertias and drives in the recursive form.
+
+use super::Recursive;
+use super::inverse::MOST_FREEDOMS;
+use super::link::Node;
+use crate::elements::{Action, Motions, View};
+use crate::mechanism::StateError;
+use crate::steps::Placement;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use nalgebra::Vector6;
+
+/// The nodes as elements see them.
+pub(super) struct Seen<'a>(pub(super) &'a [Node]);
+
+impl Motions for Seen<'_> {
+    fn placement(&self, body: usize) -> &Placement<f64> {
+        &self.0[body].motion.placement
+    }
+
+    fn twist(&self, body: usize) -> &Vector6<f64> {
+        &self.0[body].motion.twist
+    }
+}
+
+impl Recursive {
+    /// Placements and twists of all joint-child frames; allocates.
+    ///
+    /// # Errors
+    /// When a vector has the wrong size.
+    pub(crate) fn motions(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> Result<Vec<(Placement<f64>, Vector6<f64>)>, StateError> {
+        self.check(q, &[("speeds", speeds.len())])?;
+        self.weigh(q);
+        self.set_twists(speeds);
+        let motions = self.nodes.iter().map(|node| &node.motion);
+        Ok(motions
+            .map(|motion| (motion.placement, motion.twist))
+            .collect())
+    }
+
+    /// What elements exert at the placements and twists of the nodes: wrenches into `external`, `S̄ᵀ` of their efforts and of `efforts` into
+    /// `forces`.
+    pub(super) fn act(&mut self, q: &[f64], speeds: &[f64], efforts: Option<&[f64]>) {
+        match efforts {
+            Some(efforts) => self.efforts.copy_from_slice(efforts),
+            None => self.efforts.fill(0.0),
+        }
+        self.external.fill(Vector6::zeros());
+        let mechanism = Arc::clone(&self.mechanism);
+        let view = View {
+            mechanism: &mechanism,
+            configuration: q,
+            speeds,
+            motions: &Seen(&self.nodes),
+        };
+        let mut action = Action {
+            wrenches: &mut self.external,
+            efforts: &mut self.efforts,
+        };
+        for element in mechanism.elements() {
+            element.act(&view, &mut action);
+        }
+        let efforts = core::mem::take(&mut self.efforts);
+        self.reduce_efforts(q, &efforts);
+        self.efforts = efforts;
+        self.add_rotor_forces(q, speeds);
+    }
+
+    /// `−Σ_k γ_k v_k (a v)` of rotors whose v are not the rates of coordinates.
+    fn add_rotor_forces(&mut self, q: &[f64], speeds: &[f64]) {
+        for link in self.links.iter().filter(|link| link.turns_rotors()) {
+            let v = &speeds[link.speeds.clone()];
+            let mut gamma = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
+            let gamma = &mut gamma[..v.len() * v.len()];
+            link.joint.gamma(&q[link.configuration.clone()], v, gamma);
+            let forces = &mut self.forces[link.speeds.clone()];
+            let momenta = link.armature.iter().zip(v).map(|(a, v)| a * v);
+            for (column, momentum) in gamma.chunks_exact(v.len()).zip(momenta) {
+                for (force, entry) in forces.iter_mut().zip(column) {
+                    *force -= entry * momentum;
+                }
+            }
+        }
+    }
+
+    /// Energy that the elements store at the placements of the nodes, J.
+    pub(super) fn element_energy_here(&self, q: &[f64], speeds: &[f64]) -> f64 {
+        let view = View {
+            mechanism: &self.mechanism,
+            configuration: q,
+            speeds,
+            motions: &Seen(&self.nodes),
+        };
+        let elements = self.mechanism.elements().iter();
+        elements.map(|element| element.energy(&view)).sum()
+    }
+
+    /// The external wrenches taken off what the bodies need.
+    pub(super) fn relieve(&mut self) {
+        for (node, external) in self.nodes.iter_mut().zip(&self.external) {
+            node.wrench -= external;
+        }
+    }
+
+    /// The prescribed accelerations of driven joints, which are the first of their `efforts`; zero for the others.
+    pub(super) fn set_driven_rates(&mut self, efforts: &[f64]) {
+        for link in self.links.iter().filter(|link| link.driven) {
+            let own = &efforts[link.freedoms.clone()];
+            let rates = &mut self.driven[link.speeds.clone()];
+            rates.copy_from_slice(&own[..rates.len()]);
+        }
+    }
+
+    /// The entries of driven joints of `from` into `to`.
+    pub(super) fn copy_driven(&self, from: &[f64], to: &mut [f64]) {
+        for link in self.links.iter().filter(|link| link.driven) {
+            to[link.speeds.clone()].copy_from_slice(&from[link.speeds.clone()]);
+        }
+    }
+
+    /// `out += a x`, with the rotor inertias a.
+    pub(super) fn add_armature(&self, x: &[f64], out: &mut [f64]) {
+        for link in &self.links {
+            let own = link.speeds.clone();
+            let terms = link.armature.iter().zip(&x[own.clone()]);
+            for (out, (a, x)) in out[own].iter_mut().zip(terms) {
+                *out += a * x;
+            }
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Inverse dynamics, what the joints carry, and constraint forces.
+
+use super::Recursive;
+use crate::dynamics::DynamicsError;
+use crate::mechanism::{StateError, WHOLE, check_size};
+use crate::spatial::fused::apply_transposed;
+use crate::spatial::{join, split};
+use nalgebra::{Cholesky, Matrix6, Vector6};
+
+/// A joint moves a body in six ways at most.
+pub(super) const MOST_FREEDOMS: usize = 6;
+
+impl Recursive {
+    /// `S̄ᵀτ` into `efforts` (one entry a speed): what inputs must exert, beside the elements, for the mechanism to accelerate with
+    /// `accelerations` = v̄̇ at `q` and v̄.
+    ///
+    /// # Errors
+    /// When a vector has the wrong size.
+    pub fn inverse_dynamics(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        accelerations: &[f64],
+        efforts: &mut [f64],
+    ) -> Result<(), StateError> {
+        let sizes = [
+            ("speeds", speeds.len()),
+            ("accelerations", accelerations.len()),
+            ("efforts", efforts.len()),
+        ];
+        self.check(q, &sizes)?;
+        self.advance(q, speeds, Some(accelerations));
+        self.gather_needed(q, speeds, efforts);
+        self.add_armature(accelerations, efforts);
+        Ok(())
+    }
+
+    /// `C̄ v̄ + S̄ᵀN̂` into `efforts` (one entry a speed): inverse dynamics at v̄̇ = 0.
+    ///
+    /// # Errors
+    /// When a vector has the wrong size.
+    pub fn bias_forces(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut [f64],
+    ) -> Result<(), StateError> {
+        self.check(q, &[("speeds", speeds.len()), ("efforts", efforts.len())])?;
+        self.advance(q, speeds, None);
+        self.gather_needed(q, speeds, efforts);
+        Ok(())
+    }
+
+    /// What inputs must do beside the elements for the bodies to take the wrenches of the nodes.
+    fn gather_needed(&mut self, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
+        if !self.acted_on {
+            return self.gather(efforts);
+        }
+        self.act(q, speeds, None);
+        self.relieve();
+        self.gather(efforts);
+        for (effort, element) in efforts.iter_mut().zip(&self.forces) {
+            *effort -= element;
+        }
+    }
+
+    /// The wrench that the joint of `body` exerts on its child, in the joint's child frame, as of the last
+    /// [`Recursive::inverse_dynamics`]; `None` when there is no such body.
+    pub fn joint_wrench(&self, body: usize) -> Option<Vector6<f64>> {
+        let node = self.nodes.get(body)?;
+        let (moment, force) = split(&node.wrench);
+        let rotation = &node.motion.placement.rotation;
+        Some(join(
+            &apply_transposed(rotation, &moment),
+            &apply_transposed(rotation, &force),
+        ))
+    }
+
+    /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry a freedom), as of the last
+    /// [`Recursive::inverse_dynamics`] at `q`.
+    ///
+    /// # Errors
+    /// When a vector has the wrong size.
+    pub fn joint_efforts(&self, q: &[f64], efforts: &mut [f64]) -> Result<(), StateError> {
+        self.check(q, &[])?;
+        self.check_efforts(efforts)?;
+        for (index, link) in self.links.iter().enumerate() {
+            self.joint_effort(index, q, &mut efforts[link.freedoms.clone()]);
+        }
+        Ok(())
+    }
+
+    /// `X^cᵀF` of one joint.
+    fn joint_effort(&self, index: usize, q: &[f64], effort: &mut [f64]) {
+        let link = &self.links[index];
+        let wrench = self.joint_wrench(index).unwrap_or_default();
+        let mut map = [0.0; 6 * MOST_FREEDOMS];
+        let map = &mut map[..6 * effort.len()];
+        let q = &q[link.configuration.clone()];
+        link.joint.twist_map_child(q, map);
+        for (effort, column) in effort.iter_mut().zip(map.chunks_exact(6)) {
+            *effort = column.iter().zip(&wrench).map(|(x, f)| x * f).sum();
+        }
+    }
+
+    /// `λ = (AᵀA)⁻¹Aᵀ(X^cᵀF − τ)` into `forces` (one entry a constraint), for applied efforts τ (one a freedom), as of
+    /// the last [`Recursive::inverse_dynamics`] at `q`.
+    ///
+    /// # Errors
+    /// When a vector has the wrong size; when A has lost rank.
+    pub fn constraint_force(
+        &self,
+        q: &[f64],
+        efforts: &[f64],
+        forces: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let layout = self.mechanism.layout();
+        self.check_efforts(efforts)?;
+        check_size(WHOLE, "constraint forces", layout.constraints, forces.len())?;
+        for (index, body) in self.mechanism.bodies().iter().enumerate() {
+            let ranges = body.ranges();
+            let mut carried = [0.0; MOST_FREEDOMS];
+            let carried = &mut carried[..ranges.freedoms.len()];
+            self.joint_effort(index, q, carried);
+            for (effort, applied) in carried.iter_mut().zip(&efforts[ranges.freedoms.clone()]) {
+                *effort -= applied;
+            }
+            if !self.mechanism.elements().is_empty() {
+                let elements = &self.efforts[ranges.freedoms.clone()];
+                for (effort, element) in carried.iter_mut().zip(elements) {
+                    *effort -= element;
+                }
+            }
+            let own = &mut forces[ranges.constraints.clone()];
+            let mut constraint = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
+            let constraint = &mut constraint[..carried.len() * own.len()];
+            body.joint().constraint(body.configuration(q), constraint);
+            outside(constraint, carried, own)?;
+        }
+        Ok(())
+    }
+}
+
+/// `(AᵀA)⁻¹ Aᵀ f` of one joint, A column by column; six constraints at most, unused rows are those of the identity.
+fn outside(constraint: &[f64], f: &[f64], forces: &mut [f64]) -> Result<(), DynamicsError> {
+    let (rows, size) = (f.len(), forces.len());
+    let column = |i: usize| &constraint[i * rows..(i + 1) * rows];
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let mut gram = Matrix6::identity();
+    let mut side = Vector6::zeros();
+    for i in 0..size {
+        side[i] = dot(column(i), f);
+        for j in 0..size {
+            gram[(i, j)] = dot(column(i), column(j));
+        }
+    }
+    let factors = Cholesky::new(gram).ok_or(DynamicsError::DependentConstraints)?;
+    forces.copy_from_slice(&factors.solve(&side).as_slice()[..size]);
+    Ok(())
+}

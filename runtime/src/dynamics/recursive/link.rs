@@ -1,0 +1,128 @@
+//! What the recursion keeps of each body: a compact copy of what never changes, and the workspace.
+
+use crate::erased::AnyJoint;
+use crate::mechanism::{Body, Mechanism};
+use crate::spatial::{Pose, SpatialInertia, join};
+use crate::steps::{Motion, Placement};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::ops::Range;
+use nalgebra::{Vector3, Vector6};
+
+/// One body and its joint, as the sweeps read them: next to each other in memory, without names.
+#[derive(Clone, Debug)]
+pub(super) struct Link {
+    pub(super) joint: Arc<dyn AnyJoint>,
+    pub(super) parent: Option<usize>,
+    pub(super) configuration: Range<usize>,
+    pub(super) freedoms: Range<usize>,
+    pub(super) speeds: Range<usize>,
+    /// The joint's parent frame in the child frame of the parent's joint.
+    pub(super) frame: Pose<f64>,
+    /// Inertia in the joint's child frame.
+    pub(super) inertia: SpatialInertia<f64>,
+    /// Rotor inertias, one a freedom; empty where there are none.
+    pub(super) armature: Vec<f64>,
+    /// Whether the joint's motion is prescribed.
+    pub(super) driven: bool,
+    /// Whether any body hangs on this one.
+    pub(super) carries: bool,
+    /// Whether this is the last of the bodies that hang on its parent, and so the first in an inward sweep.
+    pub(super) last: bool,
+}
+
+impl Link {
+    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let bodies = mechanism.bodies().iter().enumerate();
+        let mut links: Vec<Self> = bodies
+            .map(|(index, body)| Self {
+                armature: mechanism.armature(index).to_vec(),
+                driven: mechanism.is_driven(index),
+                ..Self::new(body)
+            })
+            .collect();
+        for index in (0..links.len()).rev() {
+            if let Some(parent) = links[index].parent {
+                links[index].last = !links[parent].carries;
+                links[parent].carries = true;
+            }
+        }
+        links
+    }
+
+    /// Whether it has rotors whose v are not the rates of coordinates: they add velocity terms.
+    pub(super) fn turns_rotors(&self) -> bool {
+        !self.armature.is_empty() && !self.joint.structures().gamma.is_zero()
+    }
+
+    fn new(body: &Body) -> Self {
+        let ranges = body.ranges();
+        Self {
+            joint: body.shared_joint(),
+            parent: body.parent(),
+            configuration: ranges.configuration.clone(),
+            freedoms: ranges.freedoms.clone(),
+            speeds: ranges.speeds.clone(),
+            frame: *body.joint_frame(),
+            inertia: *body.joint_inertia(),
+            armature: Vec::new(),
+            driven: false,
+            carries: false,
+            last: false,
+        }
+    }
+}
+
+/// The little that a walk from a body to the root needs of each body on its way.
+#[derive(Clone, Debug)]
+pub(super) struct Rung {
+    pub(super) parent: Option<usize>,
+    /// First speed of the joint.
+    pub(super) start: usize,
+    /// The speed after its last.
+    pub(super) end: usize,
+    /// Whether any column of X̄ has a linear part.
+    pub(super) slides: bool,
+    /// Whether X̄ is one column without a linear part.
+    pub(super) turns_once: bool,
+}
+
+impl Rung {
+    pub(super) fn new(body: &Body) -> Self {
+        let speeds = &body.ranges().speeds;
+        let slides = body.joint().slides();
+        Self {
+            parent: body.parent(),
+            start: speeds.start,
+            end: speeds.end,
+            slides,
+            turns_once: speeds.len() == 1 && !slides,
+        }
+    }
+}
+
+/// The state of one body in a sweep; all vectors at the child frame's origin, in world axes.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// Placement, V and V̇, the latter from −g at the world.
+    pub(super) motion: Motion<f64>,
+    /// The body's own inertia.
+    pub(super) rigid: SpatialInertia<f64>,
+    /// What a sweep carries rootward: a wrench or a momentum.
+    pub(super) wrench: Vector6<f64>,
+}
+
+impl Node {
+    /// The world, which a base that accelerates upwards makes as heavy as gravity does.
+    pub(super) fn world(gravity: &Vector3<f64>) -> Self {
+        Self {
+            motion: Motion {
+                placement: Placement::world(),
+                twist: Vector6::zeros(),
+                rate: join(&Vector3::zeros(), &-gravity),
+            },
+            rigid: SpatialInertia::zero(),
+            wrench: Vector6::zeros(),
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! M̄ by composite rigid bodies, and its factorisation along the branches of the tree.
+
+use super::Recursive;
+use super::inverse::MOST_FREEDOMS;
+use crate::dynamics::DynamicsError;
+use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
+use crate::spatial::fused::{add_cross, dot};
+use crate::spatial::{shift_wrench, split};
+use crate::steps::PivotFailure;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Range;
+use nalgebra::{DMatrix, Vector3, Vector6};
+
+/// How many roundings of its own diagonal entry a pivot must stand above, for each row: those of one update and a margin of four.
+const ROUNDINGS: f64 = 8.0;
+
+/// M̄ of one mechanism, and its factors: `M̄ = Lᵀ D L` with the zeros of the tree's branches.
+///
+/// Row i of the lower triangle has entries for speed i itself and for the speeds between it and the root alone; so has row i of L. Filling
+/// and factorising allocate nothing.
+#[derive(Clone, Debug)]
+pub struct MassMatrix {
+    size: usize,
+    /// The lower triangle, row after row, each of full length.
+    rows: Vec<f64>,
+    /// The same, factorised: D on the diagonal.
+    factors: Vec<f64>,
+    /// The next speed towards the root.
+    parents: Vec<Option<usize>>,
+}
+
+impl MassMatrix {
+    /// Room for the mass matrix of `mechanism`.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let size = mechanism.layout().speeds;
+        Self {
+            size,
+            rows: vec![0.0; size * size],
+            factors: Vec::new(),
+            parents: parents(mechanism),
+        }
+        .with_factors()
+    }
+
+    fn with_factors(mut self) -> Self {
+        self.factors = vec![0.0; self.rows.len()];
+        self
+    }
+
+    /// Number of rows: of speeds.
+    pub const fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Entry (i, j); zero for an index out of range.
+    pub fn entry(&self, i: usize, j: usize) -> f64 {
+        let (row, column) = (i.max(j), i.min(j));
+        let index = row * self.size + column;
+        self.rows.get(index).copied().unwrap_or(0.0)
+    }
+
+    /// All entries.
+    pub fn matrix(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.size, self.size, |i, j| self.entry(i, j))
+    }
+
+    /// The factors L (unit diagonal left out) and D (on the diagonal) of `M̄ = Lᵀ D L`, of the last [`MassMatrix::factorize`].
+    pub fn factors(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.size, self.size, |i, j| match j <= i {
+            true => self.factors[i * self.size + j],
+            false => 0.0,
+        })
+    }
+
+    /// `M̄ = Lᵀ D L`, from the last row to the first, so that no zero fills in.
+    ///
+    /// # Errors
+    /// When a pivot does not stand above its rounding, with the joint and the speed.
+    pub fn factorize(&mut self, mechanism: &Mechanism) -> Result<(), DynamicsError> {
+        self.factors.copy_from_slice(&self.rows);
+        let size = self.size;
+        for k in (0..size).rev() {
+            let pivot = self.factors[k * size + k];
+            let limit = ROUNDINGS * size as f64 * f64::EPSILON * self.rows[k * size + k];
+            if pivot.is_nan() || pivot <= limit {
+                return Err(singular(mechanism, k, pivot, limit));
+            }
+            let (above, row) = self.factors.split_at_mut(k * size);
+            let mut ancestor = self.parents[k];
+            while let Some(i) = ancestor {
+                let weight = row[i] / pivot;
+                let target = &mut above[i * size..=i * size + i];
+                subtract(target, &row[..=i], weight, &self.parents, i);
+                row[i] = weight;
+                ancestor = self.parents[i];
+            }
+        }
+        Ok(())
+    }
+
+    /// `M̄⁻¹ x` in place, with the factors of the last [`MassMatrix::factorize`].
+    ///
+    /// # Errors
+    /// When `x` has the wrong size.
+    pub fn solve(&self, x: &mut [f64]) -> Result<(), StateError> {
+        check_size(WHOLE, "right-hand side", self.size, x.len())?;
+        let size = self.size;
+        for k in (0..size).rev() {
+            self.each_ancestor(k, |i| x[i] -= self.factors[k * size + i] * x[k]);
+        }
+        for k in 0..size {
+            let mut value = x[k] / self.factors[k * size + k];
+            self.each_ancestor(k, |i| value -= self.factors[k * size + i] * x[i]);
+            x[k] = value;
+        }
+        Ok(())
+    }
+
+    fn each_ancestor(&self, speed: usize, mut visit: impl FnMut(usize)) {
+        let mut ancestor = self.parents[speed];
+        while let Some(i) = ancestor {
+            visit(i);
+            ancestor = self.parents[i];
+        }
+    }
+}
+
+/// `target_j −= weight row_j` for j = i and every speed between i and the root.
+fn subtract(target: &mut [f64], row: &[f64], weight: f64, parents: &[Option<usize>], i: usize) {
+    let mut ancestor = Some(i);
+    while let Some(j) = ancestor {
+        target[j] -= weight * row[j];
+        ancestor = parents[j];
+    }
+}
+
+fn singular(mechanism: &Mechanism, speed: usize, pivot: f64, limit: f64) -> DynamicsError {
+    let owner = |range: &Range<usize>| range.contains(&speed);
+    let body = mechanism
+        .bodies()
+        .iter()
+        .position(|body| owner(&body.ranges().speeds));
+    let body = body.unwrap_or(0);
+    let start = mechanism.bodies()[body].ranges().speeds.start;
+    let failure = PivotFailure {
+        speed: speed - start,
+        pivot,
+        limit,
+    };
+    mechanism.singular(body, &failure)
+}
+
+/// The next speed towards the root, for each speed.
+fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
+    let mut parents = vec![None; mechanism.layout().speeds];
+    for body in mechanism.bodies() {
+        let mut nearest = nearest_speed(mechanism, body.parent());
+        for speed in body.ranges().speeds.clone() {
+            parents[speed] = nearest;
+            nearest = Some(speed);
+        }
+    }
+    parents
+}
+
+/// The last speed of `body`'s joint, or of the nearest body towards the root whose joint has any.
+fn nearest_speed(mechanism: &Mechanism, mut body: Option<usize>) -> Option<usize> {
+    while let Some(index) = body {
+        let candidate = &mechanism.bodies()[index];
+        if !candidate.ranges().speeds.is_empty() {
+            return Some(candidate.ranges().speeds.end - 1);
+        }
+        body = candidate.parent();
+    }
+    None
+}
+
+impl Recursive {
+    /// M̄ at `q` into `mass`.
+    ///
+    /// # Errors
+    /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
+    pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
+        self.check(q, &[("rows of the mass matrix", mass.size)])?;
+        self.weigh(q);
+        for (index, link) in self.links.iter().enumerate().rev() {
+            // By reference: a copy would wait for the stores that the child has just made.
+            let own = &self.nodes[index].rigid;
+            let mut momenta = [Vector6::zeros(); MOST_FREEDOMS];
+            let momenta = &mut momenta[..link.speeds.len()];
+            let columns = &self.columns[link.speeds.clone()];
+            link.joint.momenta(own, columns, momenta);
+            for (speed, momentum) in link.speeds.clone().zip(momenta) {
+                let row = &mut mass.rows[speed * mass.size..=speed * mass.size + speed];
+                self.fill_row(row, index, momentum);
+            }
+            for (speed, armature) in link.speeds.clone().zip(&link.armature) {
+                mass.rows[speed * mass.size + speed] += armature;
+            }
+            if let Some(parent) = link.parent {
+                let carried = own.shifted(&self.nodes[index].motion.placement.offset);
+                self.nodes[parent].rigid = self.nodes[parent].rigid.combine(&carried);
+            }
+        }
+        Ok(())
+    }
+
+    /// M̄⁻¹ at `q` into `inverse`, column by column with the factors of the articulated inertias.
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size.
+    pub fn inverse_mass_matrix(
+        &mut self,
+        q: &[f64],
+        inverse: &mut MassMatrix,
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("rows of the mass matrix", inverse.size)])?;
+        self.weigh(q);
+        self.articulate()?;
+        for body in 0..self.links.len() {
+            for speed in self.links[body].speeds.clone() {
+                let row = speed * inverse.size;
+                let row = &mut inverse.rows[row..row + self.links[body].speeds.end];
+                self.inverse_row(row, body, speed);
+            }
+        }
+        Ok(())
+    }
+
+    /// One row of M̄⁻¹, up to the last speed of `body`: the rates under a unit force on `speed`, one of its joint's.
+    fn inverse_row(&mut self, row: &mut [f64], body: usize, speed: usize) {
+        let (mut next, mut wrench) = (Some(body), Vector6::zeros());
+        self.loads[..row.len()].fill(0.0);
+        while let Some(index) = next {
+            let link = &self.links[index];
+            let speeds = link.speeds.clone();
+            let mut unit = [0.0; MOST_FREEDOMS];
+            if speeds.contains(&speed) {
+                unit[speed - speeds.start] = 1.0;
+            }
+            link.joint.reduce(
+                &mut wrench,
+                &self.columns[speeds.clone()],
+                &self.pivots[speeds.clone()],
+                &unit[..speeds.len()],
+                &mut self.loads[speeds],
+            );
+            wrench = shift_wrench(&wrench, &self.nodes[index].motion.placement.offset);
+            next = link.parent;
+        }
+        self.resolve_up_to(body, row);
+    }
+
+    /// `X_kᵀ F` for all speeds k from `body` to the root, and up to the length of the row.
+    fn fill_row(&self, row: &mut [f64], mut body: usize, momentum: &Vector6<f64>) {
+        let (mut moment, force) = split(momentum);
+        let own = self.rungs[body].start..row.len();
+        self.fill_block(row, own, true, &moment, &force);
+        while let Some(parent) = self.rungs[body].parent {
+            let offset = &self.nodes[body].motion.placement.offset;
+            moment = add_cross(&moment, offset, &force);
+            let rung = &self.rungs[parent];
+            if rung.turns_once {
+                let (angular, _) = split(&self.columns[rung.start]);
+                row[rung.start] = dot(&angular, &moment);
+            } else {
+                self.fill_block(row, rung.start..rung.end, rung.slides, &moment, &force);
+            }
+            body = parent;
+        }
+    }
+
+    /// `X_kᵀ F` for the speeds k of one joint.
+    fn fill_block(
+        &self,
+        row: &mut [f64],
+        speeds: Range<usize>,
+        slides: bool,
+        moment: &Vector3<f64>,
+        force: &Vector3<f64>,
+    ) {
+        for (entry, column) in row[speeds.clone()].iter_mut().zip(&self.columns[speeds]) {
+            let (angular, linear) = split(column);
+            *entry = match slides {
+                true => dot(&angular, moment) + dot(&linear, force),
+                false => dot(&angular, moment),
+            };
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The same dynamics in O(n): recursions over the tree, without mass matrix, S, γ or derivative in ϕ.
+//!
+//! All spatial vectors of a body are read at the origin of its joint's child frame, in world axes, so that going from body to body is a shift
+//! without a rotation. Outward: `V_i = V_λ + X̄ v̄` and `V̇_i = V̇_λ + X̄ v̄̇ + c + ad_V X̄ v̄`, from `V̇₀ = (0; −g)`.
+//! Inward: `F_i = G V̇ − ad_Vᵀ G V + Σ F_child`; `X̄ᵀF` is (24) and (34).
+//!
+//! Forward dynamics solves `M̄ v̄̇ = S̄ᵀτ − (X̄ᵀF at v̄̇ = 0)` by articulated inertias; `v̄ = M̄⁻¹p̄` uses the same factors.
+//!
+//! After construction nothing allocates.
+
+mod elements;
+mod hamiltonian;
+mod inverse;
+mod link;
+mod mass;
+mod sweeps;
+
+pub use mass::MassMatrix;
+
+use super::{Dynamics, DynamicsError};
+use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
+use crate::spatial::ArticulatedInertia;
+use crate::steps::Pivot;
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+use link::{Link, Node, Rung};
+use nalgebra::Vector6;
+
+/// The recursive form of a mechanism's dynamics, with its workspace: one for each thread.
+#[derive(Clone, Debug)]
+pub struct Recursive {
+    mechanism: Arc<Mechanism>,
+    /// Whether every joint is holonomic and nothing but gravity and inputs acts: τ is then all there is to solve for.
+    plain: bool,
+    /// Whether there are elements, or rotors that add velocity terms.
+    acted_on: bool,
+    links: Vec<Link>,
+    rungs: Vec<Rung>,
+    world: Node,
+    nodes: Vec<Node>,
+    /// X̄, one column a speed.
+    columns: Vec<Vector6<f64>>,
+    inertias: Vec<ArticulatedInertia<f64>>,
+    pivots: Vec<Pivot<f64>>,
+    loads: Vec<f64>,
+    /// `S̄ᵀτ`, one entry a speed.
+    forces: Vec<f64>,
+    /// τ, one entry a freedom.
+    efforts: Vec<f64>,
+    /// τ of the inputs, one entry a freedom.
+    inputs: Vec<f64>,
+    /// Wrenches of elements on the bodies, at the child frames' origins, in world axes.
+    external: Vec<Vector6<f64>>,
+    /// Prescribed rates of driven joints, one entry a speed; zero for the others.
+    driven: Vec<f64>,
+}
+
+impl Recursive {
+    /// The recursive form of `mechanism`.
+    pub fn new(mechanism: Arc<Mechanism>) -> Self {
+        let world = Node::world(mechanism.gravity());
+        let count = mechanism.bodies().len();
+        let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        Self {
+            plain: false,
+            acted_on: false,
+            links: Link::all(&mechanism),
+            rungs: mechanism.bodies().iter().map(Rung::new).collect(),
+            nodes: vec![world.clone(); count],
+            world,
+            columns: vec![Vector6::zeros(); speeds],
+            inertias: vec![ArticulatedInertia::zero(); count],
+            pivots: vec![Pivot::zero(); speeds],
+            loads: vec![0.0; speeds],
+            forces: vec![0.0; speeds],
+            efforts: vec![0.0; freedoms],
+            inputs: vec![0.0; freedoms],
+            external: vec![Vector6::zeros(); count],
+            driven: vec![0.0; speeds],
+            mechanism,
+        }
+        .classified()
+    }
+
+    /// What the sweeps can leave out.
+    fn classified(mut self) -> Self {
+        let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
+        self.acted_on =
+            !self.mechanism.elements().is_empty() || self.links.iter().any(Link::turns_rotors);
+        self.plain = !self.acted_on
+            && self.mechanism.drives().is_empty()
+            && self.mechanism.bodies().iter().all(holonomic);
+        self
+    }
+
+    /// Places all frames: what the other readings of one configuration start from.
+    ///
+    /// # Errors
+    /// When `q` has the wrong size.
+    pub fn set_configuration(&mut self, q: &[f64]) -> Result<(), StateError> {
+        self.check(q, &[])?;
+        self.place(q);
+        Ok(())
+    }
+
+    fn check(&self, q: &[f64], vectors: &[(&'static str, usize)]) -> Result<(), StateError> {
+        let layout = self.mechanism.layout();
+        check_size(WHOLE, "configuration", layout.configuration, q.len())?;
+        vectors
+            .iter()
+            .try_for_each(|&(quantity, found)| check_size(WHOLE, quantity, layout.speeds, found))
+    }
+
+    fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
+        let freedoms = self.mechanism.layout().freedoms;
+        check_size(WHOLE, "efforts", freedoms, efforts.len())
+    }
+
+    /// `S̄ᵀτ` of every joint.
+    fn reduce_efforts(&mut self, q: &[f64], efforts: &[f64]) {
+        for link in &self.links {
+            link.joint.reduce_efforts(
+                &q[link.configuration.clone()],
+                &efforts[link.freedoms.clone()],
+                &mut self.forces[link.speeds.clone()],
+            );
+        }
+    }
+
+    /// Loads of the forces, against the wrenches of the nodes, to rates.
+    fn solve(&mut self, forces: &[f64], rates: &mut [f64]) -> Result<(), DynamicsError> {
+        self.eliminate(forces)?;
+        self.resolve(rates);
+        Ok(())
+    }
+}
+
+impl Dynamics for Recursive {
+    fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.mechanism
+    }
+
+    fn accelerations(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("speeds", speeds.len()), ("rates", rates.len())])?;
+        self.check_efforts(efforts)?;
+        if self.plain {
+            self.advance(q, speeds, None);
+            return self.solve(efforts, rates);
+        }
+        self.set_driven_rates(efforts);
+        let driven = core::mem::take(&mut self.driven);
+        self.advance(q, speeds, Some(&driven));
+        self.act(q, speeds, Some(efforts));
+        self.relieve();
+        let forces = core::mem::take(&mut self.forces);
+        let solved = self.solve(&forces, rates);
+        self.forces = forces;
+        self.driven = driven;
+        self.copy_driven(&self.driven, rates);
+        solved
+    }
+
+    fn momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        momenta: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("speeds", speeds.len()), ("momenta", momenta.len())])?;
+        self.weigh(q);
+        self.set_twists(speeds);
+        self.set_momenta();
+        self.gather(momenta);
+        self.add_armature(speeds, momenta);
+        self.copy_driven(speeds, momenta);
+        Ok(())
+    }
+
+    fn speeds(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        speeds: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("momenta", momenta.len()), ("speeds", speeds.len())])?;
+        self.weigh(q);
+        if self.mechanism.drives().is_empty() {
+            return self.solve(momenta, speeds);
+        }
+        let mut driven = core::mem::take(&mut self.driven);
+        self.copy_driven(momenta, &mut driven);
+        self.set_twists(&driven);
+        self.set_momenta();
+        let solved = self.solve(momenta, speeds);
+        self.copy_driven(&driven, speeds);
+        self.driven = driven;
+        self.set_twists(speeds);
+        solved
+    }
+
+    fn momentum_rates(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &mut dyn FnMut(&[f64], &mut [f64]),
+        speeds: &mut [f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("rates", rates.len())])?;
+        self.speeds(q, momenta, speeds)?;
+        let mut tau = core::mem::take(&mut self.inputs);
+        tau.fill(0.0);
+        efforts(speeds, &mut tau);
+        self.act(q, speeds, Some(&tau));
+        self.momentum_rates_at(q, speeds, rates);
+        self.set_driven_rates(&tau);
+        self.copy_driven(&self.driven, rates);
+        self.inputs = tau;
+        Ok(())
+    }
+
+    fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
+        let mut speeds = core::mem::take(&mut self.forces);
+        let solved = self.speeds(q, momenta, &mut speeds);
+        let energy = self.energy_here(q, &speeds);
+        self.forces = speeds;
+        solved.map(|()| energy)
+    }
+}

@@ -1,0 +1,201 @@
+//! The sweeps that all of the recursive form is made of: outward for motion, inward for inertia and wrenches.
+
+use super::Recursive;
+use super::link::{Link, Node};
+use crate::dynamics::DynamicsError;
+use crate::spatial::{ArticulatedInertia, add_weighted, shift_twist, shift_wrench};
+use crate::steps::PivotFailure;
+use nalgebra::Vector6;
+
+/// The node of a parent, or the world, beside the node of its child.
+fn with_parent<'a>(
+    nodes: &'a mut [Node],
+    world: &'a Node,
+    parent: Option<usize>,
+    index: usize,
+) -> (&'a Node, &'a mut Node) {
+    let (before, rest) = nodes.split_at_mut(index);
+    (parent.map_or(world, |parent| &before[parent]), &mut rest[0])
+}
+
+impl Recursive {
+    /// Outward: where every joint puts its child.
+    pub(super) fn place(&mut self, q: &[f64]) {
+        for (index, link) in self.links.iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let (from, to) = (&parent.motion.placement, &mut own.motion.placement);
+            let q = &q[link.configuration.clone()];
+            link.joint.place(q, &link.frame, from, to);
+        }
+    }
+
+    /// Outward: placements, X̄ and each body's own inertia; no wrench.
+    pub(super) fn weigh(&mut self, q: &[f64]) {
+        for (index, link) in self.links.iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let (from, to) = (&parent.motion.placement, &mut own.motion.placement);
+            let q = &q[link.configuration.clone()];
+            let columns = &mut self.columns[link.speeds.clone()];
+            link.joint.stand(q, &link.frame, from, to, columns);
+            own.rigid = link.inertia.rotated(&to.rotation);
+            own.wrench = Vector6::zeros();
+        }
+    }
+
+    /// Outward: placements, X̄, V, and V̇ under `accelerations` = v̄̇ (zero when absent); each body's own inertia and the wrench
+    /// that it takes.
+    pub(super) fn advance(&mut self, q: &[f64], speeds: &[f64], accelerations: Option<&[f64]>) {
+        for (index, link) in self.links.iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let columns = &mut self.columns[link.speeds.clone()];
+            let accelerations = accelerations.map_or(&[][..], |all| &all[link.speeds.clone()]);
+            let state = (
+                &q[link.configuration.clone()],
+                &speeds[link.speeds.clone()],
+                accelerations,
+            );
+            let motion = &mut own.motion;
+            link.joint
+                .advance(state, &link.frame, &parent.motion, motion, columns);
+            own.rigid = link.inertia.rotated(&motion.placement.rotation);
+            own.wrench = own.rigid.wrench(&motion.twist, &motion.rate);
+        }
+    }
+
+    /// Outward, after [`Recursive::weigh`]: V.
+    pub(super) fn set_twists(&mut self, speeds: &[f64]) {
+        for (index, link) in self.links.iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let carried = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
+            let columns = &self.columns[link.speeds.clone()];
+            own.motion.twist = combine(carried, columns, &speeds[link.speeds.clone()]);
+        }
+    }
+
+    /// Inward: the articulated inertias, and the pivots of every joint.
+    pub(super) fn articulate(&mut self) -> Result<(), DynamicsError> {
+        for (index, link) in self.links.iter().enumerate().rev() {
+            let speeds = link.speeds.clone();
+            let (columns, pivots) = (&self.columns[speeds.clone()], &mut self.pivots[speeds]);
+            let node = &self.nodes[index];
+            let mut inertia = whole(link, node, &self.inertias[index]);
+            if !link.driven {
+                link.joint
+                    .articulate(&mut inertia, columns, &link.armature, pivots)
+                    .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            }
+            if let Some(parent) = link.parent {
+                let carried = inertia.shifted(&node.motion.placement.offset);
+                hand_over(link, &mut self.inertias[parent], &carried);
+            }
+        }
+        Ok(())
+    }
+
+    /// Inward: [`Recursive::articulate`], and the loads of generalised `forces` (one entry a speed) against the wrenches of the nodes.
+    pub(super) fn eliminate(&mut self, forces: &[f64]) -> Result<(), DynamicsError> {
+        for (index, link) in self.links.iter().enumerate().rev() {
+            let speeds = link.speeds.clone();
+            let (before, rest) = self.nodes.split_at_mut(index);
+            let node = &mut rest[0];
+            let mut inertia = whole(link, node, &self.inertias[index]);
+            if !link.driven {
+                link.joint
+                    .eliminate(
+                        (&mut inertia, &mut node.wrench),
+                        &self.columns[speeds.clone()],
+                        (&link.armature, &forces[speeds.clone()]),
+                        &mut self.pivots[speeds.clone()],
+                        &mut self.loads[speeds],
+                    )
+                    .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            }
+            if let Some(parent) = link.parent {
+                let offset = &node.motion.placement.offset;
+                hand_over(link, &mut self.inertias[parent], &inertia.shifted(offset));
+                before[parent].wrench += shift_wrench(&node.wrench, offset);
+            }
+        }
+        Ok(())
+    }
+
+    /// Outward, after [`Recursive::eliminate`]: the rates that the loads amount to. The twists become those of the rates.
+    pub(super) fn resolve(&mut self, rates: &mut [f64]) {
+        if let Some(last) = self.links.len().checked_sub(1) {
+            self.resolve_up_to(last, rates);
+        }
+    }
+
+    /// [`Recursive::resolve`] for the bodies up to `last`.
+    pub(super) fn resolve_up_to(&mut self, last: usize, rates: &mut [f64]) {
+        for (index, link) in self.links[..=last].iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let speeds = link.speeds.clone();
+            let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds.clone()]);
+            let loads = &self.loads[speeds.clone()];
+            own.motion.twist = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
+            link.joint.resolve(
+                &mut own.motion.twist,
+                columns,
+                pivots,
+                loads,
+                &mut rates[speeds],
+            );
+        }
+    }
+
+    /// Inward: the wrench of each node and of all that hangs on it; `X̄ᵀ` of it into `out`, one entry a speed.
+    pub(super) fn gather(&mut self, out: &mut [f64]) {
+        for (index, link) in self.links.iter().enumerate().rev() {
+            let (before, rest) = self.nodes.split_at_mut(index);
+            let own = &rest[0];
+            let columns = &self.columns[link.speeds.clone()];
+            link.joint
+                .gather(&own.wrench, columns, &mut out[link.speeds.clone()]);
+            if let Some(parent) = link.parent {
+                before[parent].wrench += shift_wrench(&own.wrench, &own.motion.placement.offset);
+            }
+        }
+    }
+}
+
+/// What a joint carries: the body itself and what its children have handed over.
+#[inline(always)]
+fn whole(link: &Link, node: &Node, handed: &ArticulatedInertia<f64>) -> ArticulatedInertia<f64> {
+    match link.carries {
+        true => handed.with_rigid(&node.rigid),
+        false => ArticulatedInertia::from(&node.rigid),
+    }
+}
+
+/// Adds a child's share to its parent's; the first of an inward sweep overwrites what the last sweep left.
+#[inline(always)]
+fn hand_over(link: &Link, parent: &mut ArticulatedInertia<f64>, carried: &ArticulatedInertia<f64>) {
+    match link.last {
+        true => *parent = *carried,
+        false => parent.add(carried),
+    }
+}
+
+/// `start + Σ_j X_j weights_j`.
+fn combine(start: Vector6<f64>, columns: &[Vector6<f64>], weights: &[f64]) -> Vector6<f64> {
+    columns
+        .iter()
+        .zip(weights)
+        .fold(start, |sum, (column, &weight)| {
+            add_weighted(&sum, column, weight)
+        })
+}
+
+impl crate::mechanism::Mechanism {
+    /// The joint and speed behind a pivot that failed.
+    pub(super) fn singular(&self, body: usize, failure: &PivotFailure) -> DynamicsError {
+        let body = &self.bodies()[body];
+        DynamicsError::SingularMass {
+            joint: body.joint_name().into(),
+            speed: body.joint().speeds().get(failure.speed).unwrap_or(&""),
+            pivot: failure.pivot,
+            limit: failure.limit,
+        }
+    }
+}

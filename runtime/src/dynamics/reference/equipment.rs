@@ -1,0 +1,107 @@
+//! Elements, rotor inertias and drives in the reference form: elements as efforts and `Jᵀ` of wrenches, drives as known speeds.
+
+use super::tree::Tree;
+use super::{Expansion, StateError};
+use crate::dynamics::Recursive;
+use crate::elements::{Action, Motions, View};
+use crate::mechanism::Mechanism;
+use crate::spatial::fused::apply_transposed;
+use crate::spatial::{join, split};
+use crate::steps::Placement;
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector, Vector6};
+
+/// Where elements see the bodies: from the recursive form, whose kinematics are tested against others.
+struct Seen(Vec<(Placement<f64>, Vector6<f64>)>);
+
+impl Motions for Seen {
+    fn placement(&self, body: usize) -> &Placement<f64> {
+        &self.0[body].0
+    }
+
+    fn twist(&self, body: usize) -> &Vector6<f64> {
+        &self.0[body].1
+    }
+}
+
+/// What the elements of a mechanism amount to at one state.
+pub(super) struct ElementForces {
+    /// τ, one entry a freedom.
+    pub(super) efforts: DVector<f64>,
+    /// Stored energy, J.
+    pub(super) energy: f64,
+}
+
+impl ElementForces {
+    pub(super) fn new(
+        mechanism: &Arc<Mechanism>,
+        expansion: &Expansion,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> Result<Self, StateError> {
+        let mut forces = Self {
+            efforts: DVector::zeros(mechanism.layout().freedoms),
+            energy: 0.0,
+        };
+        if mechanism.elements().is_empty() {
+            return Ok(forces);
+        }
+        let motions = Seen(Recursive::new(Arc::clone(mechanism)).motions(q, speeds)?);
+        let view = View {
+            mechanism,
+            configuration: q,
+            speeds,
+            motions: &motions,
+        };
+        let mut wrenches = vec![Vector6::zeros(); mechanism.bodies().len()];
+        let mut action = Action {
+            wrenches: &mut wrenches,
+            efforts: forces.efforts.as_mut_slice(),
+        };
+        for element in mechanism.elements() {
+            element.act(&view, &mut action);
+            forces.energy += element.energy(&view);
+        }
+        let tree = Tree::new(mechanism, q, &expansion.velocity_map);
+        for ((motion, wrench), seen) in tree.bodies.iter().zip(&wrenches).zip(&motions.0) {
+            let (moment, force) = split(wrench);
+            let turned = |part| apply_transposed(&seen.0.rotation, part);
+            let in_child = join(&turned(&moment), &turned(&force));
+            forces.efforts += motion.jacobian.tr_mul(&in_child);
+        }
+        Ok(forces)
+    }
+}
+
+/// Rows of `matrix · x = side` whose x is known, replaced by `x = known`, with the matrix kept symmetric.
+pub(super) fn hold(matrix: &mut DMatrix<f64>, side: &mut DVector<f64>, known: &[(usize, f64)]) {
+    for &(index, x) in known {
+        side.axpy(-x, &matrix.column(index).into_owned(), 1.0);
+        matrix.row_mut(index).fill(0.0);
+        matrix.column_mut(index).fill(0.0);
+    }
+    for &(index, x) in known {
+        matrix[(index, index)] = 1.0;
+        side[index] = x;
+    }
+}
+
+/// The speeds of driven joints, each with its entry of `values` (one a speed).
+pub(super) fn driven(mechanism: &Mechanism, values: &[f64]) -> Vec<(usize, f64)> {
+    let ranges = mechanism
+        .drives()
+        .iter()
+        .map(|drive| mechanism.bodies()[drive.body].ranges().speeds.clone());
+    ranges.flatten().map(|i| (i, values[i])).collect()
+}
+
+/// The same for values with one entry a freedom: S̄ is the identity for driven joints.
+pub(super) fn driven_freedoms(mechanism: &Mechanism, values: &[f64]) -> Vec<(usize, f64)> {
+    let pairs = mechanism.drives().iter().flat_map(|drive| {
+        let ranges = mechanism.bodies()[drive.body].ranges();
+        ranges.speeds.clone().zip(ranges.freedoms.clone())
+    });
+    pairs.map(|(i, k)| (i, values[k])).collect()
+}

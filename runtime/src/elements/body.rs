@@ -1,0 +1,134 @@
+//! Springs between bodies, and wrenches from outside.
+
+use super::error::{body, values};
+use super::{Action, Element, ElementError, View};
+use crate::mechanism::Mechanism;
+use crate::spatial::fused::{apply, dot};
+use alloc::string::String;
+use nalgebra::Vector3;
+
+/// A spring with a damper beside it, between two points: force `k (l − l₀) + c l̇` along the line that joins them.
+///
+/// Where the points coincide the line has no direction, and the force is zero.
+#[derive(Clone, Debug)]
+pub struct BodySpring {
+    /// Name, for messages.
+    pub name: String,
+    /// The body of each end; `None` is the world.
+    pub bodies: [Option<usize>; 2],
+    /// The point of each end, in its body frame, m.
+    pub points: [Vector3<f64>; 2],
+    /// k, N/m; not negative.
+    pub stiffness: f64,
+    /// c, N·s/m; not negative.
+    pub damping: f64,
+    /// l₀, m; not negative.
+    pub length: f64,
+}
+
+impl BodySpring {
+    /// Direction from the first end to the second, length and its rate.
+    fn line(&self, view: &View<'_>) -> (Vector3<f64>, f64, f64) {
+        let (from, from_velocity) = view.point(self.bodies[0], &self.points[0]);
+        let (to, to_velocity) = view.point(self.bodies[1], &self.points[1]);
+        let (between, rate) = (to - from, to_velocity - from_velocity);
+        let length = between.norm();
+        if length == 0.0 {
+            return (Vector3::zeros(), 0.0, 0.0);
+        }
+        let direction = between / length;
+        (direction, length, dot(&direction, &rate))
+    }
+}
+
+impl Element for BodySpring {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        for index in self.bodies.into_iter().flatten() {
+            body(&self.name, mechanism, index)?;
+        }
+        for point in &self.points {
+            values(&self.name, "point", point.as_slice(), 3, true)?;
+        }
+        values(&self.name, "stiffness", &[self.stiffness], 1, false)?;
+        values(&self.name, "damping", &[self.damping], 1, false)?;
+        values(&self.name, "length", &[self.length], 1, false)
+    }
+
+    fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
+        let (direction, length, rate) = self.line(view);
+        let pull = self.stiffness * (length - self.length) + self.damping * rate;
+        for ((end, point), sign) in self.bodies.iter().zip(&self.points).zip([1.0, -1.0]) {
+            if let Some(end) = *end {
+                action.add_force(end, &view.arm(end, point), &(direction * (sign * pull)));
+            }
+        }
+    }
+
+    fn energy(&self, view: &View<'_>) -> f64 {
+        let stretch = self.line(view).1 - self.length;
+        0.5 * self.stiffness * stretch * stretch
+    }
+}
+
+/// The axes in which a wrench from outside is constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WrenchAxes {
+    /// World axes.
+    World,
+    /// Axes of the body.
+    Body,
+}
+
+/// A constant force and moment on a body, from outside.
+#[derive(Clone, Debug)]
+pub struct BodyWrench {
+    /// Name, for messages.
+    pub name: String,
+    /// The body.
+    pub body: usize,
+    /// Where the force acts, in the body frame, m.
+    pub point: Vector3<f64>,
+    /// Force, N.
+    pub force: Vector3<f64>,
+    /// Moment beside that of the force, N·m.
+    pub moment: Vector3<f64>,
+    /// The axes of both.
+    pub axes: WrenchAxes,
+}
+
+impl Element for BodyWrench {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        body(&self.name, mechanism, self.body)?;
+        values(&self.name, "point", self.point.as_slice(), 3, true)?;
+        values(&self.name, "force", self.force.as_slice(), 3, true)?;
+        values(&self.name, "moment", self.moment.as_slice(), 3, true)
+    }
+
+    fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
+        let (force, moment) = match self.axes {
+            WrenchAxes::World => (self.force, self.moment),
+            WrenchAxes::Body => {
+                let rotation = view.pose(Some(self.body)).rotation;
+                (
+                    apply(&rotation, &self.force),
+                    apply(&rotation, &self.moment),
+                )
+            }
+        };
+        action.add_force(self.body, &view.arm(self.body, &self.point), &force);
+        action.add_wrench(self.body, &moment, &Vector3::zeros());
+    }
+
+    /// Work depends on the path in general: none is counted.
+    fn energy(&self, _view: &View<'_>) -> f64 {
+        0.0
+    }
+}

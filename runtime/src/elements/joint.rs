@@ -1,0 +1,78 @@
+//! Dampers and actuators at a joint.
+
+use super::error::{body, values};
+use super::{Action, Element, ElementError, View};
+use crate::mechanism::Mechanism;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// `τ = −c v`, freedom by freedom.
+#[derive(Clone, Debug)]
+pub struct JointDamper {
+    /// Name, for messages.
+    pub name: String,
+    /// The body whose joint it damps.
+    pub body: usize,
+    /// c, one entry a freedom: N·m·s/rad or N·s/m; not negative.
+    pub coefficients: Vec<f64>,
+}
+
+impl Element for JointDamper {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        let freedoms = body(&self.name, mechanism, self.body)?
+            .ranges()
+            .freedoms
+            .len();
+        values(&self.name, "damping", &self.coefficients, freedoms, false)
+    }
+
+    fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
+        let (mut velocity, mut effort) = ([0.0; 6], [0.0; 6]);
+        let velocity = view.joint_velocity(self.body, &mut velocity);
+        for ((effort, c), v) in effort.iter_mut().zip(&self.coefficients).zip(velocity) {
+            *effort = -c * v;
+        }
+        action.add_effort(view, self.body, &effort);
+    }
+
+    fn energy(&self, _view: &View<'_>) -> f64 {
+        0.0
+    }
+}
+
+/// Constant efforts of the actuators of a joint.
+#[derive(Clone, Debug)]
+pub struct JointEffort {
+    /// Name, for messages.
+    pub name: String,
+    /// The body whose joint is driven.
+    pub body: usize,
+    /// τ, one entry a freedom: N·m or N.
+    pub efforts: Vec<f64>,
+}
+
+impl Element for JointEffort {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        let freedoms = body(&self.name, mechanism, self.body)?
+            .ranges()
+            .freedoms
+            .len();
+        values(&self.name, "effort", &self.efforts, freedoms, true)
+    }
+
+    fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
+        action.add_effort(view, self.body, &self.efforts);
+    }
+
+    fn energy(&self, _view: &View<'_>) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,40 @@
+//! What acts on a mechanism besides gravity and inputs: springs, dampers, actuators, external wrenches, user potentials, drives.
+//!
+//! An [`Element`] reads the motion of the mechanism from a [`View`] and adds efforts at joints and forces on bodies to an [`Action`].
+//! Every form of the dynamics calls it at the same place, so that an element is written once. Elements belong to a
+//! [`Mechanism`]: see [`Mechanism::with_elements`].
+
+mod body;
+mod drive;
+mod error;
+mod joint;
+mod spring;
+mod view;
+
+pub use body::{BodySpring, BodyWrench, WrenchAxes};
+pub use drive::{Drive, Law};
+pub use error::ElementError;
+pub use joint::{JointDamper, JointEffort};
+pub use spring::{JointSpring, RotationSpring};
+pub use view::{Action, Motions, View};
+
+use crate::mechanism::Mechanism;
+use core::fmt::Debug;
+
+/// Something that acts on a mechanism, and what energy it stores.
+pub trait Element: Debug + Send + Sync {
+    /// Its name, for messages.
+    fn name(&self) -> &str;
+
+    /// Whether the element fits the mechanism.
+    ///
+    /// # Errors
+    /// A body that is not there, a value out of range, a wrong size.
+    fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError>;
+
+    /// Adds its efforts (in the axes of v) and its forces and moments (in world axes).
+    fn act(&self, view: &View<'_>, action: &mut Action<'_>);
+
+    /// The energy that it stores, J; 0 for one that stores none.
+    fn energy(&self, view: &View<'_>) -> f64;
+}

@@ -1,0 +1,158 @@
+//! Springs at a joint, measured on the joint's own manifold.
+
+use super::error::{body, values};
+use super::{Action, Element, ElementError, View};
+use crate::mechanism::Mechanism;
+use crate::spatial::fused::product;
+use crate::spatial::vee;
+use alloc::string::String;
+use alloc::vec::Vec;
+use nalgebra::{Matrix3, Vector3};
+
+/// Energy `½ ϕᵀ K ϕ` with ϕ the local coordinates of Q seen from the rest configuration: `Φ(rest, ϕ) = Q`.
+///
+/// For a ball joint ϕ is the rotation vector, so that this is a rotational spring without singularity up to a half turn. With
+/// `ϕ̇ = D⁻¹ S₀⁻¹ v` its efforts are `τ = −S₀⁻ᵀ D⁻ᵀ K ϕ`.
+#[derive(Clone, Debug)]
+pub struct JointSpring {
+    /// Name, for messages.
+    pub name: String,
+    /// The body whose joint it turns back.
+    pub body: usize,
+    /// K by rows, symmetric, one row a freedom: N·m/rad or N/m.
+    pub stiffness: Vec<f64>,
+    /// The configuration of the joint at which it is at rest.
+    pub rest: Vec<f64>,
+}
+
+impl JointSpring {
+    /// ϕ and Kϕ; NaN where ϕ cannot be found.
+    fn stretch(&self, view: &View<'_>) -> ([f64; 6], [f64; 6]) {
+        let joint = view.joint(self.body);
+        let size = joint.layout().freedoms;
+        let (mut phi, mut load) = ([0.0; 6], [0.0; 6]);
+        // Where it fails, ϕ is NaN, and so is what follows from it.
+        _ = joint.local(
+            &self.rest,
+            view.joint_configuration(self.body),
+            &mut phi[..size],
+        );
+        for (load, row) in load.iter_mut().zip(self.stiffness.chunks_exact(size)) {
+            *load = row.iter().zip(&phi).map(|(k, x)| k * x).sum();
+        }
+        (phi, load)
+    }
+}
+
+impl Element for JointSpring {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        let body = body(&self.name, mechanism, self.body)?;
+        let size = body.ranges().freedoms.len();
+        let coordinates = body.ranges().configuration.len();
+        values(
+            &self.name,
+            "rest configuration",
+            &self.rest,
+            coordinates,
+            true,
+        )?;
+        values(&self.name, "stiffness", &self.stiffness, size * size, true)?;
+        let entry = |i: usize, j: usize| self.stiffness[i * size + j];
+        let pairs = (0..size).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        for (i, j) in pairs {
+            let (found, requirement) = match i == j {
+                true if entry(i, i) < 0.0 => (entry(i, i), "not negative on its diagonal"),
+                false if entry(i, j) != entry(j, i) => (entry(i, j), "symmetric"),
+                _ => continue,
+            };
+            return Err(ElementError::Value {
+                element: self.name.clone(),
+                quantity: "stiffness",
+                value: found,
+                requirement,
+            });
+        }
+        Ok(())
+    }
+
+    fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
+        let joint = view.joint(self.body);
+        let size = joint.layout().freedoms;
+        let (phi, load) = self.stretch(view);
+        let q = view.joint_configuration(self.body);
+        let mut inverse = [0.0; 36];
+        let inverse = &mut inverse[..size * size];
+        joint.velocity_map_inverse(q, inverse);
+        let (mut effort, mut rate) = ([0.0; 6], [0.0; 6]);
+        for (effort, column) in effort.iter_mut().zip(inverse.chunks_exact(size)) {
+            let rate = &mut rate[..size];
+            joint.retract_differential_inverse(&self.rest, &phi[..size], column, rate);
+            *effort = -rate.iter().zip(&load).map(|(r, l)| r * l).sum::<f64>();
+        }
+        action.add_effort(view, self.body, &effort[..size]);
+    }
+
+    fn energy(&self, view: &View<'_>) -> f64 {
+        let (phi, load) = self.stretch(view);
+        phi.iter().zip(&load).map(|(x, l)| 0.5 * x * l).sum()
+    }
+}
+
+/// Energy `k (3 − tr R)/2` with R the rotation of the joint's child frame from its attitude at rest: `k (1 − cos θ)`, smooth at every attitude.
+///
+/// Its moment on the child is `−k vee(½(R − Rᵀ))`, in the axes of the joint's parent frame.
+#[derive(Clone, Debug)]
+pub struct RotationSpring {
+    /// Name, for messages.
+    pub name: String,
+    /// The body whose joint it turns back.
+    pub body: usize,
+    /// k, N·m; not negative.
+    pub stiffness: f64,
+    /// The rotation of the joint's child frame in its parent frame at rest.
+    pub rest: Matrix3<f64>,
+}
+
+impl RotationSpring {
+    fn turn(&self, view: &View<'_>) -> Matrix3<f64> {
+        let pose = view
+            .joint(self.body)
+            .pose(view.joint_configuration(self.body));
+        product(&pose.rotation, &self.rest.transpose())
+    }
+}
+
+impl Element for RotationSpring {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        body(&self.name, mechanism, self.body)?;
+        values(&self.name, "stiffness", &[self.stiffness], 1, false)?;
+        values(&self.name, "rest rotation", self.rest.as_slice(), 9, true)
+    }
+
+    fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
+        let moment: Vector3<f64> = vee(&self.turn(view)) * -self.stiffness;
+        let joint = view.joint(self.body);
+        let size = joint.layout().freedoms;
+        let (mut map, mut effort) = ([0.0; 36], [0.0; 6]);
+        let map = &mut map[..6 * size];
+        joint.twist_map(view.joint_configuration(self.body), map);
+        for (effort, column) in effort.iter_mut().zip(map.chunks_exact(6)) {
+            *effort = column[..3].iter().zip(&moment).map(|(x, m)| x * m).sum();
+        }
+        action.add_effort(view, self.body, &effort[..size]);
+    }
+
+    fn energy(&self, view: &View<'_>) -> f64 {
+        // (3 − tr R)/2 loses digits near rest; ¼ |R − I|² is the same and keeps them.
+        let away = self.turn(view) - Matrix3::identity();
+        0.25 * self.stiffness * away.norm_squared()
+    }
+}

@@ -1,0 +1,157 @@
+//! What a mechanism carries besides its bodies: elements, rotor inertias, drives.
+
+use super::{Mechanism, MechanismError};
+use crate::elements::{Drive, Element, ElementError};
+use alloc::format;
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// Elements, rotor inertias and drives of a mechanism.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Equipment {
+    elements: Vec<Arc<dyn Element>>,
+    /// One entry a freedom; empty where there is none.
+    armature: Vec<f64>,
+    drives: Vec<Drive>,
+}
+
+impl Mechanism {
+    /// The mechanism with these elements instead of those it had.
+    ///
+    /// # Errors
+    /// Every element that does not fit.
+    pub fn with_elements(
+        mut self,
+        elements: Vec<Arc<dyn Element>>,
+    ) -> Result<Self, Vec<MechanismError>> {
+        let failures = elements
+            .iter()
+            .filter_map(|element| element.check(&self).err());
+        refuse(failures)?;
+        self.equipment.elements = elements;
+        Ok(self)
+    }
+
+    /// The mechanism with `inertia` (kg m² or kg, one entry a freedom) added to that which the joint under `body` feels: a rotor behind a
+    /// gear. Kinetic energy grows by `½ Σ a v²`, and with γ ≠ 0 the equations by `Σ_k γ_k v_k (a v)`, as (16) has it.
+    ///
+    /// # Errors
+    /// No such body; a wrong size; a negative inertia; a nonholonomic joint.
+    pub fn with_armature(mut self, body: usize, inertia: &[f64]) -> Result<Self, MechanismError> {
+        let element = || format!("armature of body {body}");
+        let Some(owner) = self.bodies.get(body) else {
+            return Err(MechanismError::Element(ElementError::UnknownBody {
+                element: element(),
+                index: body,
+                count: self.bodies.len(),
+            }));
+        };
+        let element = || format!("armature of joint `{}`", owner.joint_name());
+        let freedoms = owner.ranges.freedoms.clone();
+        if inertia.len() != freedoms.len() {
+            return Err(MechanismError::Element(ElementError::Size {
+                element: element(),
+                quantity: "inertia",
+                expected: freedoms.len(),
+                found: inertia.len(),
+            }));
+        }
+        if let Some(&value) = inertia.iter().find(|a| !(a.is_finite() && **a >= 0.0)) {
+            return Err(MechanismError::Element(ElementError::Value {
+                element: element(),
+                quantity: "inertia",
+                value,
+                requirement: "finite and not negative",
+            }));
+        }
+        if !owner.joint().structures().speed_basis.is_identity() {
+            return Err(MechanismError::Element(ElementError::Joint {
+                element: element(),
+                joint: owner.joint_name().into(),
+                reason: "is nonholonomic: only a holonomic joint can have an armature",
+            }));
+        }
+        if self.equipment.armature.is_empty() {
+            self.equipment.armature = vec![0.0; self.layout.freedoms];
+        }
+        self.equipment.armature[freedoms].copy_from_slice(inertia);
+        Ok(self)
+    }
+
+    /// The mechanism with these drives instead of those it had.
+    ///
+    /// # Errors
+    /// Every drive that does not fit; two drives of one joint.
+    pub fn with_drives(mut self, drives: Vec<Drive>) -> Result<Self, Vec<MechanismError>> {
+        let failures = drives.iter().enumerate().filter_map(|(index, drive)| {
+            let twice = drives[..index].iter().any(|other| other.body == drive.body);
+            let twice = twice.then(|| ElementError::Joint {
+                element: drive.name.clone(),
+                joint: self
+                    .bodies
+                    .get(drive.body)
+                    .map_or("", |body| body.joint_name())
+                    .into(),
+                reason: "is driven already",
+            });
+            drive.check(&self).err().or(twice)
+        });
+        refuse(failures)?;
+        self.equipment.drives = drives;
+        Ok(self)
+    }
+
+    /// What acts on the mechanism besides gravity and inputs.
+    pub fn elements(&self) -> &[Arc<dyn Element>] {
+        &self.equipment.elements
+    }
+
+    /// Rotor inertias of the joint under `body`, one entry a freedom; empty where it has none.
+    pub fn armature(&self, body: usize) -> &[f64] {
+        let freedoms = self.bodies[body].ranges.freedoms.clone();
+        let own = self.equipment.armature.get(freedoms).unwrap_or(&[]);
+        match own.iter().all(|a| *a == 0.0) {
+            true => &[],
+            false => own,
+        }
+    }
+
+    /// Joints whose motion is prescribed.
+    pub fn drives(&self) -> &[Drive] {
+        &self.equipment.drives
+    }
+
+    /// Whether the motion of the joint under `body` is prescribed.
+    pub fn is_driven(&self, body: usize) -> bool {
+        self.equipment.drives.iter().any(|drive| drive.body == body)
+    }
+
+    /// The speeds that drives prescribe at time `t`, into their entries of `speeds`.
+    pub fn set_driven_speeds(&self, t: f64, speeds: &mut [f64]) {
+        for drive in &self.equipment.drives {
+            let own = &mut speeds[self.bodies[drive.body].ranges.speeds.clone()];
+            for (speed, law) in own.iter_mut().zip(&drive.laws) {
+                *speed = law.velocity(t);
+            }
+        }
+    }
+
+    /// The accelerations v̄̇ that drives prescribe at time `t`, into the first entries of τ of their joints.
+    pub fn set_driven_accelerations(&self, t: f64, efforts: &mut [f64]) {
+        for drive in &self.equipment.drives {
+            let own = &mut efforts[self.bodies[drive.body].ranges.freedoms.clone()];
+            for (effort, law) in own.iter_mut().zip(&drive.laws) {
+                *effort = law.acceleration(t);
+            }
+        }
+    }
+}
+
+fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), Vec<MechanismError>> {
+    let failures: Vec<MechanismError> = failures.map(MechanismError::Element).collect();
+    match failures.is_empty() {
+        true => Ok(()),
+        false => Err(failures),
+    }
+}

@@ -1,0 +1,337 @@
+//! Springs, dampers, wrenches, rotors and drives: the forms of the dynamics agree on them, and energy is accounted for.
+
+mod common;
+
+use common::random::Random;
+use common::trees::{configuration, trees};
+use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
+use hamel::elements::{
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, Law,
+    RotationSpring, WrenchAxes,
+};
+use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
+use hamel::mechanism::Mechanism;
+use nalgebra::{DVector, Matrix3, Vector3};
+use std::sync::Arc;
+
+/// As in the comparison without elements, whose condition these mechanisms share.
+const ROUNDING: f64 = 1e-12;
+
+/// Tolerance 1e-12 a step and up to some hundred steps of forces of size 10.
+const DRIFT: f64 = 1e-8;
+
+fn springs(random: &mut Random, mechanism: &Mechanism) -> Vec<Arc<dyn Element>> {
+    let mut elements: Vec<Arc<dyn Element>> = Vec::new();
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        let size = owner.ranges().freedoms.len();
+        let half = random.vec(size * size);
+        let product = |i: usize, j: usize| -> f64 {
+            (0..size)
+                .map(|k| half[i * size + k] * half[j * size + k])
+                .sum()
+        };
+        elements.push(Arc::new(JointSpring {
+            name: format!("spring {body}"),
+            body,
+            stiffness: (0..size * size)
+                .map(|n| product(n / size, n % size))
+                .collect(),
+            rest: owner.home(),
+        }));
+        elements.push(Arc::new(RotationSpring {
+            name: format!("rotation spring {body}"),
+            body,
+            stiffness: 1.7,
+            rest: Matrix3::identity(),
+        }));
+        elements.push(Arc::new(BodySpring {
+            name: format!("rope {body}"),
+            bodies: [owner.parent(), Some(body)],
+            points: [random.vector(), random.vector()],
+            stiffness: 3.0,
+            damping: 0.0,
+            length: 0.4,
+        }));
+    }
+    elements
+}
+
+fn losses(random: &mut Random, mechanism: &Mechanism) -> Vec<Arc<dyn Element>> {
+    let mut elements = springs(random, mechanism);
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        let size = owner.ranges().freedoms.len();
+        elements.push(Arc::new(JointDamper {
+            name: format!("damper {body}"),
+            body,
+            coefficients: random.vec(size).into_iter().map(f64::abs).collect(),
+        }));
+        elements.push(Arc::new(JointEffort {
+            name: format!("motor {body}"),
+            body,
+            efforts: random.vec(size),
+        }));
+        for axes in [WrenchAxes::World, WrenchAxes::Body] {
+            elements.push(Arc::new(BodyWrench {
+                name: format!("push {body}"),
+                body,
+                point: random.vector(),
+                force: random.vector(),
+                moment: random.vector(),
+                axes,
+            }));
+        }
+    }
+    elements
+}
+
+/// The mechanism with everything on it; every other joint that can have a rotor has one.
+fn equipped(
+    seed: u64,
+    mechanism: &Mechanism,
+    elements: fn(&mut Random, &Mechanism) -> Vec<Arc<dyn Element>>,
+) -> Mechanism {
+    let mut random = Random::new(300 + seed);
+    let elements = elements(&mut random, mechanism);
+    let mut equipped = mechanism
+        .clone()
+        .with_elements(elements)
+        .expect("elements fit");
+    for body in 0..mechanism.bodies().len() {
+        let size = mechanism.bodies()[body].ranges().freedoms.len();
+        let inertia: Vec<f64> = random.vec(size).into_iter().map(f64::abs).collect();
+        // Nonholonomic joints refuse, as they should.
+        if let Ok(with_rotor) = equipped.clone().with_armature(body, &inertia) {
+            equipped = with_rotor;
+        }
+    }
+    equipped
+}
+
+fn driven(mechanism: Mechanism) -> Mechanism {
+    let holonomic = |body: usize| {
+        let structures = mechanism.bodies()[body].joint().structures();
+        structures.speed_basis.is_identity()
+    };
+    let Some(body) = (0..mechanism.bodies().len())
+        .rev()
+        .find(|&body| holonomic(body))
+    else {
+        return mechanism;
+    };
+    let size = mechanism.bodies()[body].ranges().freedoms.len();
+    let law = Law {
+        rate: 0.3,
+        amplitude: 0.2,
+        frequency: 2.0,
+        phase: 0.4,
+    };
+    let drive = Drive {
+        name: "drive".into(),
+        body,
+        laws: vec![law; size],
+    };
+    mechanism.with_drives(vec![drive]).expect("fits")
+}
+
+fn same(found: &[f64], expected: &[f64], what: &str) {
+    let (found, expected) = (
+        DVector::from_column_slice(found),
+        DVector::from_column_slice(expected),
+    );
+    let error = (&found - &expected).amax() / expected.amax().max(1.0);
+    assert!(error < ROUNDING, "{what}: {error:e}");
+}
+
+/// Accelerations, momenta, speeds, momentum rates and energy, one after the other.
+fn readings(dynamics: &mut dyn Dynamics, q: &[f64], v: &[f64], tau: &[f64]) -> Vec<f64> {
+    let mut all = Vec::new();
+    let mut out = vec![0.0; v.len()];
+    dynamics
+        .accelerations(q, v, tau, &mut out)
+        .expect("regular");
+    all.extend(&out);
+    let mut momenta = vec![0.0; v.len()];
+    dynamics.momenta(q, v, &mut momenta).expect("sizes fit");
+    all.extend(&momenta);
+    let mut speeds = vec![0.0; v.len()];
+    let mut efforts = |_: &[f64], into: &mut [f64]| into.copy_from_slice(tau);
+    dynamics
+        .momentum_rates(q, &momenta, &mut efforts, &mut speeds, &mut out)
+        .expect("regular");
+    all.extend(&speeds);
+    all.extend(&out);
+    all.push(dynamics.hamiltonian(q, &momenta).expect("regular"));
+    all
+}
+
+#[test]
+fn forms_agree_with_and_without_drives() {
+    for (seed, tree) in trees().into_iter().enumerate() {
+        let equipped = equipped(seed as u64, &tree, losses);
+        for mechanism in [equipped.clone(), driven(equipped)] {
+            let mechanism = Arc::new(mechanism);
+            let mut random = Random::new(seed as u64);
+            let q = configuration(&mut random, &mechanism);
+            let v = random.vec(mechanism.layout().speeds);
+            let tau = random.vec(mechanism.layout().freedoms);
+            let found = readings(&mut Recursive::new(Arc::clone(&mechanism)), &q, &v, &tau);
+            let expected = readings(&mut Reference::new(Arc::clone(&mechanism)), &q, &v, &tau);
+            same(&found, &expected, &format!("tree {seed}"));
+            let kinematics = mechanism.kinematics(&q, &v).expect("sizes fit");
+            same(
+                &[kinematics.energy()],
+                &[*found.last().expect("energy")],
+                "energy",
+            );
+        }
+    }
+}
+
+#[test]
+fn inverse_dynamics_inverts_forward_dynamics() {
+    for (seed, tree) in trees().into_iter().enumerate() {
+        let mechanism = Arc::new(equipped(seed as u64, &tree, losses));
+        let mut random = Random::new(seed as u64);
+        let q = configuration(&mut random, &mechanism);
+        let v = random.vec(mechanism.layout().speeds);
+        let tau = random.vec(mechanism.layout().freedoms);
+        let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+        let (mut rates, mut found) = (vec![0.0; v.len()], vec![0.0; v.len()]);
+        dynamics
+            .accelerations(&q, &v, &tau, &mut rates)
+            .expect("regular");
+        dynamics
+            .inverse_dynamics(&q, &v, &rates, &mut found)
+            .expect("sizes fit");
+        let expansion = Reference::new(Arc::clone(&mechanism))
+            .expansion(&q)
+            .expect("sizes");
+        let expected = expansion
+            .speed_basis
+            .tr_mul(&DVector::from_column_slice(&tau));
+        same(&found, expected.as_slice(), "efforts");
+        let mut mass = MassMatrix::new(&mechanism);
+        dynamics.mass_matrix(&q, &mut mass).expect("sizes fit");
+        let expected = expansion.reduced_mass_matrix();
+        same(
+            mass.matrix().as_slice(),
+            expected.as_slice(),
+            "mass matrix with rotors",
+        );
+    }
+}
+
+#[test]
+fn springs_keep_the_energy_in_both_forms() {
+    for (seed, tree) in trees().into_iter().enumerate() {
+        let mechanism = Arc::new(equipped(seed as u64, &tree, springs));
+        let initial = State {
+            time: 0.0,
+            configuration: mechanism.home(),
+            speeds: Random::new(seed as u64).vec(mechanism.layout().speeds),
+        };
+        let before = mechanism
+            .kinematics(&initial.configuration, &initial.speeds)
+            .expect("sizes fit");
+        for form in [Form::Lagrangian, Form::Hamiltonian] {
+            let options = Options {
+                form,
+                method: Method::dormand_prince(1e-12),
+                t_end: 0.3,
+                samples: Vec::new(),
+            };
+            let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+            let solution = integrate(
+                &mut dynamics,
+                &initial,
+                &options,
+                &mut no_inputs,
+                &mut no_observer,
+            )
+            .expect("runs");
+            let state = &solution.state;
+            let after = mechanism
+                .kinematics(&state.configuration, &state.speeds)
+                .expect("sizes fit");
+            let drift = (after.energy() - before.energy()).abs() / before.kinetic_energy().max(1.0);
+            assert!(drift < DRIFT, "tree {seed}, {form:?}: {drift:e}");
+        }
+    }
+}
+
+#[test]
+fn driven_joint_follows_its_law() {
+    let tree = &trees()[0];
+    let mechanism = Arc::new(driven((**tree).clone()));
+    let mut speeds = vec![0.0; mechanism.layout().speeds];
+    mechanism.set_driven_speeds(0.0, &mut speeds);
+    let initial = State {
+        time: 0.0,
+        configuration: mechanism.home(),
+        speeds,
+    };
+    let options = Options {
+        form: Form::Hamiltonian,
+        method: Method::dormand_prince(1e-12),
+        t_end: 2.0,
+        samples: Vec::new(),
+    };
+    let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+    let solution = integrate(
+        &mut dynamics,
+        &initial,
+        &options,
+        &mut no_inputs,
+        &mut no_observer,
+    )
+    .expect("runs");
+    let law = mechanism.drives()[0].laws[0];
+    let displacement =
+        |t: f64| law.rate * t + law.amplitude * (law.frequency * t + law.phase).sin();
+    let own = mechanism.bodies()[mechanism.drives()[0].body]
+        .ranges()
+        .clone();
+    let turned = solution.state.configuration[own.configuration.start];
+    // Some fifty steps at 1e-12.
+    assert!((turned - (displacement(2.0) - displacement(0.0))).abs() < 1e-10);
+    assert!((solution.state.speeds[own.speeds.start] - law.velocity(2.0)).abs() < 1e-10);
+}
+
+#[test]
+fn misfits_are_named() {
+    let tree = &trees()[1];
+    let damper = |body: usize, c: f64| -> Arc<dyn Element> {
+        Arc::new(JointDamper {
+            name: "damper".into(),
+            body,
+            coefficients: vec![c],
+        })
+    };
+    let errors = (**tree)
+        .clone()
+        .with_elements(vec![damper(99, 1.0), damper(0, -1.0)])
+        .expect_err("misfits");
+    let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    let count = tree.bodies().len();
+    assert_eq!(
+        texts[0],
+        format!("damper: there is no body of index 99, the mechanism has {count}")
+    );
+    assert_eq!(texts.len(), 2, "{texts:?}");
+    let push = BodyWrench {
+        name: "push".into(),
+        body: 0,
+        point: Vector3::new(f64::NAN, 0.0, 0.0),
+        force: Vector3::zeros(),
+        moment: Vector3::zeros(),
+        axes: WrenchAxes::World,
+    };
+    let errors = (**tree)
+        .clone()
+        .with_elements(vec![Arc::new(push)])
+        .expect_err("NaN");
+    assert_eq!(
+        errors[0].to_string(),
+        "push: point is NaN, it must be finite"
+    );
+}
