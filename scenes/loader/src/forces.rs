@@ -146,31 +146,7 @@ pub struct ConstraintDescription {
 
 #[cfg(test)]
 mod tests {
-    use super::{PerFreedom, SpeedOverTime};
-
-    #[test]
-    fn acceleration_is_the_rate_of_speed() {
-        let law = SpeedOverTime {
-            rate: 0.7,
-            amplitude: 0.3,
-            frequency: 5.0,
-            phase: -0.4,
-        };
-        let h = 1e-5;
-        for t in [0.0, 0.31, 2.0] {
-            let rate = (law.speed(t + h) - law.speed(t - h)) / (2.0 * h);
-            // A central difference errs by h²/6 times the third derivative, 0.3 · 5⁴, and by rounding over h.
-            assert!((rate - law.acceleration(t)).abs() < 1e-8);
-        }
-        assert_eq!(
-            SpeedOverTime {
-                rate: 2.0,
-                ..SpeedOverTime::default()
-            }
-            .speed(3.0),
-            2.0
-        );
-    }
+    use super::PerFreedom;
 
     #[test]
     fn one_number_stands_for_all_freedoms() {

@@ -1,8 +1,8 @@
 //! What acts at joints and on bodies, as the description has it after reading.
 
+use hamel::elements::Law;
 use hamel_scene::{
-    BodyPoint, PerFreedom, Position, Scene, SceneDescription, SpeedOverTime, SpringEnergy,
-    WrenchAxes,
+    BodyPoint, PerFreedom, Position, Scene, SceneDescription, SpringEnergy, WrenchAxes,
 };
 use nalgebra::{DMatrix, Vector3};
 
@@ -86,11 +86,11 @@ fn what_acts_at_joints_is_read_as_it_is_written() {
         (&spring.energy, &spring.rest),
         (&SpringEnergy::Trace(7.0), &Position::Home)
     );
-    let constant = SpeedOverTime {
+    let constant = Law {
         rate: 8.0,
-        ..SpeedOverTime::default()
+        ..Law::default()
     };
-    let swing = SpeedOverTime {
+    let swing = Law {
         rate: 1.0,
         amplitude: 2.0,
         frequency: 3.0,
