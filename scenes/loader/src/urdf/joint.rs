@@ -120,34 +120,41 @@ pub(super) fn origin(
     sink: &mut Sink,
 ) -> Option<Pose<f64>> {
     let element = child(node, "origin");
-    let quaternion = element.and_then(|element| element.attribute("quat_xyzw"));
-    let span = |attribute| place(node, "origin", attribute);
-    let rotation = match quaternion {
-        Some(text) => {
-            let turned_twice = element.is_some_and(|element| element.has_attribute("rpy"));
-            let refused = match (turned_twice, version >= (1, 1)) {
-                (true, _) => Some("`rpy` and `quat_xyzw` exclude each other"),
-                (_, false) => Some("`quat_xyzw` needs `version=\"1.1\"` of <robot>"),
-                _ => None,
-            };
-            if let Some(why) = refused {
-                let message = format!("{owner}: in <origin>, {why}");
-                sink.push(Diagnostic::new(span("quat_xyzw"), message));
-                return None;
-            }
-            let mut numbers = text
-                .split_whitespace()
-                .map(|word| word.parse().unwrap_or(f64::NAN));
-            let [x, y, z, w] = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
-            let wxyz = Located::new(Vector4::new(w, x, y, z), span("quat_xyzw"));
-            rotation::from_any_quaternion(&format!("{owner}: `quat_xyzw`"), wxyz, sink)?
-        }
+    let rotation = match element.and_then(|element| element.attribute("quat_xyzw")) {
+        Some(text) => quaternion(owner, text, node, version, sink)?,
         None => {
-            let rpy = Located::new(Vector3::from(origin.rpy.0), span("rpy"));
+            let rpy = Located::new(Vector3::from(origin.rpy.0), place(node, "origin", "rpy"));
             rotation::from_roll_pitch_yaw(&format!("{owner}: `rpy`"), rpy, sink)?
         }
     };
     Some(Pose::new(rotation, Vector3::from(origin.xyz.0)))
+}
+
+/// The rotation of a `quat_xyzw`, whose text has been found to be four numbers.
+fn quaternion(
+    owner: &str,
+    text: &str,
+    node: Node<'_, '_>,
+    version: (u32, u32),
+    sink: &mut Sink,
+) -> Option<Matrix3<f64>> {
+    let span = place(node, "origin", "quat_xyzw");
+    let turned_twice = child(node, "origin").is_some_and(|origin| origin.has_attribute("rpy"));
+    let refused = match (turned_twice, version >= (1, 1)) {
+        (true, _) => Some("`rpy` and `quat_xyzw` exclude each other"),
+        (_, false) => Some("`quat_xyzw` needs `version=\"1.1\"` of <robot>"),
+        _ => None,
+    };
+    if let Some(why) = refused {
+        let message = format!("{owner}: in <origin>, {why}");
+        sink.push(Diagnostic::new(span, message));
+        return None;
+    }
+    let words = text.split_whitespace();
+    let mut numbers = words.map(|word| word.parse().unwrap_or(f64::NAN));
+    let [x, y, z, w] = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
+    let wxyz = Located::new(Vector4::new(w, x, y, z), span);
+    rotation::from_any_quaternion(&format!("{owner}: `quat_xyzw`"), wxyz, sink)
 }
 
 /// What the file says of the joint beyond its motion.
@@ -182,49 +189,50 @@ pub(super) fn tell(
     node: Node<'_, '_>,
     notices: &mut Notices,
 ) {
-    let mut add = |holds: bool, message: &str| {
-        if holds {
-            notices.add(message, format!("joint `{}`", joint.name));
-        }
-    };
     let limits = facts.limits.as_ref();
-    add(
-        limits.is_some_and(|limits| limits.position.is_some()),
-        "limits of position are not simulated: the joint moves past them",
-    );
-    add(
-        limits.is_some_and(|limits| limits.velocity.is_some() || limits.effort.is_some()),
-        "limits of velocity and effort are not simulated",
-    );
     let follows = |mimic: &Mimic| {
         let mut names = joints.iter().map(|joint| &joint.name);
         mimic.joint != joint.name && names.any(|name| *name == mimic.joint)
     };
-    add(
-        facts.mimic.as_ref().is_some_and(follows),
-        "mimic joints are not coupled: the joint moves by itself",
-    );
-    add(
-        facts.mimic.as_ref().is_some_and(|mimic| !follows(mimic)),
-        "mimic joints follow no other joint of the robot: the joint moves by itself",
-    );
-    add(facts.friction != 0.0, "dry friction is not simulated");
-    add(
-        joint.safety_controller.is_some(),
-        "safety controllers are not simulated",
-    );
-    add(joint.calibration.is_some(), "calibrations are not read");
-    let planar = joint.joint_type == JointType::Planar;
-    add(
-        planar,
-        "URDF does not say whether a planar joint turns: it turns about its axis and slides across it",
-    );
-    let axis_missing = matches!(
+    let mimic = facts.mimic.as_ref().map(follows);
+    let has_axis = matches!(
         joint.joint_type,
         JointType::Revolute | JointType::Continuous | JointType::Prismatic | JointType::Planar
-    ) && child(node, "axis").is_none();
-    add(
-        axis_missing,
-        "the axis is not given: it is x, the default of URDF",
     );
+    for (holds, message) in [
+        (
+            limits.is_some_and(|limits| limits.position.is_some()),
+            "limits of position are not simulated: the joint moves past them",
+        ),
+        (
+            limits.is_some_and(|limits| limits.velocity.is_some() || limits.effort.is_some()),
+            "limits of velocity and effort are not simulated",
+        ),
+        (
+            mimic == Some(true),
+            "mimic joints are not coupled: the joint moves by itself",
+        ),
+        (
+            mimic == Some(false),
+            "mimic joints follow no other joint of the robot: the joint moves by itself",
+        ),
+        (facts.friction != 0.0, "dry friction is not simulated"),
+        (
+            joint.safety_controller.is_some(),
+            "safety controllers are not simulated",
+        ),
+        (joint.calibration.is_some(), "calibrations are not read"),
+        (
+            joint.joint_type == JointType::Planar,
+            "URDF does not say whether a planar joint turns: it turns about its axis and slides across it",
+        ),
+        (
+            has_axis && child(node, "axis").is_none(),
+            "the axis is not given: it is x, the default of URDF",
+        ),
+    ] {
+        if holds {
+            notices.add(message, format!("joint `{}`", joint.name));
+        }
+    }
 }
