@@ -143,3 +143,18 @@ pub struct ConstraintDescription {
     /// The direction d in body axes, of length 1.
     pub direction: Vector3<f64>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::PerFreedom;
+
+    #[test]
+    fn one_number_stands_for_all_freedoms() {
+        assert_eq!(PerFreedom::All(0.5).spread(3), Some(vec![0.5; 3]));
+        assert_eq!(
+            PerFreedom::Each(vec![1.0, 2.0]).spread(2),
+            Some(vec![1.0, 2.0])
+        );
+        assert_eq!(PerFreedom::Each(vec![1.0, 2.0]).spread(3), None);
+    }
+}

@@ -1,4 +1,5 @@
-//! Scene files of Hamel: a mechanism, its initial state and how to simulate it, in TOML.
+//! Scene files of Hamel: a mechanism, its initial state, what acts on it and how to simulate it, in TOML; and robots in
+//! [URDF](urdf).
 //!
 //! A file is read in two steps. [`Scene::from_toml`] reads what the text says by itself and gives a
 //! [`SceneDescription`]; [`SceneDescription::build`] looks the joints up in a [`JointRegistry`](hamel::registry::JointRegistry),

@@ -52,7 +52,7 @@ pub(super) fn acting(
     let errors_before = sink.len();
     let mut noted = |error: Diagnostic| sink.push(error);
     let damping = spread(stand, "damping", forces.damping.as_ref());
-    let armature = spread(stand, "armature", forces.armature.as_ref());
+    let armature = armature(stand, forces.armature.as_ref());
     let effort = effort(stand, forces.effort.as_ref());
     let spring = forces.spring.as_ref().map(|found| spring(stand, found));
     let motion = motion(stand, initial, forces.motion.as_ref());
@@ -74,6 +74,20 @@ fn spread(
     match numbers {
         None => Ok(Vec::new()),
         Some(numbers) => each(stand, key, &numbers.value, &numbers.span),
+    }
+}
+
+/// Armatures turn with v; the inertia that a nonholonomic joint feels of one depends on its S̄, and is not simulated.
+fn armature(stand: &Stand, numbers: Option<&Located<PerFreedom>>) -> Result<Vec<f64>, Diagnostic> {
+    match numbers {
+        Some(numbers) if stand.joint.layout().constraints > 0 => {
+            let (name, kind) = (&stand.name, stand.joint.name());
+            let message = format!(
+                "joint `{name}`: a nonholonomic joint such as `{kind}` can have no armature"
+            );
+            Err(Diagnostic::new(numbers.span.clone(), message))
+        }
+        numbers => spread(stand, "armature", numbers),
     }
 }
 

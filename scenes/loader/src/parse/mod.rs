@@ -66,6 +66,12 @@ pub(crate) struct Tree {
 
 /// Reads a scene. With syntax errors in it the text is not read further: what they swallow would mislead.
 pub(crate) fn draft(text: &str, sink: &mut Sink) -> Option<Draft> {
+    if text.trim_start().starts_with('<') {
+        let start = text.len() - text.trim_start().len();
+        let error = Diagnostic::new(start..start + 1, "not valid TOML: this is XML");
+        sink.push(error.help("a robot in URDF is a file whose name ends in `.urdf`"));
+        return None;
+    }
     let (root, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
         syntax::report(text, &errors, sink);
