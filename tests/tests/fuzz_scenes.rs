@@ -32,13 +32,13 @@ fn a_slice_of_robots() {
 }
 
 #[test]
-#[ignore = "hours"]
+#[ignore = "ten minutes of a core"]
 fn five_million_scenes() {
     inputs("scenes", fuzz::scenes(), fuzz::scene, 5_000_000);
 }
 
 #[test]
-#[ignore = "hours"]
+#[ignore = "ten minutes of a core"]
 fn five_million_robots() {
     inputs("robots", fuzz::robots(), fuzz::robot, 5_000_000);
 }

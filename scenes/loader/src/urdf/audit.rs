@@ -193,12 +193,13 @@ impl Audit<'_> {
         let mut texts = node.children().filter(|child| child.is_text());
         let stray = texts.find(|text| text.text().is_some_and(|text| !text.trim().is_empty()));
         if let Some(stray) = stray {
-            let text = stray.text().unwrap_or_default();
-            let start = stray.range().start + (text.len() - text.trim_start().len());
-            let end = (start + text.trim().len()).min(stray.range().end);
+            // As it is written: entities are longer than what they stand for.
+            let range = stray.range();
+            let raw = &node.document().input_text()[range.clone()];
+            let start = range.start + (raw.len() - raw.trim_start().len());
             let name = node.tag_name().name();
-            let message = format!("{owner}<{name}> holds the text {}", quoted(text.trim()));
-            let error = Diagnostic::new(start..end.max(start), message);
+            let message = format!("{owner}<{name}> holds the text {}", quoted(raw.trim()));
+            let error = Diagnostic::new(start..start + raw.trim().len(), message);
             self.sink
                 .push(error.help("a URDF has elements and attributes only"));
         }

@@ -42,10 +42,13 @@ fn byte_at(text: &str, row: u32, column: u32) -> Span {
     start..start + length
 }
 
-/// Where the tag of an element begins: what messages underline.
+/// Where the tag of an element begins, prefix included: what messages underline.
 pub(super) fn tag(node: Node<'_, '_>) -> Span {
-    let start = node.range().start;
-    start..start + 1 + node.tag_name().name().len()
+    let range = node.range();
+    let raw = &node.document().input_text()[range.clone()];
+    let ends = |c: char| c.is_whitespace() || c == '/' || c == '>';
+    let length = raw.find(ends).unwrap_or(raw.len());
+    range.start..range.start + length
 }
 
 /// The child element of that name.
