@@ -95,21 +95,36 @@ fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
 /// # Panics
 /// Never, for joints that a mechanism accepts.
 pub fn tree(random: &mut ChaCha8Rng, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism> {
-    let body = |(index, joint): (usize, &Arc<dyn AnyJoint>)| {
-        let last = index.checked_sub(1);
-        let parent = match last {
-            Some(last) if random.random_bool(0.5) => Some(random.random_range(0..=last)),
-            other => other,
-        };
-        BodySpec {
-            name: format!("body {index}"),
-            joint_name: format!("{} {index}", joint.name()),
-            parent,
-            joint: Arc::clone(joint),
-            placement: pose(random),
-            child_placement: pose(random),
-            mass: mass(random),
+    grow(random, joints, |random, last| {
+        match random.random_bool(0.5) {
+            true => random.random_range(0..=last),
+            false => last,
         }
+    })
+}
+
+/// `count` bodies in slanted gravity, each on the one before by the same joint.
+///
+/// # Panics
+/// Never, for a joint that a mechanism accepts.
+pub fn chain(random: &mut ChaCha8Rng, joint: &Arc<dyn AnyJoint>, count: usize) -> Arc<Mechanism> {
+    grow(random, &vec![Arc::clone(joint); count], |_, last| last)
+}
+
+/// Bodies on the given joints; `parent` chooses among those up to the last.
+fn grow(
+    random: &mut ChaCha8Rng,
+    joints: &[Arc<dyn AnyJoint>],
+    parent: impl Fn(&mut ChaCha8Rng, usize) -> usize,
+) -> Arc<Mechanism> {
+    let body = |(index, joint): (usize, &Arc<dyn AnyJoint>)| BodySpec {
+        name: format!("body {index}"),
+        joint_name: format!("{} {index}", joint.name()),
+        parent: index.checked_sub(1).map(|last| parent(random, last)),
+        joint: Arc::clone(joint),
+        placement: pose(random),
+        child_placement: pose(random),
+        mass: mass(random),
     };
     let bodies = joints.iter().enumerate().map(body).collect();
     let gravity = Vector3::new(0.8, -1.1, -9.7);

@@ -10,11 +10,14 @@
 
 mod hamiltonian;
 mod inverse;
+mod jacobian;
 mod link;
 mod mass;
+mod readings;
 mod sweeps;
 
 pub use mass::MassMatrix;
+pub use readings::{Frame, Readings};
 
 use super::{Dynamics, DynamicsError};
 use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
