@@ -12,7 +12,7 @@ pub mod recursive;
 pub mod reference;
 
 pub use error::DynamicsError;
-pub use recursive::{MassMatrix, Recursive};
+pub use recursive::{Frame, MassMatrix, Readings, Recursive};
 pub use reference::Reference;
 
 use crate::mechanism::Mechanism;

@@ -12,12 +12,15 @@ mod coupling;
 mod elements;
 mod hamiltonian;
 mod inverse;
+mod jacobian;
 mod link;
 mod lu;
 mod mass;
+mod readings;
 mod sweeps;
 
 pub use mass::MassMatrix;
+pub use readings::{Frame, Readings};
 
 use super::{Dynamics, DynamicsError};
 use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
