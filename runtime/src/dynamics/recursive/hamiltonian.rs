@@ -92,7 +92,7 @@ impl Recursive {
     }
 
     /// Potential energy in gravity at the placements of the workspace, zero at the world's origin, J.
-    fn potential_energy_here(&self) -> f64 {
+    pub(super) fn potential_energy_here(&self) -> f64 {
         let gravity = self.mechanism.gravity();
         let work = self.nodes.iter().map(|node| {
             let moment = node.rigid.first_moment + node.motion.placement.origin * node.rigid.mass;
