@@ -2,7 +2,9 @@
 
 use super::Expr;
 use std::cmp::Ordering;
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::{Arc, OnceLock};
 
 /// What a symbol stands for. The order of the variants is the order of elimination: later ones are larger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -86,8 +88,8 @@ impl Ord for Symbol {
     }
 }
 
-impl std::hash::Hash for Symbol {
-    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+impl Hash for Symbol {
+    fn hash<H: Hasher>(&self, state: &mut H) {
         (self.role, self.index).hash(state);
         self.name.hash(state);
     }
@@ -121,12 +123,75 @@ pub enum Function {
 }
 
 /// A function with its arguments.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug)]
 pub struct Application {
     /// The function.
     pub function: Function,
     /// Its arguments, in normal form of the ring without relations.
     pub arguments: Vec<Expr>,
+    hash: u64,
+    symbols: OnceLock<BTreeSet<Symbol>>,
+    related: OnceLock<BTreeSet<Atom>>,
+}
+
+impl Application {
+    pub(super) fn new(function: Function, arguments: Vec<Expr>) -> Self {
+        let mut hasher = DefaultHasher::new();
+        (function, &arguments).hash(&mut hasher);
+        Self {
+            function,
+            arguments,
+            hash: hasher.finish(),
+            symbols: OnceLock::new(),
+            related: OnceLock::new(),
+        }
+    }
+
+    /// A number that is the same for equal functions.
+    pub(super) fn hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// All symbols in its arguments, those inside functions included.
+    pub fn symbols(&self) -> &BTreeSet<Symbol> {
+        let found = || self.arguments.iter().flat_map(Expr::symbols).collect();
+        self.symbols.get_or_init(found)
+    }
+
+    /// The functions with relations in its arguments: see [`Expr::related_functions`].
+    pub(super) fn related(&self) -> &BTreeSet<Atom> {
+        let arguments = self.arguments.iter();
+        let found = || arguments.flat_map(Expr::related_functions).collect();
+        self.related.get_or_init(found)
+    }
+}
+
+impl PartialEq for Application {
+    fn eq(&self, other: &Self) -> bool {
+        self.hash == other.hash
+            && self.function == other.function
+            && self.arguments == other.arguments
+    }
+}
+
+impl Eq for Application {}
+
+impl PartialOrd for Application {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Application {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.function.cmp(&other.function)).then_with(|| self.arguments.cmp(&other.arguments))
+    }
+}
+
+impl Hash for Application {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        state.write_u64(self.hash);
+    }
 }
 
 /// An indeterminate. Symbols stand before functions.

@@ -10,18 +10,18 @@ mod derivative;
 mod display;
 mod evaluate;
 mod function;
+mod intern;
 mod monomial;
+mod rational;
 
 pub use atom::{Application, Atom, Function, Role, Symbol};
 pub use evaluate::{Number, evaluate_f64};
 pub use monomial::Monomial;
+pub use rational::Rational;
 
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
-
-/// An exact rational number.
-pub type Rational = num_rational::BigRational;
 
 /// A polynomial with rational coefficients in [`Atom`]s.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -42,7 +42,7 @@ impl Expr {
 
     /// The integer `value`.
     pub fn integer(value: i64) -> Self {
-        Self::rational(Rational::from_integer(value.into()))
+        Self::rational(value.into())
     }
 
     /// The fraction `numerator / denominator`; zero denominators are a programming error of the caller.
@@ -142,7 +142,7 @@ impl Expr {
                     symbols.insert(symbol);
                 }
                 Atom::Apply(application) => {
-                    symbols.extend(application.arguments.iter().flat_map(Self::symbols));
+                    symbols.extend(application.symbols().iter().cloned());
                 }
             }
         }
@@ -153,6 +153,27 @@ impl Expr {
     pub fn atoms(&self) -> BTreeSet<Atom> {
         let factors = self.terms.keys().flat_map(Monomial::factors);
         factors.map(|(atom, _)| atom.clone()).collect()
+    }
+
+    /// The functions with relations that occur, those inside arguments of roots and quotients included.
+    pub(crate) fn related_functions(&self) -> BTreeSet<Atom> {
+        let mut found = BTreeSet::new();
+        for atom in self.atoms() {
+            let Atom::Apply(application) = &atom else {
+                continue;
+            };
+            match application.function {
+                Function::Cos | Function::Sin => {
+                    found.insert(atom);
+                }
+                Function::Sqrt | Function::Recip | Function::Group => {
+                    found.extend(application.related().iter().cloned());
+                    found.insert(atom);
+                }
+                _ => {}
+            }
+        }
+        found
     }
 
     /// `self · coefficient · monomial`.

@@ -83,6 +83,18 @@ impl Monomial {
             .chain(main)
     }
 
+    /// The product of some of the factors of a monomial, in their order.
+    pub(super) fn of_factors<'a>(factors: impl IntoIterator<Item = (&'a Atom, i32)>) -> Self {
+        let mut product = Self::one();
+        for (atom, power) in factors {
+            match atom.is_unit() {
+                true => product.units.push((atom.clone(), power)),
+                false => product.main.push((atom.clone(), power.unsigned_abs())),
+            }
+        }
+        product
+    }
+
     /// The power of `atom`.
     pub fn power(&self, atom: &Atom) -> i32 {
         self.factors()

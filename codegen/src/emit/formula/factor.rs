@@ -2,7 +2,7 @@
 
 use super::Node;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational};
-use num_traits::{One, Signed};
+use num_traits::One;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 

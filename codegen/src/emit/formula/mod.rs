@@ -19,7 +19,7 @@ pub use fused::Chain;
 pub use share::{Binding, Program};
 
 use crate::expr::{Function, Rational, Symbol};
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 /// A formula.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,7 +1,7 @@
 //! Coefficients by number: each distinct rational is kept once, and each pair is compared once.
 
 use crate::expr::Rational;
-use num_traits::{One, Signed};
+use num_traits::One;
 use std::collections::HashMap;
 
 /// The number of 1.
@@ -63,7 +63,7 @@ impl Numbers {
         }
         let [first, second] = [a, b].map(|number| self.value(number).clone());
         // Both are multiples of the content by the numerator and the denominator of their ratio.
-        let content = &first / Rational::from_integer((&first / &second).numer().abs());
+        let content = &first / Rational::from_integer((&first / &second).abs().numer());
         let pair = Pair {
             parts: [
                 self.number(&(first / &content)),

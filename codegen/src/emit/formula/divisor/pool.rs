@@ -4,7 +4,7 @@ use super::super::{Node, factored};
 use super::cube::{Cube, Term};
 use super::numbers::Numbers;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Role, Symbol};
-use num_traits::{One, Signed};
+use num_traits::One;
 use std::collections::BTreeMap;
 
 /// First index of the symbols that stand for variables here, above all others.
