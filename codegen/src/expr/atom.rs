@@ -1,9 +1,10 @@
 //! The indeterminates of the polynomial ring: symbols, and functions applied to expressions.
 
 use super::Expr;
+use rustc_hash::FxHasher;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
 use std::sync::{Arc, OnceLock};
 
 /// What a symbol stands for. The order of the variants is the order of elimination: later ones are larger.
@@ -136,7 +137,7 @@ pub struct Application {
 
 impl Application {
     pub(super) fn new(function: Function, arguments: Vec<Expr>) -> Self {
-        let mut hasher = DefaultHasher::new();
+        let mut hasher = FxHasher::default();
         (function, &arguments).hash(&mut hasher);
         Self {
             function,

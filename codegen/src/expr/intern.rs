@@ -3,8 +3,8 @@
 //! Only speed depends on that. Functions made by different threads are compared part by part.
 
 use super::{Application, Expr, Function};
+use rustc_hash::FxHashMap;
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 /// Fewest functions at which those that are gone are looked for.
@@ -17,7 +17,7 @@ thread_local! {
 /// The functions of this thread by hash, as long as something holds them.
 #[derive(Default)]
 struct Known {
-    by_hash: HashMap<u64, Weak<Application>>,
+    by_hash: FxHashMap<u64, Weak<Application>>,
     /// Size at which those that are gone are removed.
     full: usize,
 }

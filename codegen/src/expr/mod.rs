@@ -17,6 +17,7 @@ mod rational;
 pub use atom::{Application, Atom, Function, Role, Symbol};
 pub use evaluate::{Number, evaluate_f64};
 pub use monomial::Monomial;
+pub(crate) use monomial::reverse_lexicographic;
 pub use rational::Rational;
 
 use num_traits::{One, Zero};

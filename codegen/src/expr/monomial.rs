@@ -204,7 +204,7 @@ impl Ord for Monomial {
 }
 
 /// Of two monomials of one degree, the larger has the smaller power of the smallest atom in which they differ.
-fn reverse_lexicographic(a: &[(Atom, u32)], b: &[(Atom, u32)]) -> Ordering {
+pub(crate) fn reverse_lexicographic<A: Ord>(a: &[(A, u32)], b: &[(A, u32)]) -> Ordering {
     for (x, y) in a.iter().zip(b) {
         match x.0.cmp(&y.0) {
             Ordering::Equal if x.1 == y.1 => {}

@@ -4,8 +4,9 @@ use super::angles;
 use super::reduction::Reduction;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::matrix::Matrix;
+use rustc_hash::FxHashMap;
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Most term operations that the search for a shorter form of one expression may take.
@@ -20,7 +21,7 @@ pub struct Ideal {
     /// Bases extended by the relations of the functions that an expression holds, by those functions.
     extended: RefCell<BTreeMap<BTreeSet<Atom>, Arc<Reduction>>>,
     /// Functions with their arguments in normal form.
-    settled: RefCell<HashMap<Arc<Application>, Expr>>,
+    settled: RefCell<FxHashMap<Arc<Application>, Expr>>,
 }
 
 impl Ideal {

@@ -7,6 +7,7 @@ mod count;
 mod divisor;
 mod factor;
 mod fused;
+mod numbered;
 mod pairs;
 mod reciprocal;
 mod share;

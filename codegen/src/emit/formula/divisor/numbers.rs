@@ -2,7 +2,7 @@
 
 use crate::expr::Rational;
 use num_traits::One;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// The number of 1.
 pub const ONE: u32 = 0;
@@ -13,8 +13,8 @@ pub const MINUS_ONE: u32 = 1;
 /// The distinct coefficients of a kernel.
 pub struct Numbers {
     values: Vec<Rational>,
-    numbers: HashMap<Rational, u32>,
-    pairs: HashMap<[u32; 2], Pair>,
+    numbers: FxHashMap<Rational, u32>,
+    pairs: FxHashMap<[u32; 2], Pair>,
 }
 
 /// Two coefficients as multiples of a common content.
@@ -31,8 +31,8 @@ impl Numbers {
     pub fn new() -> Self {
         let mut numbers = Self {
             values: vec![],
-            numbers: HashMap::new(),
-            pairs: HashMap::new(),
+            numbers: FxHashMap::default(),
+            pairs: FxHashMap::default(),
         };
         numbers.number(&Rational::one());
         numbers.number(&-Rational::one());
