@@ -245,7 +245,7 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
-    /// 5 slices of 6×5. Operations: 62 additions, 98 multiplications (34 of each fused), 2 divisions, 1 function call.
+    /// 5 slices of 6×5. Operations: 10 additions, 29 multiplications (2 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 19 `H`.
     fn twist_map_child_gradient<T: Scalar>(
@@ -258,148 +258,60 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         let zero = T::zero();
         let one = T::one();
         let two = T::from_f64(2.0);
-        let three = T::from_f64(3.0);
-        let r_q11_squared = r_q11 * r_q11;
-        let r_q12_squared = r_q12 * r_q12;
-        let r_q11_squared_plus_r_q12_squared = r_q11_squared + r_q12_squared;
-        let r_q21_squared = r_q21 * r_q21;
-        let r_q22_squared = r_q22 * r_q22;
-        let r_q21_squared_plus_r_q22_squared = r_q21_squared + r_q22_squared;
-        let value_of = (two - r_q11_squared_plus_r_q12_squared
-            - r_q21_squared_plus_r_q22_squared)
-            .sqrt();
-        let radius_inverse_value_of = radius / value_of;
-        let r_q11_squared_plus_r_q21_squared = r_q11_squared + r_q21_squared;
-        let product_of_r_q31 = r_q31 * r_q11_squared_plus_r_q21_squared;
-        let r_q21_r_q22 = r_q21 * r_q22;
-        let r_q11_r_q12_plus_r_q21_r_q22 = r_q11.mul_add(r_q12, r_q21_r_q22);
-        let r_q32_r_q11_r_q12_plus_r_q21_r_q22 = r_q32 * r_q11_r_q12_plus_r_q21_r_q22;
-        let product_of = two * r_q32_r_q11_r_q12_plus_r_q21_r_q22;
-        let sum_of = one - r_q11_squared_plus_r_q12_squared;
-        let r_q12_r_q22 = r_q12 * r_q22;
-        let r_q11_r_q21_plus_r_q12_r_q22 = r_q11.mul_add(r_q21, r_q12_r_q22);
-        let r_q22_r_q11_r_q21_plus_r_q12_r_q22 = r_q22 * r_q11_r_q21_plus_r_q12_r_q22;
-        let sum_of_r_q11_r_q12_r_q21_r_q22 = r_q11
-            .mul_add(
-                r_q12
-                    .mul_add(
-                        r_q11_squared_plus_r_q12_squared,
-                        two * r_q22_r_q11_r_q21_plus_r_q12_r_q22,
-                    ),
-                r_q21_r_q22 * r_q21_squared_plus_r_q22_squared,
-            );
-        let inverse_value_of_squared = one / (value_of * value_of);
-        let product_of_r_q23_r_q12_sum_of_r_q32 = r_q23
-            .mul_add(
-                r_q12.mul_add(sum_of, -r_q22_r_q11_r_q21_plus_r_q12_r_q22),
-                r_q32 * (r_q11_r_q12_plus_r_q21_r_q22 - sum_of_r_q11_r_q12_r_q21_r_q22),
-            ) * inverse_value_of_squared;
-        let product_of_radius_inverse_value_of = radius_inverse_value_of
-            * (product_of_r_q31 + product_of - product_of_r_q23_r_q12_sum_of_r_q32);
-        let sum_of_2 = one - r_q11_squared_plus_r_q21_squared;
-        let r_q12_squared_plus_r_q22_squared = r_q12_squared + r_q22_squared;
-        let sum_of_3 = one - r_q12_squared_plus_r_q22_squared;
-        let r_q23_sum_of_3 = r_q23 * sum_of_3;
-        let two_r_q11_squared_plus_r_q21_squared = two
-            .mul_add(r_q11_squared, r_q21_squared);
-        let sum_of_r_q11_squared = r_q21_squared_plus_r_q22_squared
-            .mul_add(
-                two_r_q11_squared_plus_r_q21_squared,
-                r_q11_squared * r_q11_squared_plus_r_q12_squared,
-            );
-        let product_of_r_q11_r_q32_r_q21_squared = (r_q11
-            * (three * r_q11).mul_add(r_q32, two * r_q23_sum_of_3)
-            - r_q32 * (sum_of_r_q11_squared - r_q21_squared)) * inverse_value_of_squared;
-        let sum_of_sum_of_3_r_q12_squared = three
-            .mul_add(
-                sum_of_3,
-                r_q11_squared_plus_r_q12_squared
-                    .mul_add(
-                        -two.mul_add(r_q22_squared, r_q12_squared),
-                        r_q22_squared
-                            .mul_add(
-                                -r_q21_squared_plus_r_q22_squared,
-                                r_q12_squared_plus_r_q22_squared,
-                            ),
-                    ) * inverse_value_of_squared,
-            );
-        let r_q11_inverse_value_of_squared = r_q11 * inverse_value_of_squared;
-        let sum_of_sum_of = r_q21_squared_plus_r_q22_squared - sum_of;
-        let product_of_r_q22_sum_of_sum_of = two * r_q11_inverse_value_of_squared * r_q22
-            * sum_of_sum_of;
-        let r_q33_r_q11_r_q12_plus_r_q21_r_q22 = r_q33 * r_q11_r_q12_plus_r_q21_r_q22;
-        let product_of_radius_inverse_value_of_2 = radius_inverse_value_of
-            * r_q32
-                .mul_add(
-                    two.mul_add(-sum_of_2, r_q12_squared_plus_r_q22_squared),
-                    -product_of_r_q11_r_q32_r_q21_squared,
-                );
-        let product_of_inverse_value_of_squared = r_q11_squared_plus_r_q21_squared
-            * (three - inverse_value_of_squared);
-        let product_of_radius_inverse_value_of_3 = radius_inverse_value_of * r_q33
-            * (r_q12_squared_plus_r_q22_squared - r_q11_squared_plus_r_q21_squared);
-        let product_of_radius_inverse_value_of_4 = two * radius_inverse_value_of
-            * r_q33_r_q11_r_q12_plus_r_q21_r_q22;
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let product_of_radius = radius / root_one_minus_r_q33_squared;
+        let product_of_radius_r_q31 = product_of_radius * r_q31;
+        let r_q32_squared = r_q32 * r_q32;
+        let quotient_of_r_q33_squared = r_q33_squared
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let one_plus_quotient_of_r_q33_squared = one + quotient_of_r_q33_squared;
+        let product_of_r_q32_squared = r_q32_squared
+            * one_plus_quotient_of_r_q33_squared;
+        let product_of_product_of_radius_r_q31 = product_of_radius_r_q31
+            * (product_of_r_q32_squared - r_q33_squared);
+        let product_of_radius_r_q31_r_q32 = product_of_radius_r_q31 * r_q32;
+        let product_of_radius_r_q32 = product_of_radius * r_q32;
+        let two_r_q33_squared = two * r_q33_squared;
+        let product_of_radius_r_q33 = product_of_radius * r_q33;
+        let two_plus_quotient_of_r_q33_squared = two + quotient_of_r_q33_squared;
+        let product_of_radius_r_q31_r_q32_r_q33 = product_of_radius_r_q31_r_q32 * r_q33;
+        let product_of = product_of_radius_r_q31_r_q32_r_q33
+            * two_plus_quotient_of_r_q33_squared;
+        let r_q31_squared = r_q31 * r_q31;
+        let product_of_r_q31_squared = r_q31_squared
+            * one_plus_quotient_of_r_q33_squared;
+        let product_of_product_of_radius_r_q32 = product_of_radius_r_q32
+            * (product_of_r_q31_squared - r_q33_squared);
+        let product_of_product_of_radius_r_q33 = product_of_radius_r_q33
+            * (r_q31_squared - r_q32_squared);
         [
             from_rows([
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [
-                    product_of_radius_inverse_value_of,
-                    radius_inverse_value_of
-                        * r_q32.mul_add(sum_of_2, product_of_r_q11_r_q32_r_q21_squared),
+                    -product_of_product_of_radius_r_q31,
+                    product_of_radius_r_q31_r_q32 * r_q31
+                        * one_plus_quotient_of_r_q33_squared,
                     zero,
                     zero,
                     zero,
                 ],
                 [
-                    radius_inverse_value_of
-                        * (r_q32
-                            * two
-                                .mul_add(
-                                    r_q11_squared
-                                        .mul_add(
-                                            -inverse_value_of_squared,
-                                            r_q11_squared_plus_r_q21_squared,
-                                        ),
-                                    -sum_of_sum_of_3_r_q12_squared,
-                                ) - two * r_q11_inverse_value_of_squared * r_q23_sum_of_3),
-                    -product_of_radius_inverse_value_of,
+                    product_of_radius_r_q32
+                        * (two_r_q33_squared - product_of_r_q32_squared),
+                    product_of_product_of_radius_r_q31,
                     zero,
                     r_q13,
                     r_q23,
                 ],
                 [
-                    radius_inverse_value_of
-                        * r_q33
-                            .mul_add(
-                                r_q11_squared_plus_r_q21_squared
-                                    - sum_of_sum_of_3_r_q12_squared,
-                                -product_of_r_q22_sum_of_sum_of,
-                            ),
-                    -radius_inverse_value_of
-                        * two
-                            .mul_add(
-                                r_q33_r_q11_r_q12_plus_r_q21_r_q22,
-                                r_q33
-                                    .mul_add(
-                                        sum_of_r_q11_r_q12_r_q21_r_q22,
-                                        r_q11
-                                            .mul_add(
-                                                -r_q21
-                                                    .mul_add(
-                                                        r_q11_squared_plus_r_q21_squared,
-                                                        two * r_q22 * r_q11_r_q12_plus_r_q21_r_q22,
-                                                    ),
-                                                r_q12_r_q22
-                                                    .mul_add(
-                                                        -r_q12_squared_plus_r_q22_squared,
-                                                        r_q11_r_q21_plus_r_q12_r_q22,
-                                                    ),
-                                            ),
-                                    ) * inverse_value_of_squared,
-                            ),
+                    product_of_radius_r_q33
+                        * r_q32_squared
+                            .mul_add(-two_plus_quotient_of_r_q33_squared, r_q33_squared),
+                    product_of,
                     zero,
                     -r_q12,
                     -r_q22,
@@ -410,71 +322,25 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [
-                    -product_of_radius_inverse_value_of_2,
-                    radius_inverse_value_of
-                        * r_q31
-                            .mul_add(
-                                product_of_inverse_value_of_squared - one,
-                                product_of
-                                    + (r_q11
-                                        * r_q23
-                                            .mul_add(
-                                                r_q11_r_q12_plus_r_q21_r_q22,
-                                                r_q11_squared * r_q11.mul_add(r_q31, r_q12 * r_q32),
-                                            )
-                                        - r_q21
-                                            * (r_q22 * r_q32
-                                                * (one - two_r_q11_squared_plus_r_q21_squared)
-                                                - r_q21 * r_q31 * two_r_q11_squared_plus_r_q21_squared))
-                                        * inverse_value_of_squared,
-                            ),
+                    product_of_product_of_radius_r_q32,
+                    product_of_radius_r_q31
+                        * (two_r_q33_squared - product_of_r_q31_squared),
                     zero,
                     -r_q13,
                     -r_q23,
                 ],
                 [
-                    radius_inverse_value_of
-                        * (product_of_r_q23_r_q12_sum_of_r_q32
-                            - r_q32_r_q11_r_q12_plus_r_q21_r_q22),
-                    product_of_radius_inverse_value_of_2,
+                    product_of_radius_r_q31 * product_of_r_q32_squared,
+                    -product_of_product_of_radius_r_q32,
                     zero,
                     zero,
                     zero,
                 ],
                 [
-                    -radius_inverse_value_of
-                        * two
-                            .mul_add(
-                                r_q33_r_q11_r_q12_plus_r_q21_r_q22,
-                                r_q33
-                                    .mul_add(
-                                        sum_of_r_q11_r_q12_r_q21_r_q22,
-                                        r_q11
-                                            .mul_add(
-                                                -r_q21
-                                                    .mul_add(
-                                                        r_q11_squared_plus_r_q21_squared,
-                                                        two * r_q22 * r_q11_r_q12_plus_r_q21_r_q22,
-                                                    ),
-                                                r_q12_r_q22
-                                                    .mul_add(
-                                                        -r_q12_squared_plus_r_q22_squared,
-                                                        r_q11_r_q21_plus_r_q12_r_q22,
-                                                    ),
-                                            ),
-                                    ) * inverse_value_of_squared,
-                            ),
-                    -radius_inverse_value_of
-                        * r_q33
-                            .mul_add(
-                                sum_of_r_q11_squared
-                                    .mul_add(
-                                        -inverse_value_of_squared,
-                                        three - r_q12_squared_plus_r_q22_squared
-                                            - product_of_inverse_value_of_squared,
-                                    ),
-                                product_of_r_q22_sum_of_sum_of,
-                            ),
+                    product_of,
+                    product_of_radius_r_q33
+                        * r_q31_squared
+                            .mul_add(-two_plus_quotient_of_r_q33_squared, r_q33_squared),
                     zero,
                     r_q11,
                     r_q21,
@@ -485,23 +351,22 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [
-                    -product_of_radius_inverse_value_of_3,
-                    product_of_radius_inverse_value_of_4,
+                    -product_of_product_of_radius_r_q33,
+                    -two * product_of_radius_r_q31_r_q32_r_q33,
                     zero,
                     r_q12,
                     r_q22,
                 ],
                 [
-                    product_of_radius_inverse_value_of_4,
-                    product_of_radius_inverse_value_of_3,
+                    -two * product_of_radius_r_q31_r_q32_r_q33,
+                    product_of_product_of_radius_r_q33,
                     zero,
                     -r_q11,
                     -r_q21,
                 ],
                 [
-                    -radius_inverse_value_of
-                        * (product_of_r_q31 + r_q32_r_q11_r_q12_plus_r_q21_r_q22),
-                    -radius_inverse_value_of * r_q32 * sum_of_sum_of,
+                    -product_of_radius_r_q31 * r_q33_squared,
+                    -product_of_radius_r_q32 * r_q33_squared,
                     zero,
                     zero,
                     zero,
