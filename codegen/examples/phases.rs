@@ -1,8 +1,10 @@
 //! Where the time of generation goes: for each spec the time to read it, to derive it, to write its Rust and to write its page.
 //!
 //! `cargo run -p hamel-codegen --example phases -- joint-specs` for each joint of the folders or files given. Times are those that the
-//! thread has computed, in milliseconds, the least of three; where the system does not tell them, by the clock.
+//! thread has computed, in milliseconds, the least of three; where the system does not tell them, by the clock. The last column is the
+//! symbolic work, of which a joint may take `WORK_LIMIT`.
 
+use hamel_codegen::expr::budget;
 use hamel_codegen::{derive, emit, spec};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -12,21 +14,23 @@ use std::{env, fs, io};
 const RUNS: usize = 3;
 
 fn main() -> io::Result<()> {
-    println!("| spec | read | derive | Rust | page | all |");
-    println!("|---|---|---|---|---|---|");
-    let mut sum = [Duration::ZERO; 4];
+    println!("| spec | read | derive | Rust | page | all | term operations |");
+    println!("|---|---|---|---|---|---|---|");
+    let (mut sum, mut all) = ([Duration::ZERO; 4], 0);
     for path in env::args().skip(1) {
         for file in specs(Path::new(&path))? {
             let source = fs::read_to_string(&file)?;
             let name = file.display().to_string();
+            let (_, work) = budget::measured(|| derive(&source, &name).is_ok());
             let runs = (0..RUNS).map(|_| phases(&source, &name));
             let least = runs.min_by_key(|times| times.iter().sum::<Duration>());
             let times = least.unwrap_or_default();
-            row(&name, times);
+            row(&name, times, work);
+            all += work;
             sum = std::array::from_fn(|i| sum[i] + times[i]);
         }
     }
-    row("all", sum);
+    row("all", sum, all);
     Ok(())
 }
 
@@ -95,12 +99,9 @@ fn computed(start: Instant) -> Duration {
     nanoseconds.map_or_else(|| start.elapsed(), Duration::from_nanos)
 }
 
-fn row(name: &str, times: [Duration; 4]) {
-    let cells = times.map(|time| format!("{:.1}", 1e3 * time.as_secs_f64()));
-    let all: Duration = times.iter().sum();
-    println!(
-        "| {name} | {} | {:.1} |",
-        cells.join(" | "),
-        1e3 * all.as_secs_f64()
-    );
+fn row(name: &str, times: [Duration; 4], work: u64) {
+    let milliseconds = |time: Duration| format!("{:.1}", 1e3 * time.as_secs_f64());
+    let all = milliseconds(times.iter().sum());
+    let cells = times.map(milliseconds);
+    println!("| {name} | {} | {all} | {work} |", cells.join(" | "));
 }

@@ -21,6 +21,7 @@ pub(crate) use monomial::reverse_lexicographic;
 pub use rational::Rational;
 
 use num_traits::{One, Zero};
+use rustc_hash::FxHashSet;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -152,8 +153,11 @@ impl Expr {
 
     /// The atoms of the polynomial itself, not those inside functions.
     pub fn atoms(&self) -> BTreeSet<Atom> {
+        budget::spend(self.work());
         let factors = self.terms.keys().flat_map(Monomial::factors);
-        factors.map(|(atom, _)| atom.clone()).collect()
+        // Most occur in many terms: hashing finds that sooner than sorting.
+        let distinct: FxHashSet<&Atom> = factors.map(|(atom, _)| atom).collect();
+        distinct.into_iter().cloned().collect()
     }
 
     /// The functions with relations that occur, those inside arguments of roots and quotients included.
@@ -179,7 +183,7 @@ impl Expr {
 
     /// `self · coefficient · monomial`.
     pub fn scaled(&self, coefficient: &Rational, monomial: &Monomial) -> Self {
-        if coefficient.is_zero() || !budget::spend(self.terms.len() as u64) {
+        if coefficient.is_zero() || !budget::spend(self.work()) {
             return Self::zero();
         }
         let scale = |(m, c): (&Monomial, &Rational)| (m.times(monomial), c * coefficient);
@@ -213,6 +217,12 @@ impl Expr {
         self.leading().is_some_and(|(_, c)| c.is_negative())
     }
 
+    /// Term operations that a pass over the terms takes: long monomials take longer to multiply and to compare.
+    fn work(&self) -> u64 {
+        let longest = self.leading().map_or(0, |(monomial, _)| monomial.len());
+        self.terms.len() as u64 * (1 + longest as u64 / 4)
+    }
+
     fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
         use std::collections::btree_map::Entry;
         match self.terms.entry(monomial) {
@@ -230,7 +240,7 @@ impl Expr {
 
     /// Adds `coefficient · monomial · other` in place.
     pub fn add_scaled(&mut self, coefficient: &Rational, monomial: &Monomial, other: &Self) {
-        if !budget::spend(other.terms.len() as u64) {
+        if !budget::spend(other.work()) {
             return;
         }
         for (m, c) in &other.terms {
@@ -241,6 +251,9 @@ impl Expr {
 
 impl AddAssign<&Expr> for Expr {
     fn add_assign(&mut self, other: &Expr) {
+        if !budget::spend(other.work()) {
+            return;
+        }
         for (monomial, coefficient) in &other.terms {
             self.add_term(monomial.clone(), coefficient.clone());
         }
@@ -249,6 +262,9 @@ impl AddAssign<&Expr> for Expr {
 
 impl SubAssign<&Expr> for Expr {
     fn sub_assign(&mut self, other: &Expr) {
+        if !budget::spend(other.work()) {
+            return;
+        }
         for (monomial, coefficient) in &other.terms {
             self.add_term(monomial.clone(), -coefficient);
         }

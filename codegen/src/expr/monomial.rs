@@ -45,6 +45,11 @@ impl Monomial {
         self.main.is_empty()
     }
 
+    /// Number of its atoms.
+    pub(super) fn len(&self) -> usize {
+        self.main.len() + self.units.len()
+    }
+
     /// Total degree in the atoms of the ring.
     pub fn degree(&self) -> u32 {
         self.main.iter().map(|(_, power)| power).sum()

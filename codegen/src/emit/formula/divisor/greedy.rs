@@ -7,8 +7,8 @@ use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Most pairs of terms looked at in one kernel: a bound on the work, half a second. Sums that would exceed it are left alone.
-const MOST_PAIRS: usize = 150_000;
+/// Most pairs of terms looked at in one kernel: a bound on the work, a twentieth of a second. Sums that would exceed it are left alone.
+const MOST_PAIRS: usize = 40_000;
 
 /// Most shared sums pulled out of one kernel: a bound on the work, far above what joints need.
 const MOST_DIVISORS: usize = 4000;
