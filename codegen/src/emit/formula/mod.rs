@@ -10,6 +10,7 @@ mod fused;
 mod numbered;
 mod pairs;
 mod reciprocal;
+mod shapes;
 mod share;
 #[cfg(test)]
 mod tests;
