@@ -5,7 +5,7 @@ use rustc_hash::FxHasher;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::hash::{Hash, Hasher};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// What a symbol stands for. The order of the variants is the order of elimination: later ones are larger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -131,11 +131,12 @@ pub struct Application {
     /// Its arguments, in normal form of the ring without relations.
     pub arguments: Vec<Expr>,
     hash: u64,
-    symbols: OnceLock<BTreeSet<Symbol>>,
-    related: OnceLock<BTreeSet<Atom>>,
+    symbols: BTreeSet<Symbol>,
+    related: BTreeSet<Atom>,
 }
 
 impl Application {
+    /// The function to look for: what is known of its arguments is found by [`Application::complete`].
     pub(super) fn new(function: Function, arguments: Vec<Expr>) -> Self {
         let mut hasher = FxHasher::default();
         (function, &arguments).hash(&mut hasher);
@@ -143,9 +144,17 @@ impl Application {
             function,
             arguments,
             hash: hasher.finish(),
-            symbols: OnceLock::new(),
-            related: OnceLock::new(),
+            symbols: BTreeSet::new(),
+            related: BTreeSet::new(),
         }
+    }
+
+    /// The same with what is asked of it often.
+    pub(super) fn complete(mut self) -> Self {
+        self.symbols = self.arguments.iter().flat_map(Expr::symbols).collect();
+        let related = self.arguments.iter().flat_map(Expr::related_functions);
+        self.related = related.collect();
+        self
     }
 
     /// A number that is the same for equal functions.
@@ -155,15 +164,12 @@ impl Application {
 
     /// All symbols in its arguments, those inside functions included.
     pub fn symbols(&self) -> &BTreeSet<Symbol> {
-        let found = || self.arguments.iter().flat_map(Expr::symbols).collect();
-        self.symbols.get_or_init(found)
+        &self.symbols
     }
 
     /// The functions with relations in its arguments: see [`Expr::related_functions`].
     pub(super) fn related(&self) -> &BTreeSet<Atom> {
-        let arguments = self.arguments.iter();
-        let found = || arguments.flat_map(Expr::related_functions).collect();
-        self.related.get_or_init(found)
+        &self.related
     }
 }
 

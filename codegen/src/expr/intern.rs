@@ -36,7 +36,7 @@ impl Known {
             return known;
         }
         self.clear();
-        let made = Arc::new(made);
+        let made = Arc::new(made.complete());
         self.by_hash.insert(made.hash(), Arc::downgrade(&made));
         made
     }
