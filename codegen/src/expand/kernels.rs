@@ -32,12 +32,12 @@ struct Maker<'a> {
     child_slopes: Vec<Matrix>,
 }
 
-/// ∂X^c/∂ϕ.
+/// ∂X^c/∂ϕ. Normal forms multiply derivatives of roots and quotients out: the shorter form is kept.
 fn child_slopes(spec: &JointSpec, x: &Expansion) -> Vec<Matrix> {
     let slope = |k| x.motion.along_each(&x.twist_map_child, k);
     let ideal = spec.manifold.value.ideal();
     (0..x.shape.freedoms)
-        .map(|k| ideal.normal_forms(&slope(k)))
+        .map(|k| ideal.simplest_entries(&slope(k)))
         .collect()
 }
 

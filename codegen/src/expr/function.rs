@@ -1,18 +1,14 @@
 //! Functions of expressions, folded where their value is known, and the relations between them.
 
-use super::{Application, Atom, Expr, Function, Monomial, Rational};
+use super::{Atom, Expr, Function, Monomial, Rational, intern};
 use num_bigint::BigInt;
-use num_traits::{One, Signed, ToPrimitive, Zero};
-use std::sync::Arc;
+use num_traits::{One, ToPrimitive, Zero};
 
 /// Largest integer multiple of an angle that is expanded by the addition theorems.
 const LARGEST_MULTIPLE: i64 = 16;
 
 fn apply(function: Function, arguments: Vec<Expr>) -> Expr {
-    Expr::atom(Atom::Apply(Arc::new(Application {
-        function,
-        arguments,
-    })))
+    Expr::atom(Atom::Apply(intern::application(function, arguments)))
 }
 
 impl Expr {
