@@ -1,0 +1,165 @@
+//! Sums, differences and products.
+
+use super::{WORDS, Wide};
+use std::cmp::Ordering;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A mantissa with a word below, for the bits that a shift moves out.
+type Guarded = [u64; WORDS + 1];
+
+fn guarded(words: [u64; WORDS]) -> Guarded {
+    [0, words[0], words[1], words[2], words[3]]
+}
+
+/// Shifts by less than the whole length.
+fn shifted_down(words: Guarded, bits: u32) -> Guarded {
+    let (whole, part) = ((bits / 64) as usize, bits % 64);
+    let word = |i: usize| words.get(i + whole).copied().unwrap_or(0);
+    std::array::from_fn(|i| match part {
+        0 => word(i),
+        _ => word(i) >> part | word(i + 1) << (64 - part),
+    })
+}
+
+fn shifted_up(words: Guarded, bits: u32) -> Guarded {
+    let (whole, part) = ((bits / 64) as usize, bits % 64);
+    let word = |i: usize| match i >= whole {
+        true => words[i - whole],
+        false => 0,
+    };
+    std::array::from_fn(|i| match (part, i) {
+        (0, _) => word(i),
+        (_, 0) => word(0) << part,
+        _ => word(i) << part | word(i - 1) >> (64 - part),
+    })
+}
+
+/// The sum, and whether it exceeds the length.
+fn added(a: Guarded, b: Guarded) -> (Guarded, bool) {
+    let mut carry = false;
+    let sum = std::array::from_fn(|i| {
+        let (sum, first) = a[i].overflowing_add(b[i]);
+        let (sum, second) = sum.overflowing_add(u64::from(carry));
+        carry = first || second;
+        sum
+    });
+    (sum, carry)
+}
+
+/// `a − b` for `a ≥ b`.
+fn subtracted(a: Guarded, b: Guarded) -> Guarded {
+    let mut borrow = false;
+    std::array::from_fn(|i| {
+        let (rest, first) = a[i].overflowing_sub(b[i]);
+        let (rest, second) = rest.overflowing_sub(u64::from(borrow));
+        borrow = first || second;
+        rest
+    })
+}
+
+/// The number of a mantissa with any leading bits, cut off.
+fn normalised(words: Guarded, exponent: i32, negative: bool) -> Wide {
+    let Some(top) = words.iter().rposition(|word| *word != 0) else {
+        return Wide::ZERO;
+    };
+    let zeros = 64 * (WORDS - top) as u32 + words[top].leading_zeros();
+    let words = shifted_up(words, zeros);
+    Wide {
+        words: [words[1], words[2], words[3], words[4]],
+        exponent: exponent - zeros as i32,
+        negative,
+        nan: false,
+    }
+}
+
+impl Add for Wide {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        if self.nan || other.is_zero() {
+            return self;
+        }
+        if other.nan || self.is_zero() {
+            return other;
+        }
+        let (large, small) = match self.compare_sizes(other) {
+            Ordering::Less => (other, self),
+            _ => (self, other),
+        };
+        let distance = large.exponent.saturating_sub(small.exponent) as u32;
+        if distance >= 64 * (WORDS as u32 + 1) {
+            return large;
+        }
+        let (a, b) = (
+            guarded(large.words),
+            shifted_down(guarded(small.words), distance),
+        );
+        if large.negative != small.negative {
+            return normalised(subtracted(a, b), large.exponent, large.negative);
+        }
+        match added(a, b) {
+            (sum, false) => normalised(sum, large.exponent, large.negative),
+            (sum, true) => {
+                let mut half = shifted_down(sum, 1);
+                half[WORDS] |= 1 << 63;
+                normalised(half, large.exponent + 1, large.negative)
+            }
+        }
+    }
+}
+
+impl Sub for Wide {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Neg for Wide {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            negative: !self.negative && !self.is_zero(),
+            ..self
+        }
+    }
+}
+
+impl Mul for Wide {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        if self.nan || other.nan {
+            return Self::NAN;
+        }
+        if self.is_zero() || other.is_zero() {
+            return Self::ZERO;
+        }
+        let product = product(&self.words, &other.words);
+        Self {
+            negative: self.negative != other.negative,
+            ..normalised(
+                [product[3], product[4], product[5], product[6], product[7]],
+                self.exponent + other.exponent,
+                false,
+            )
+        }
+    }
+}
+
+/// The product of two mantissas, all of it.
+fn product(a: &[u64; WORDS], b: &[u64; WORDS]) -> [u64; 2 * WORDS] {
+    let mut product = [0; 2 * WORDS];
+    for (i, x) in a.iter().enumerate() {
+        let mut carry = 0;
+        for (j, y) in b.iter().enumerate() {
+            let sum = u128::from(*x) * u128::from(*y) + u128::from(product[i + j]) + carry;
+            product[i + j] = sum as u64;
+            carry = sum >> 64;
+        }
+        product[i + WORDS] = carry as u64;
+    }
+    product
+}
