@@ -6,7 +6,7 @@
 //! out joints whose rows are there already.
 
 use hamel::joint::Joint;
-use hamel_tests::accuracy::{Measured, Shortfall, Table, Worst, check, measure};
+use hamel_tests::accuracy::{Measured, Shortfall, Table, check, measure};
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::Instant;

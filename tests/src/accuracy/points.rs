@@ -139,13 +139,13 @@ impl<'a> Points<'a> {
                 .iter()
                 .map(|symbol| self.coordinate(symbol, extreme))
                 .collect(),
-            Kind::S1 => self.unit(2, extreme),
-            Kind::S2 => self.unit(3, extreme),
-            Kind::S3 => self.unit(4, extreme),
-            Kind::So2 => planar(&self.unit(2, extreme), &[]),
-            Kind::Se2 => planar(&self.unit(2, extreme), &self.offsets(2, extreme)),
-            Kind::So3 => rotation(&self.unit(4, extreme), &[]),
-            Kind::Se3 => rotation(&self.unit(4, extreme), &self.offsets(3, extreme)),
+            Kind::S1 => normalised(&self.direction(2, extreme)),
+            Kind::S2 => normalised(&self.direction(3, extreme)),
+            Kind::S3 => normalised(&self.direction(4, extreme)),
+            Kind::So2 => planar(&self.direction(2, extreme), &[]),
+            Kind::Se2 => planar(&self.direction(2, extreme), &self.offsets(2, extreme)),
+            Kind::So3 => rotation(&self.direction(4, extreme), &[]),
+            Kind::Se3 => rotation(&self.direction(4, extreme), &self.offsets(3, extreme)),
         }
     }
 
@@ -170,22 +170,22 @@ impl<'a> Points<'a> {
         })
     }
 
-    fn unit(&mut self, size: usize, extreme: bool) -> Vec<Wide> {
+    fn direction(&mut self, size: usize, extreme: bool) -> Vec<f64> {
         match extreme {
-            true => self.special_unit(size),
-            false => self.usual_unit(size),
+            true => self.special_direction(size),
+            false => self.usual_direction(size),
         }
     }
 
-    /// Uniform on the unit sphere: a point of the ball, normalised.
-    fn usual_unit(&mut self, size: usize) -> Vec<Wide> {
+    /// Uniform: a point of the unit ball.
+    fn usual_direction(&mut self, size: usize) -> Vec<f64> {
         loop {
             let x = (0..size).map(|_| self.random.random_range(-1.0..1.0));
             let x: Vec<f64> = x.collect();
             let square: f64 = x.iter().map(|x| x * x).sum();
             // Near the centre the direction would have few bits.
             if (0.01..1.0).contains(&square) {
-                return normalised(&x);
+                return x;
             }
         }
     }
@@ -207,8 +207,8 @@ impl<'a> Points<'a> {
         })
     }
 
-    /// A unit vector at or near one of the special ones: an axis, or half-way between axes.
-    fn special_unit(&mut self, size: usize) -> Vec<Wide> {
+    /// A direction at or near one of the special ones: an axis, or half-way between axes.
+    fn special_direction(&mut self, size: usize) -> Vec<f64> {
         loop {
             let special: Vec<i32> = (0..size)
                 .map(|_| self.random.random_range(-1..=1))
@@ -221,7 +221,7 @@ impl<'a> Points<'a> {
             };
             let x: Vec<f64> = special.iter().enumerate().map(entry).collect();
             if x.iter().map(|x| x * x).sum::<f64>() > 0.25 {
-                return normalised(&x);
+                return x;
             }
         }
     }
@@ -314,21 +314,23 @@ fn normalised(x: &[f64]) -> Vec<Wide> {
     x.into_iter().map(|x| x * scale).collect()
 }
 
-fn planar(unit: &[Wide], offset: &[Wide]) -> Vec<Wide> {
+fn planar(direction: &[f64], offset: &[Wide]) -> Vec<Wide> {
+    let unit = normalised(direction);
     let [c, s] = [unit[0], unit[1]];
     bordered(&[&[c, -s], &[s, c]], offset)
 }
 
-/// The rotation `w² + … ` of a unit quaternion, each entry a sum of products.
-fn rotation(q: &[Wide], offset: &[Wide]) -> Vec<Wide> {
-    let [w, x, y, z] = [q[0], q[1], q[2], q[3]];
-    let square = |a: Wide, b: Wide, c: Wide| w * w + a * a - b * b - c * c;
-    let sum = |a: Wide, b: Wide, c: Wide, d: Wide| (a * b + c * d).halved(-1);
-    let difference = |a: Wide, b: Wide, c: Wide, d: Wide| (a * b - c * d).halved(-1);
+/// The rotation of a quaternion, which is divided by its square last: what cancels does so exactly, and every entry has all its digits.
+fn rotation(q: &[f64], offset: &[Wide]) -> Vec<Wide> {
+    let [w, x, y, z] = [q[0], q[1], q[2], q[3]].map(Wide::from_f64);
+    let scale = (w * w + x * x + y * y + z * z).recip();
+    let difference = |a: Wide, b: Wide| (a - b) * (a + b);
+    let diagonal = |a: Wide, b: Wide, c: Wide| (difference(w, b) + difference(a, c)) * scale;
+    let sum = |a: Wide, b: Wide, c: Wide, d: Wide| (a * b + c * d).halved(-1) * scale;
     let rows = [
-        [square(x, y, z), difference(x, y, w, z), sum(x, z, w, y)],
-        [sum(x, y, w, z), square(y, x, z), difference(y, z, w, x)],
-        [difference(x, z, w, y), sum(y, z, w, x), square(z, x, y)],
+        [diagonal(x, y, z), sum(x, y, -w, z), sum(x, z, w, y)],
+        [sum(x, y, w, z), diagonal(y, x, z), sum(y, z, -w, x)],
+        [sum(x, z, -w, y), sum(y, z, w, x), diagonal(z, x, y)],
     ];
     bordered(&[&rows[0], &rows[1], &rows[2]], offset)
 }

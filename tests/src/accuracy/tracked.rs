@@ -18,6 +18,7 @@ pub struct Tracked {
 
 impl Tracked {
     /// An input.
+    #[inline]
     pub fn input(value: f64) -> Self {
         Self {
             value: Wide::from_f64(value),
@@ -27,6 +28,7 @@ impl Tracked {
     }
 
     /// A result with the scale given, or its own size where that is larger.
+    #[inline]
     pub fn computed(value: Wide, scale: f64) -> Self {
         let size = value.to_f64().abs();
         Self {
@@ -37,11 +39,13 @@ impl Tracked {
     }
 
     /// Whether this is 0 without any summand.
+    #[inline]
     pub fn is_nothing(&self) -> bool {
         self.exact && self.value.is_zero()
     }
 
     /// `−self`.
+    #[inline]
     pub fn negative(&self) -> Self {
         Self {
             value: -self.value,
@@ -59,11 +63,13 @@ impl Tracked {
     }
 
     /// Whether this is 1 or −1 as it stands.
+    #[inline]
     pub fn is_unit(&self) -> bool {
         self.exact && self.scale == 1.0
     }
 
     /// `self · other` where `self` is 1 or −1.
+    #[inline]
     fn by_unit(&self, other: &Self) -> Option<Self> {
         self.is_unit().then(|| match self.value.is_negative() {
             true => other.negative(),
@@ -71,13 +77,14 @@ impl Tracked {
         })
     }
 
+    #[inline]
     fn is_power_of_two(&self) -> bool {
-        let size = self.value.to_f64().abs();
-        self.exact && size > 0.0 && size.to_bits().trailing_zeros() >= 52
+        self.exact && self.scale > 0.0 && self.scale.to_bits().trailing_zeros() >= 52
     }
 }
 
 /// The larger of two sizes; NaN where either is, unlike `f64::max`.
+#[inline]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
@@ -94,6 +101,7 @@ impl Number for Tracked {
         }
     }
 
+    #[inline]
     fn plus(&self, other: &Self) -> Self {
         match (self.is_nothing(), other.is_nothing()) {
             (true, _) => *other,
@@ -102,6 +110,7 @@ impl Number for Tracked {
         }
     }
 
+    #[inline]
     fn times(&self, other: &Self) -> Self {
         if self.is_nothing() || other.is_nothing() {
             return Self::input(0.0);

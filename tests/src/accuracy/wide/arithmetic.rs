@@ -12,6 +12,7 @@ fn guarded(words: [u64; WORDS]) -> Guarded {
 }
 
 /// Shifts by less than the whole length.
+#[inline]
 fn shifted_down(words: Guarded, bits: u32) -> Guarded {
     let (whole, part) = ((bits / 64) as usize, bits % 64);
     let word = |i: usize| words.get(i + whole).copied().unwrap_or(0);
@@ -35,6 +36,7 @@ fn shifted_up(words: Guarded, bits: u32) -> Guarded {
 }
 
 /// The sum, and whether it exceeds the length.
+#[inline]
 fn added(a: Guarded, b: Guarded) -> (Guarded, bool) {
     let mut carry = false;
     let sum = std::array::from_fn(|i| {
@@ -47,6 +49,7 @@ fn added(a: Guarded, b: Guarded) -> (Guarded, bool) {
 }
 
 /// `a − b` for `a ≥ b`.
+#[inline]
 fn subtracted(a: Guarded, b: Guarded) -> Guarded {
     let mut borrow = false;
     std::array::from_fn(|i| {
@@ -58,7 +61,20 @@ fn subtracted(a: Guarded, b: Guarded) -> Guarded {
 }
 
 /// The number of a mantissa with any leading bits, cut off.
+#[inline]
 fn normalised(words: Guarded, exponent: i32, negative: bool) -> Wide {
+    if words[WORDS] >> 63 == 1 {
+        return Wide {
+            words: [words[1], words[2], words[3], words[4]],
+            exponent,
+            negative,
+            nan: false,
+        };
+    }
+    shifted_to_top(words, exponent, negative)
+}
+
+fn shifted_to_top(words: Guarded, exponent: i32, negative: bool) -> Wide {
     let Some(top) = words.iter().rposition(|word| *word != 0) else {
         return Wide::ZERO;
     };
@@ -75,6 +91,7 @@ fn normalised(words: Guarded, exponent: i32, negative: bool) -> Wide {
 impl Add for Wide {
     type Output = Self;
 
+    #[inline]
     fn add(self, other: Self) -> Self {
         if self.nan || other.is_zero() {
             return self;
@@ -130,6 +147,7 @@ impl Neg for Wide {
 impl Mul for Wide {
     type Output = Self;
 
+    #[inline]
     fn mul(self, other: Self) -> Self {
         if self.nan || other.nan {
             return Self::NAN;
@@ -137,7 +155,10 @@ impl Mul for Wide {
         if self.is_zero() || other.is_zero() {
             return Self::ZERO;
         }
-        let product = product(&self.words, &other.words);
+        let product = match self.is_short() {
+            true => product(&self.words, &other.words),
+            false => product(&other.words, &self.words),
+        };
         Self {
             negative: self.negative != other.negative,
             ..normalised(
@@ -149,10 +170,12 @@ impl Mul for Wide {
     }
 }
 
-/// The product of two mantissas, all of it.
+/// The leading words of the product of two mantissas, with those below that are not 0.
+#[inline]
 fn product(a: &[u64; WORDS], b: &[u64; WORDS]) -> [u64; 2 * WORDS] {
     let mut product = [0; 2 * WORDS];
-    for (i, x) in a.iter().enumerate() {
+    // A double has one word that is not 0.
+    for (i, x) in a.iter().enumerate().filter(|(_, x)| **x != 0) {
         let mut carry = 0;
         for (j, y) in b.iter().enumerate() {
             let sum = u128::from(*x) * u128::from(*y) + u128::from(product[i + j]) + carry;

@@ -100,7 +100,14 @@ impl Wide {
         }
     }
 
+    /// Whether the mantissa has one word alone, as that of a double.
+    #[inline]
+    fn is_short(self) -> bool {
+        self.words[0] | self.words[1] | self.words[2] == 0
+    }
+
     /// The nearest double; infinite beyond its range. Subnormal results are rounded twice.
+    #[inline]
     pub fn to_f64(self) -> f64 {
         if self.nan {
             return f64::NAN;
@@ -109,12 +116,13 @@ impl Wide {
             return 0.0;
         }
         // A bit that is never a tie's own stands for all bits below the first 64.
-        let sticky = u64::from(self.words[..WORDS - 1].iter().any(|word| *word != 0));
+        let sticky = u64::from(!self.is_short());
         let size = power_of_two((self.words[WORDS - 1] | sticky) as f64, self.exponent - 64);
         if self.negative { -size } else { size }
     }
 
     /// Whether this is 0.
+    #[inline]
     pub fn is_zero(self) -> bool {
         self.words[WORDS - 1] == 0 && !self.nan
     }
@@ -135,6 +143,7 @@ impl Wide {
 
     /// `self / 2ⁿ`.
     #[must_use]
+    #[inline]
     pub fn halved(self, n: i32) -> Self {
         match self.is_zero() {
             true => self,
@@ -146,22 +155,21 @@ impl Wide {
     }
 
     /// Order by size without signs; NaN before everything.
+    #[inline]
     pub fn compare_sizes(self, other: Self) -> Ordering {
-        let key = |x: Self| {
-            let words = x.words;
-            (
-                !x.nan,
-                !x.is_zero(),
-                x.exponent,
-                [words[3], words[2], words[1], words[0]],
-            )
-        };
-        key(self).cmp(&key(other))
+        let key = |x: Self| (!x.nan, !x.is_zero(), x.exponent, x.words[WORDS - 1]);
+        let rest = |x: Self| (x.words[2], x.words[1], x.words[0]);
+        let leading = key(self).cmp(&key(other));
+        leading.then_with(|| rest(self).cmp(&rest(other)))
     }
 }
 
 /// `x · 2ⁿ` without leaving the range on the way.
+#[inline]
 fn power_of_two(x: f64, n: i32) -> f64 {
+    if (-1000..=900).contains(&n) {
+        return x * f64::from_bits(((1023 + n) as u64) << 52);
+    }
     // A factor of at most 2^±1000 at a time; after three of them everything has over- or underflowed.
     let mut left = n.clamp(-3000, 3000);
     let mut result = x;
