@@ -38,7 +38,7 @@ pub use node::Node;
 pub use outputs::{check_lanes, measure_duals};
 pub use points::{Case, Points};
 pub use program::{Program, Sheet};
-pub use suite::{Shortfall, check, measure};
+pub use suite::{check, measure};
 pub use table::Table;
 pub use tracked::Tracked;
 pub use wide::{BITS, Wide};

@@ -52,24 +52,15 @@ where
     worst
 }
 
-/// A kernel that does not keep the bound yet: joint, kernel, and what it keeps instead, in ulp.
-pub type Shortfall = (&'static str, &'static str, f64);
-
-/// Holds every kernel to `bound` ulp, those of known shortfalls to theirs.
+/// Holds every kernel to `bound` ulp.
 ///
 /// # Panics
 /// With the kernels that exceed it, and where.
-pub fn check(name: &str, worst: &Worst, bound: f64, shortfalls: &[Shortfall]) {
-    let bound_of = |kernel: &str| {
-        let known = shortfalls
-            .iter()
-            .find(|(joint, other, _)| *joint == name && *other == kernel);
-        known.map_or(bound, |(_, _, own)| *own)
-    };
+pub fn check(name: &str, worst: &Worst, bound: f64) {
     let exceeding: Vec<String> = worst
         .errors
         .iter()
-        .filter(|(kernel, (error, _))| error.is_nan() || *error > bound_of(kernel))
+        .filter(|(_, (error, _))| error.is_nan() || *error > bound)
         .map(|(kernel, (error, place))| format!("{name}.{kernel}: {error:.1} ulp, {place}"))
         .collect();
     assert!(exceeding.is_empty(), "{}", exceeding.join("\n"));
