@@ -97,7 +97,11 @@ impl Expr {
             return self.clone();
         };
         let shared = self.terms().all(|(_, c)| c.abs() == first.abs());
-        let number = if shared { first.clone() } else { Rational::one() };
+        let number = if shared {
+            first.clone()
+        } else {
+            Rational::one()
+        };
         let sum = self.scaled(&number.recip(), &Monomial::one());
         apply(Function::Group, vec![sum]).scaled(&number, &Monomial::one())
     }

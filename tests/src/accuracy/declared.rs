@@ -287,10 +287,7 @@ mod tests {
                     let place = hamel_codegen::expr::evaluate_f64(&place, &|_| f64::NAN) as usize;
                     let error = known(got).value - expected.entries()[place].value;
                     // 2⁻²²⁰ of terms up to 10⁴.
-                    assert!(
-                        error.to_f64().abs() < f64::powi(0.5, 207),
-                        "{text} {scale}"
-                    );
+                    assert!(error.to_f64().abs() < f64::powi(0.5, 207), "{text} {scale}");
                 }
             }
         }

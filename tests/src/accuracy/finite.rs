@@ -1,9 +1,9 @@
 //! The finite maps of a joint from their definitions: Φ(Q, ϕ), its inverse, its differential.
 
+use super::Grid;
 use super::definition::{Definition, numbers};
 use super::tracked::{Tracked, larger};
 use super::wide::Wide;
-use super::Grid;
 use hamel_codegen::expr::Number;
 
 /// Φ(Q, ϕ) with its derivatives.

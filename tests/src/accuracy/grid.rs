@@ -126,7 +126,11 @@ impl Grid<Tracked> {
             of_matrix.fold(right.at(r, j).scale, larger)
         });
         let of_row = |i: usize| (0..left.columns).map(|r| *gains.at(i, r)).fold(0.0, larger);
-        let of_column = |j: usize| (0..right.rows).map(|r| right.at(r, j).scale).fold(0.0, larger);
+        let of_column = |j: usize| {
+            (0..right.rows)
+                .map(|r| right.at(r, j).scale)
+                .fold(0.0, larger)
+        };
         Self::from_fn(x.rows, x.columns, |i, j| {
             let noise = NOISE * of_row(i) * of_column(j);
             let moved = (0..self.rows).map(|r| gains.at(i, r) * shaken.at(r, j));

@@ -238,7 +238,7 @@ mod tests {
     use crate::accuracy::environment::Environment;
     use crate::accuracy::{Node, Wide};
     use hamel_codegen::expr::{Expr, Role, Symbol};
-    
+
     /// Every function of the language, of arguments that mix two variables.
     fn functions(x: &Expr, y: &Expr) -> Vec<Expr> {
         let sum = &(x * y) + &Expr::integer(2);

@@ -175,6 +175,9 @@ impl Grid<Node> {
     /// The inverse of a square matrix.
     pub fn inverse(&self) -> Self {
         let entry = |i: usize, j: usize| Node::input(f64::from(u8::from(i == j)));
-        self.solve_by(&self.left_inverse(), &Self::from_fn(self.rows, self.rows, entry))
+        self.solve_by(
+            &self.left_inverse(),
+            &Self::from_fn(self.rows, self.rows, entry),
+        )
     }
 }

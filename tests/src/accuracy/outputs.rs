@@ -1,10 +1,10 @@
 //! All kernels of a joint at one case, in any scalar: lanes and dual numbers against doubles.
 
+use super::Tracked;
 use super::compare::Worst;
 use super::definition::{Definition, numbers};
 use super::points::{Case, Points, Range};
 use super::program::Sheet;
-use super::Tracked;
 use hamel::joint::Joint;
 use hamel::nalgebra::{SMatrix, SVector};
 use hamel::scalar::{Dual, F64x4, Scalar};

@@ -336,7 +336,6 @@ fn rotation(q: &[f64], offset: &[Wide]) -> Vec<Wide> {
 }
 
 fn bordered(rows: &[&[Wide]], offset: &[Wide]) -> Vec<Wide> {
-    let row =
-        |(i, row): (usize, &&[Wide])| [*row, offset.get(i..=i).unwrap_or_default()].concat();
+    let row = |(i, row): (usize, &&[Wide])| [*row, offset.get(i..=i).unwrap_or_default()].concat();
     rows.iter().enumerate().flat_map(row).collect()
 }

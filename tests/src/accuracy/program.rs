@@ -25,7 +25,10 @@ impl<T: Clone> Sheet<T> {
 
     /// All matrices of that name.
     pub fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Grid<T>> {
-        let named = self.matrices.iter().filter(move |(other, _)| *other == name);
+        let named = self
+            .matrices
+            .iter()
+            .filter(move |(other, _)| *other == name);
         named.map(|(_, matrix)| matrix)
     }
 
@@ -40,7 +43,8 @@ impl<T: Clone> Sheet<T> {
     /// # Panics
     /// Where there is none.
     pub fn get(&self, name: &str) -> &Grid<T> {
-        self.find(name).unwrap_or_else(|| panic!("{name} is defined"))
+        self.find(name)
+            .unwrap_or_else(|| panic!("{name} is defined"))
     }
 }
 
@@ -99,5 +103,63 @@ impl Program {
                 .map(|(name, matrix)| (*name, matrix.map(|place| values[*place as usize])))
                 .collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Program, Sheet};
+    use crate::accuracy::{Grid, Node, Tracked};
+    use hamel_codegen::expr::{Function, Number};
+
+    /// Sums, products, quotients, functions and two systems of four numbers, some of which may be known beforehand.
+    fn definition(x: &[Node]) -> Sheet<Node> {
+        let one = Node::input(1.0);
+        let angle = x[0].times(&x[1]).plus(&one);
+        let sine = one.function(Function::Sin, std::slice::from_ref(&angle));
+        let turned = one.function(Function::Atan2, &[sine.clone(), x[2].negative()]);
+        let nothing = x[3].times(&Node::input(0.0)).plus(&x[3]);
+        let matrix = Grid::of_entries(3, 2, [x, &[sine, turned]].concat());
+        let right = Grid::column(vec![angle.over(&x[3]), nothing, one]);
+        let left = matrix.left_inverse();
+        let mut sheet = Sheet::default();
+        sheet.put("solution", matrix.solve_by(&left, &right));
+        sheet.put("inverse", matrix.transpose().times(&matrix).inverse());
+        sheet.put("right", right);
+        sheet
+    }
+
+    /// What is recorded and run is, number for number, what is known beforehand.
+    #[test]
+    fn recorded_is_direct() {
+        for numbers in [[0.5, -1.25, 2.0, 0.75], [0.0, 1.0, -1.0, 3.0]] {
+            let numbers = numbers.map(Tracked::input);
+            let direct = definition(&numbers.map(Node::Known));
+            for known in 0..4 {
+                let program = Program::new(4, |inputs| {
+                    let mut inputs = inputs.to_vec();
+                    inputs[known] = Node::Known(numbers[known]);
+                    definition(&inputs)
+                });
+                let run = program.run(&numbers);
+                for name in ["solution", "inverse", "right"] {
+                    let want = direct.get(name).map(|x| x.known().expect("is known"));
+                    assert_eq!(run.get(name).entries(), want.entries(), "{name}");
+                }
+            }
+        }
+    }
+
+    /// Equal operations are done once, those that no result needs not at all.
+    #[test]
+    fn only_what_is_needed_is_done() {
+        let program = Program::new(2, |x| {
+            let (there, back) = (x[0].times(&x[1]), x[1].times(&x[0]));
+            let _unused = x[0].plus(&x[1]);
+            let mut sheet = Sheet::default();
+            sheet.put("sum", Grid::column(vec![there.plus(&back)]));
+            sheet
+        });
+        assert_eq!(program.size(), 2);
     }
 }

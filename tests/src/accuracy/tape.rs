@@ -139,7 +139,9 @@ impl Tape {
         places.iter().for_each(|place| live[*place as usize] = true);
         for place in (0..self.ops.len()).rev() {
             if live[place] {
-                self.read(self.ops[place]).iter().for_each(|p| live[*p as usize] = true);
+                self.read(self.ops[place])
+                    .iter()
+                    .for_each(|p| live[*p as usize] = true);
             }
         }
         let ops = self.ops.iter().enumerate();

@@ -166,9 +166,11 @@ fn value(function: Function, x: Wide) -> Wide {
         Function::Sqrt => x.sqrt(),
         Function::Recip => x.recip(),
         Function::Group => x,
-        Function::Pi | Function::Exp | Function::Ln | Function::Atan2 | Function::DexpInverse(_) => {
-            by_precise(function, &[x])
-        }
+        Function::Pi
+        | Function::Exp
+        | Function::Ln
+        | Function::Atan2
+        | Function::DexpInverse(_) => by_precise(function, &[x]),
     }
 }
 

@@ -59,7 +59,10 @@ fn cancellation_is_exact() {
 fn doubles_come_and_go() {
     for x in [0.0, 1.0, -0.1, 1e-300, 5e-324, -3e-310, f64::MAX] {
         assert_eq!(Wide::from_f64(x).to_f64(), x);
-        assert_eq!(Wide::from_precise(&Precise::from_f64(x, BITS)), Wide::from_f64(x));
+        assert_eq!(
+            Wide::from_precise(&Precise::from_f64(x, BITS)),
+            Wide::from_f64(x)
+        );
     }
     assert!(Wide::from_f64(f64::INFINITY).to_f64().is_nan());
     assert!((Wide::ZERO / Wide::ZERO).to_f64().is_nan());
@@ -72,7 +75,17 @@ fn doubles_come_and_go() {
 #[test]
 fn sines_are_those_of_the_angle() {
     let one = Precise::integer(1, BITS);
-    for x in [0.0, 1e-300, 0.5, -1.6, 3.141592653589793, 22.0, -6283185.3, 1e11, 1e15] {
+    for x in [
+        0.0,
+        1e-300,
+        0.5,
+        -1.6,
+        3.141592653589793,
+        22.0,
+        -6283185.3,
+        1e11,
+        1e15,
+    ] {
         let (cos, sin) = Wide::from_f64(x).cos_sin();
         let angle = Precise::from_f64(x, 640);
         check(cos, &angle.cos().to_bits(BITS), &one, "cos");
@@ -88,7 +101,8 @@ fn families_are_stumpff_functions() {
         let wide = Wide::from_f64(s);
         for k in 0..13_u8 {
             let want = Precise::from_f64(s, BITS).stumpff(k.into());
-            let scale = Precise::from_f64(want.to_f64().abs().max(if k < 2 { 1.0 } else { 0.0 }), BITS);
+            let scale =
+                Precise::from_f64(want.to_f64().abs().max(if k < 2 { 1.0 } else { 0.0 }), BITS);
             check(stumpff(k, wide), &want, &scale.halved(-15), "stumpff");
         }
     }
