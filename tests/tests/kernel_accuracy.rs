@@ -102,8 +102,13 @@ macro_rules! accuracy_test {
 
             #[test]
             #[ignore = "minutes: 10⁵ points in 256 bits"]
-            fn sweep() {
+            fn sweep_in_double_precision() {
                 super::full::<f64, $joint, $n, $k, $s, $c>(&$example);
+            }
+
+            #[test]
+            #[ignore = "minutes: 10⁵ points in 256 bits"]
+            fn sweep_in_single_precision() {
                 super::full::<f32, $joint, $n, $k, $s, $c>(&$example);
             }
         }

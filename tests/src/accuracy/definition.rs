@@ -17,8 +17,10 @@ pub struct Definition {
     speeds: usize,
     /// Q, v, v̄ and h to the kernels at ϕ = 0.
     kernels: Program,
-    /// Q and ϕ to Φ(Q, ϕ) and ∂Φ/∂ϕ.
+    /// Q and ϕ to Φ(Q, ϕ).
     moved: Program,
+    /// Q and ϕ to Φ(Q, ϕ) and ∂Φ/∂ϕ.
+    moved_with_tangent: Program,
     /// Q to ∂Φ/∂ϕ at ϕ = 0.
     directions: Program,
     /// Q to the functions of loci and the relations.
@@ -77,6 +79,10 @@ impl Definition {
             }),
             moved: Program::new(n + k, |all| {
                 let (q, phi) = all.split_at(n);
+                moved_with_tangent(&declared, q, phi).only("moved")
+            }),
+            moved_with_tangent: Program::new(n + k, |all| {
+                let (q, phi) = all.split_at(n);
                 moved_with_tangent(&declared, q, phi)
             }),
             directions: Program::new(n, |q| moved_with_tangent(&declared, q, &zero)),
@@ -126,9 +132,14 @@ impl Definition {
         })
     }
 
+    /// Φ(Q, ϕ).
+    pub(super) fn moved(&self, q: &[Tracked], phi: &[Tracked]) -> Grid<Tracked> {
+        self.moved.run(&[q, phi].concat()).get("moved").clone()
+    }
+
     /// Φ(Q, ϕ) as `moved` and ∂Φ/∂ϕ as `tangent`.
-    pub(super) fn moved(&self, q: &[Tracked], phi: &[Tracked]) -> Sheet<Tracked> {
-        self.moved.run(&[q, phi].concat())
+    pub(super) fn moved_with_tangent(&self, q: &[Tracked], phi: &[Tracked]) -> Sheet<Tracked> {
+        self.moved_with_tangent.run(&[q, phi].concat())
     }
 
     /// ∂Φ/∂ϕ at ϕ = 0.

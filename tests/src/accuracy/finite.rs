@@ -33,7 +33,7 @@ fn size(values: &[Wide]) -> f64 {
 impl Definition {
     /// Φ and its differential at finite ϕ.
     pub fn at_phi(&self, q: &[f64], phi: &[f64]) -> AtPhi {
-        let there = self.moved(&numbers(q), &numbers(phi));
+        let there = self.moved_with_tangent(&numbers(q), &numbers(phi));
         let moved = there.get("moved").entries().to_vec();
         let tangent = there.get("tangent").clone();
         let directions = self.directions(&moved);
@@ -63,7 +63,7 @@ impl Definition {
             if size(step.entries()) <= LAST * phi.iter().map(|x| x.scale).fold(0.0, larger) {
                 break;
             }
-            reached = self.moved(&q, &phi).get("moved").entries().to_vec();
+            reached = self.moved(&q, &phi).entries().to_vec();
         }
         Grid::from_fn(phi.len(), 1, |k, _| {
             let moves = |i: usize| left.at(k, i).to_f64().abs() * at.moved[i].scale;
@@ -86,7 +86,7 @@ impl Definition {
             }
             let step = step.map(|s| Tracked::computed(*s, 0.0));
             let moved = self.moved(&point, step.entries());
-            let moved = moved.get("moved").map(|x| Tracked::computed(x.value, 0.0));
+            let moved = moved.map(|x| Tracked::computed(x.value, 0.0));
             point = moved.entries().to_vec();
             tangent = self.directions(&point).values();
             left = tangent.left_inverse();

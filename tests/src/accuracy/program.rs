@@ -32,6 +32,12 @@ impl<T: Clone> Sheet<T> {
         named.map(|(_, matrix)| matrix)
     }
 
+    /// The matrices of that name alone.
+    pub fn only(mut self, name: &str) -> Self {
+        self.matrices.retain(|(other, _)| *other == name);
+        self
+    }
+
     /// The first matrix of that name, where there is one.
     pub fn find(&self, name: &str) -> Option<&Grid<T>> {
         let named = self.matrices.iter().find(|(other, _)| *other == name);

@@ -11,28 +11,38 @@ fn guarded(words: [u64; WORDS]) -> Guarded {
     [0, words[0], words[1], words[2], words[3]]
 }
 
+/// The words with as many of 0 on either side: a shift by less than the whole length reads from another place.
+#[inline]
+fn padded(words: Guarded) -> [u64; 3 * (WORDS + 1)] {
+    let mut padded = [0; 3 * (WORDS + 1)];
+    padded[WORDS + 1..2 * (WORDS + 1)].copy_from_slice(&words);
+    padded
+}
+
+/// The words from a place on, moved down by less than a word.
+#[inline]
+fn read(padded: &[u64; 3 * (WORDS + 1)], start: usize, part: u32) -> Guarded {
+    let mut words = [0; WORDS + 1];
+    for (i, word) in words.iter_mut().enumerate() {
+        let (low, high) = (padded[start + i], padded[start + i + 1]);
+        *word = ((u128::from(high) << 64 | u128::from(low)) >> part) as u64;
+    }
+    words
+}
+
 /// Shifts by less than the whole length.
 #[inline]
 fn shifted_down(words: Guarded, bits: u32) -> Guarded {
-    let (whole, part) = ((bits / 64) as usize, bits % 64);
-    let word = |i: usize| words.get(i + whole).copied().unwrap_or(0);
-    std::array::from_fn(|i| match part {
-        0 => word(i),
-        _ => word(i) >> part | word(i + 1) << (64 - part),
-    })
+    read(&padded(words), WORDS + 1 + (bits / 64) as usize, bits % 64)
 }
 
+/// Shifts by less than the whole length.
+#[inline]
 fn shifted_up(words: Guarded, bits: u32) -> Guarded {
-    let (whole, part) = ((bits / 64) as usize, bits % 64);
-    let word = |i: usize| match i >= whole {
-        true => words[i - whole],
-        false => 0,
-    };
-    std::array::from_fn(|i| match (part, i) {
-        (0, _) => word(i),
-        (_, 0) => word(0) << part,
-        _ => word(i) << part | word(i - 1) >> (64 - part),
-    })
+    // Up by n is down by −n, from so many words lower as have n bits.
+    let whole = bits.div_ceil(64);
+    let start = WORDS + 1 - whole as usize;
+    read(&padded(words), start, 64 * whole - bits)
 }
 
 /// The sum, and whether it exceeds the length.
