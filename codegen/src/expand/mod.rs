@@ -104,7 +104,7 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
         .recip()
         .ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
     let velocity_map_inverse =
-        ideal.normal_forms(&velocity_map.base.adjugate(&simplify).scale(&inverse));
+        ideal.simplest_entries(&velocity_map.base.adjugate(&simplify).scale(&inverse));
     budget::begin(task::CONSTRAINT);
     let nonholonomic = Nonholonomic::new(spec, &motion, &domain)?;
     Ok(Expansion {

@@ -190,7 +190,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
-    /// 1 slices of 6×1. Operations: 4 additions, 20 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    /// 1 slices of 6×1. Operations: 4 additions, 18 multiplications (3 of each fused), 3 divisions, 2 function calls.
     ///
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn twist_map_child_gradient<T: Scalar>(
@@ -201,7 +201,6 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let b = T::from_f64(self.b);
         let [q_c, q_s]: [T; 2] = (*q).into();
         let zero = T::zero();
-        let half = T::from_f64(0.5);
         let two = T::from_f64(2.0);
         let a_squared = a * a;
         let b_squared = b * b;
@@ -218,7 +217,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
                 [zero],
                 [zero],
                 [
-                    -a * b * two * q_c_a_squared_minus_b_squared_q_s
+                    -two * a * b * q_c_a_squared_minus_b_squared_q_s
                         / (value_of_a_squared_q_c * value_of_a_squared_q_c
                             * value_of_a_squared_q_c * value_of_a_squared_q_c),
                 ],
@@ -226,7 +225,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
                     two
                         .mul_add(
                             q_c_a_squared_minus_b_squared_q_s,
-                            -half * two * q_c_a_squared_minus_b_squared_q_s
+                            -q_c_a_squared_minus_b_squared_q_s
                                 * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
                         ) / value_of,
                 ],
@@ -434,7 +433,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 4 additions, 23 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 4 additions, 21 multiplications (3 of each fused), 3 divisions, 2 function calls.
     ///
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn bias_acceleration<T: Scalar>(
@@ -447,7 +446,6 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let [q_c, q_s]: [T; 2] = (*q).into();
         let speed_angle = speeds[0];
         let zero = T::zero();
-        let half = T::from_f64(0.5);
         let two = T::from_f64(2.0);
         let speed_angle_squared = speed_angle * speed_angle;
         let a_squared = a * a;
@@ -463,14 +461,14 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         SVector::from([
             zero,
             zero,
-            -a * b * speed_angle_squared * two * q_c_a_squared_minus_b_squared_q_s
+            -two * a * b * speed_angle_squared * q_c_a_squared_minus_b_squared_q_s
                 / (value_of_a_squared_q_c * value_of_a_squared_q_c
                     * value_of_a_squared_q_c * value_of_a_squared_q_c),
             speed_angle_squared
                 * two
                     .mul_add(
                         q_c_a_squared_minus_b_squared_q_s,
-                        -half * two * q_c_a_squared_minus_b_squared_q_s
+                        -q_c_a_squared_minus_b_squared_q_s
                             * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
                     ) / value_of,
             zero,
@@ -480,7 +478,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 1-vector. Operations: 5 additions, 23 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    /// 1-vector. Operations: 5 additions, 21 multiplications (3 of each fused), 3 divisions, 2 function calls.
     ///
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn bias_momentum<T: Scalar>(
@@ -494,7 +492,6 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let [q_c, q_s]: [T; 2] = (*q).into();
         let speed_angle = speeds[0];
         let (h3, h4) = (h[2], h[3]);
-        let half = T::from_f64(0.5);
         let two = T::from_f64(2.0);
         let a_squared = a * a;
         let b_squared = b * b;
@@ -512,10 +509,10 @@ impl Joint<2, 1, 1, 0> for Ellipse {
                     * two
                         .mul_add(
                             q_c_a_squared_minus_b_squared_q_s,
-                            -half * two * q_c_a_squared_minus_b_squared_q_s
+                            -q_c_a_squared_minus_b_squared_q_s
                                 * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
                         ) / value_of
-                    - a * b * h3 * two * q_c_a_squared_minus_b_squared_q_s
+                    - two * a * b * h3 * q_c_a_squared_minus_b_squared_q_s
                         / (value_of_a_squared_q_c * value_of_a_squared_q_c
                             * value_of_a_squared_q_c * value_of_a_squared_q_c)),
         ])

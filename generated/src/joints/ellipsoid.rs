@@ -15,12 +15,12 @@
 //!     ⎢Q₃₁  Q₃₂  Q₃₃  c² Q₃₃ / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
 //!     ⎣  0    0    0                                        1⎦
 //!
-//!     ⎡                                          Q₁₁                                             Q₁₂                    Q₁₃⎤
-//!     ⎢                                          Q₂₁                                             Q₂₂                    Q₂₃⎥
-//! X = ⎢                                          Q₃₁                                             Q₃₂                    Q₃₃⎥
-//!     ⎢(w₄ Q₃₁ − w₁ (Q₁₂ − ½ Q₁₃ 2 w₉) − w₆ Q₂₁) w₁₀  (w₁ (Q₁₁ − ½ Q₁₃ 2 w₁₁) − w₆ Q₂₂ + w₄ Q₃₂) w₁₀  Q₂₃ Q₃₃ (w₃ − w₅) w₁₀⎥
-//!     ⎢(w₆ Q₁₁ − w₂ Q₃₁ − w₃ (Q₂₂ − ½ Q₂₃ 2 w₉)) w₁₀  (w₃ (Q₂₁ − ½ Q₂₃ 2 w₁₁) + w₆ Q₁₂ − w₂ Q₃₂) w₁₀      w₁₂ Q₃₃ (w₅ − w₁)⎥
-//!     ⎣(w₂ Q₂₁ − w₅ (Q₃₂ − ½ Q₃₃ 2 w₉) − w₄ Q₁₁) w₁₀  (w₅ (Q₃₁ − ½ Q₃₃ 2 w₁₁) − w₄ Q₁₂ + w₂ Q₂₂) w₁₀      w₁₂ Q₂₃ (w₁ − w₃)⎦
+//!     ⎡                                      Q₁₁                                         Q₁₂                    Q₁₃⎤
+//!     ⎢                                      Q₂₁                                         Q₂₂                    Q₂₃⎥
+//! X = ⎢                                      Q₃₁                                         Q₃₂                    Q₃₃⎥
+//!     ⎢(w₄ Q₃₁ − w₁ (Q₁₂ − Q₁₃ w₉) − w₆ Q₂₁) w₁₀  (w₁ (Q₁₁ − Q₁₃ w₁₁) − w₆ Q₂₂ + w₄ Q₃₂) w₁₀  Q₂₃ Q₃₃ (w₃ − w₅) w₁₀⎥
+//!     ⎢(w₆ Q₁₁ − w₂ Q₃₁ − w₃ (Q₂₂ − Q₂₃ w₉)) w₁₀  (w₃ (Q₂₁ − Q₂₃ w₁₁) + w₆ Q₁₂ − w₂ Q₃₂) w₁₀      w₁₂ Q₃₃ (w₅ − w₁)⎥
+//!     ⎣(w₂ Q₂₁ − w₅ (Q₃₂ − Q₃₃ w₉) − w₄ Q₁₁) w₁₀  (w₅ (Q₃₁ − Q₃₃ w₁₁) − w₄ Q₁₂ + w₂ Q₂₂) w₁₀      w₁₂ Q₂₃ (w₁ − w₃)⎦
 //!
 //! w₁ = a²
 //!
@@ -170,7 +170,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 68 multiplications (24 of each fused), 2 divisions, 1 function call.
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 56 multiplications (24 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
@@ -178,9 +178,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let b = T::from_f64(self.b);
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let half = T::from_f64(0.5);
         let one = T::one();
-        let two = T::from_f64(2.0);
         let a_squared = a * a;
         let a_squared_q13 = a_squared * q13;
         let b_squared = b * b;
@@ -205,14 +203,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [
                 a_squared
                     .mul_add(
-                        (half * q13 * two)
-                            .mul_add(product_of_a_squared_q13_q12_q22_q32, -q12),
+                        q13.mul_add(product_of_a_squared_q13_q12_q22_q32, -q12),
                         c_squared_q33.mul_add(-q21, b_squared_q23 * q31),
                     ) * quotient_of_2,
                 a_squared
                     .mul_add(
-                        (half * q13 * two)
-                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q11),
+                        q13.mul_add(-product_of_a_squared_q13_q11_q21_q31, q11),
                         c_squared_q33.mul_add(-q22, b_squared_q23 * q32),
                     ) * quotient_of_2,
                 q23 * q33 * (b_squared - c_squared) * quotient_of_2,
@@ -223,15 +219,13 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         -q31,
                         b_squared
                             .mul_add(
-                                (half * q23 * two)
-                                    .mul_add(product_of_a_squared_q13_q12_q22_q32, -q22),
+                                q23.mul_add(product_of_a_squared_q13_q12_q22_q32, -q22),
                                 c_squared_q33 * q11,
                             ),
                     ) * quotient_of_2,
                 b_squared
                     .mul_add(
-                        (half * q23 * two)
-                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q21),
+                        q23.mul_add(-product_of_a_squared_q13_q11_q21_q31, q21),
                         a_squared_q13.mul_add(-q32, c_squared_q33 * q12),
                     ) * quotient_of_2,
                 q13_quotient_of_2 * q33 * (c_squared - a_squared),
@@ -239,14 +233,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [
                 c_squared
                     .mul_add(
-                        (half * q33 * two)
-                            .mul_add(product_of_a_squared_q13_q12_q22_q32, -q32),
+                        q33.mul_add(product_of_a_squared_q13_q12_q22_q32, -q32),
                         b_squared_q23.mul_add(-q11, a_squared_q13 * q21),
                     ) * quotient_of_2,
                 c_squared
                     .mul_add(
-                        (half * q33 * two)
-                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q31),
+                        q33.mul_add(-product_of_a_squared_q13_q11_q21_q31, q31),
                         b_squared_q23.mul_add(-q12, a_squared_q13 * q22),
                     ) * quotient_of_2,
                 q13_quotient_of_2 * q23 * (a_squared - b_squared),
@@ -256,7 +248,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 18 additions, 57 multiplications (18 of each fused), 2 divisions, 1 function call.
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 18 additions, 45 multiplications (18 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
@@ -265,9 +257,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let zero = T::zero();
-        let half = T::from_f64(0.5);
         let one = T::one();
-        let two = T::from_f64(2.0);
         let a_squared = a * a;
         let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
@@ -297,7 +287,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [zero, one, zero],
             [zero, zero, one],
             [
-                (half * two * sum_of_a_squared_q12_q13_q23_q33)
+                sum_of_a_squared_q12_q13_q23_q33
                     .mul_add(
                         product_of_inverse_value_of_squared,
                         -sum_of_a_squared_q11_q12_q22_q32,
@@ -308,7 +298,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         b_squared_q21
                             .mul_add(
                                 q21,
-                                (half * two * product_of_inverse_value_of_squared)
+                                product_of_inverse_value_of_squared
                                     .mul_add(
                                         -sum_of_a_squared_q11_q13_q23_q33,
                                         c_squared_q31 * q31,
@@ -327,12 +317,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                                 c_squared_q32
                                     .mul_add(
                                         -q32,
-                                        half * two * product_of_inverse_value_of_squared_2
+                                        product_of_inverse_value_of_squared_2
                                             * sum_of_a_squared_q12_q13_q23_q33,
                                     ),
                             ),
                     ) * inverse_value_of,
-                (half * two * product_of_inverse_value_of_squared)
+                product_of_inverse_value_of_squared
                     .mul_add(
                         -sum_of_a_squared_q12_q13_q23_q33,
                         sum_of_a_squared_q11_q12_q22_q32,
@@ -340,12 +330,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                 zero,
             ],
             [
-                (half * two * product_of_inverse_value_of_squared_2)
+                product_of_inverse_value_of_squared_2
                     .mul_add(
                         sum_of_a_squared_q13_b_squared_q23,
                         -sum_of_a_squared_q12_q13_q23_q33,
                     ) * inverse_value_of,
-                (half * two * product_of_inverse_value_of_squared)
+                product_of_inverse_value_of_squared
                     .mul_add(
                         -sum_of_a_squared_q13_b_squared_q23,
                         sum_of_a_squared_q11_q13_q23_q33,
@@ -357,7 +347,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
-    /// 3 slices of 6×3. Operations: 50 additions, 147 multiplications (44 of each fused), 4 divisions, 1 function call.
+    /// 3 slices of 6×3. Operations: 49 additions, 97 multiplications (36 of each fused), 4 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map_child_gradient<T: Scalar>(
@@ -369,13 +359,9 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let zero = T::zero();
-        let quarter = T::from_f64(0.25);
-        let half = T::from_f64(0.5);
         let one = T::one();
-        let three_halves = T::from_f64(1.5);
         let two = T::from_f64(2.0);
         let three = T::from_f64(3.0);
-        let four = T::from_f64(4.0);
         let a_squared = a * a;
         let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
@@ -398,130 +384,115 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let inverse_value_of_squared = one / value_of_squared;
         let product_of_inverse_value_of_squared = sum_of_a_squared_q12_q13_q23_q33
             * inverse_value_of_squared;
-        let product_of = product_of_inverse_value_of_squared
+        let product_of = three * product_of_inverse_value_of_squared
             * sum_of_a_squared_q12_q13_q23_q33;
-        let sum_of_product_of = (two * two)
-            .mul_add(
-                sum_of_a_squared_q13_b_squared_q23 - sum_of_a_squared_q12_q12_q22_q32,
-                three * two * product_of * two,
-            );
+        let sum_of_product_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32 + product_of;
         let sum_of_sum_of_product_of = sum_of_product_of
-            .mul_add(-inverse_value_of_squared, four);
+            .mul_add(-inverse_value_of_squared, one);
         let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
             .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
         let inverse_value_of = one / value_of;
-        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
-            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
         let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q11_q13_q23_q33
             * inverse_value_of_squared;
-        let product_of_2 = sum_of_a_squared_q12_q13_q23_q33
-            * product_of_inverse_value_of_squared_2;
-        let sum_of_product_of_2 = two * two * sum_of_a_squared_q11_q12_q22_q32
-            - three * two * product_of_2 * two;
-        let product_of_sum_of_product_of_2 = quarter
-            * two
-                .mul_add(
-                    (two * sum_of_a_squared_q12_q13_q23_q33)
-                        .mul_add(
-                            sum_of_a_squared_q11_q11_q21_q31,
-                            two * sum_of_a_squared_q11_q13_q23_q33
-                                * sum_of_a_squared_q11_q12_q22_q32,
-                        ),
-                    sum_of_a_squared_q11_q13_q23_q33 * sum_of_product_of_2,
-                );
+        let sum_of = (three * sum_of_a_squared_q12_q13_q23_q33)
+            .mul_add(
+                -product_of_inverse_value_of_squared_2,
+                sum_of_a_squared_q11_q12_q22_q32,
+            );
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_sum_of = sum_of_a_squared_q11_q13_q23_q33
+            .mul_add(
+                sum_of_a_squared_q11_q12_q22_q32,
+                sum_of
+                    .mul_add(
+                        sum_of_a_squared_q11_q13_q23_q33,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            * sum_of_a_squared_q11_q11_q21_q31,
+                    ),
+            );
         let value_of_squared_value_of = value_of_squared * value_of;
-        let product_of_3 = half * sum_of_a_squared_q13_b_squared_q23;
-        let two_sum_of_a_squared_q11_q13_q23_q33 = two
-            * sum_of_a_squared_q11_q13_q23_q33;
-        let sum_of = (two * product_of_inverse_value_of_squared_2)
+        let sum_of_2 = product_of_inverse_value_of_squared_2
             .mul_add(
                 -sum_of_a_squared_q13_b_squared_q23,
-                two_sum_of_a_squared_q11_q13_q23_q33,
+                sum_of_a_squared_q11_q13_q23_q33,
             );
-        let sum_of_sum_of_product_of_2 = two
+        let sum_of_sum_of_2 = sum_of_a_squared_q12_q13_q23_q33
             .mul_add(
-                (two * sum_of_a_squared_q12_q13_q23_q33)
+                sum_of_a_squared_q11_q12_q22_q32,
+                sum_of
                     .mul_add(
-                        sum_of_a_squared_q11_q12_q22_q32,
-                        two * sum_of_a_squared_q11_q13_q23_q33
+                        sum_of_a_squared_q12_q13_q23_q33,
+                        sum_of_a_squared_q11_q13_q23_q33
                             * sum_of_a_squared_q12_q12_q22_q32,
                     ),
-                sum_of_a_squared_q12_q13_q23_q33 * sum_of_product_of_2,
             );
-        let product_of_4 = four * sum_of_a_squared_q11_q12_q22_q32;
-        let product_of_product_of_4 = quarter
-            * (sum_of_a_squared_q13_b_squared_q23 * sum_of_product_of_2)
-                .mul_add(-inverse_value_of_squared, product_of_4);
-        let product_of_5 = sum_of_a_squared_q12_q13_q23_q33
+        let sum_of_sum_of_3 = (sum_of * sum_of_a_squared_q13_b_squared_q23)
+            .mul_add(-inverse_value_of_squared, sum_of_a_squared_q11_q12_q22_q32);
+        let product_of_2 = sum_of_a_squared_q12_q13_q23_q33
             * sum_of_a_squared_q11_q13_q23_q33;
-        let product_of_6 = sum_of_a_squared_q11_q13_q23_q33
+        let product_of_3 = sum_of_a_squared_q11_q13_q23_q33
             * sum_of_a_squared_q12_q13_q23_q33;
-        let product_of_7 = product_of_inverse_value_of_squared_2
-            * sum_of_a_squared_q11_q13_q23_q33;
-        let sum_of_product_of_7 = (two * two)
+        let sum_of_3 = product_of_inverse_value_of_squared
             .mul_add(
-                sum_of_a_squared_q13_b_squared_q23 - sum_of_a_squared_q11_q11_q21_q31,
-                three * two * product_of_7 * two,
+                -sum_of_a_squared_q13_b_squared_q23,
+                sum_of_a_squared_q12_q13_q23_q33,
             );
-        let sum_of_sum_of_product_of_7 = sum_of_product_of_7
-            .mul_add(-inverse_value_of_squared, four);
-        let product_of_product_of_7_product_of = half
-            * two
-                .mul_add(
-                    sum_of_a_squared_q11_q11_q21_q31,
-                    two
-                        .mul_add(
-                            -sum_of_a_squared_q12_q12_q22_q32,
-                            two.mul_add(-product_of_7, two * product_of),
-                        ),
-                ) * inverse_value_of;
-        let product_of_product_of_4_product_of_2 = half
-            * (two * product_of_inverse_value_of_squared_2)
-                .mul_add(
-                    -sum_of_a_squared_q12_q13_q23_q33,
-                    two.mul_add(-product_of_2, product_of_4),
-                ) * inverse_value_of;
+        let product_of_4 = three * product_of_inverse_value_of_squared_2
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_product_of_4 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31 + product_of_4;
+        let sum_of_sum_of_product_of_4 = sum_of_product_of_4
+            .mul_add(-inverse_value_of_squared, one);
+        let product_of_inverse_value_of_squared_3 = (sum_of_a_squared_q12_q12_q22_q32
+            - sum_of_a_squared_q11_q11_q21_q31
+            - (sum_of_a_squared_q12_q13_q23_q33 * sum_of_a_squared_q12_q13_q23_q33
+                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_a_squared_q11_q13_q23_q33)
+                * inverse_value_of_squared) * inverse_value_of;
+        let product_of_product_of_2_product_of_3 = (two
+            * sum_of_a_squared_q11_q12_q22_q32
+            - (product_of_2 + product_of_3) * inverse_value_of_squared)
+            * inverse_value_of;
         [
             from_rows([
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [
-                    -(quarter * sum_of_a_squared_q11_q13_q23_q33)
+                    -sum_of_a_squared_q11_q13_q23_q33
                         .mul_add(
                             sum_of_sum_of_product_of,
                             two * product_of_inverse_value_of_squared
                                 * sum_of_a_squared_q11_q12_q22_q32,
                         ) * inverse_value_of,
-                    product_of_sum_of_product_of_2 / value_of_squared_value_of,
+                    sum_of_sum_of / value_of_squared_value_of,
                     zero,
                 ],
                 [
-                    ((two * sum_of_a_squared_q12_q13_q23_q33)
+                    (sum_of_a_squared_q12_q13_q23_q33
                         .mul_add(
-                            product_of_3 - sum_of_a_squared_q12_q12_q22_q32,
-                            quarter * sum_of_a_squared_q12_q13_q23_q33
-                                * sum_of_product_of,
+                            two
+                                .mul_add(
+                                    -sum_of_a_squared_q12_q12_q22_q32,
+                                    sum_of_a_squared_q13_b_squared_q23,
+                                ),
+                            sum_of_a_squared_q12_q13_q23_q33 * sum_of_product_of,
                         ) * inverse_value_of_squared
                         - two * sum_of_a_squared_q12_q13_q23_q33) * inverse_value_of,
-                    half
-                        .mul_add(
-                            sum_of,
-                            quarter * sum_of_sum_of_product_of_2
-                                * inverse_value_of_squared,
-                        ) * inverse_value_of,
+                    sum_of_sum_of_2.mul_add(inverse_value_of_squared, sum_of_2)
+                        * inverse_value_of,
                     zero,
                 ],
                 [
-                    (quarter * sum_of_a_squared_q13_b_squared_q23)
+                    sum_of_a_squared_q13_b_squared_q23
                         .mul_add(
                             -sum_of_sum_of_product_of,
-                            (three_halves * two)
-                                .mul_add(-product_of, sum_of_a_squared_q12_q12_q22_q32),
+                            sum_of_a_squared_q12_q12_q22_q32 - product_of,
                         ) * inverse_value_of,
-                    (half * two)
-                        .mul_add(product_of_5, two * product_of_6)
-                        .mul_add(inverse_value_of_squared, -product_of_product_of_4)
+                    two
+                        .mul_add(product_of_3, product_of_2)
+                        .mul_add(inverse_value_of_squared, -sum_of_sum_of_3)
                         * inverse_value_of,
                     zero,
                 ],
@@ -531,32 +502,25 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [
-                    (half * two * sum_of_a_squared_q12_q13_q23_q33)
+                    sum_of_sum_of.mul_add(inverse_value_of_squared, sum_of_3)
+                        * inverse_value_of,
+                    (sum_of_a_squared_q11_q13_q23_q33
                         .mul_add(
-                            -sum_of_a_squared_q13_b_squared_q23,
-                            product_of_sum_of_product_of_2,
-                        )
-                        .mul_add(
-                            inverse_value_of_squared,
-                            sum_of_a_squared_q12_q13_q23_q33,
-                        ) * inverse_value_of,
-                    (two * sum_of_a_squared_q11_q13_q23_q33)
-                        .mul_add(
-                            product_of_3 - sum_of_a_squared_q11_q11_q21_q31,
-                            quarter * sum_of_a_squared_q11_q13_q23_q33
-                                * sum_of_product_of_7,
-                        )
-                        .mul_add(
-                            inverse_value_of_squared,
-                            -two_sum_of_a_squared_q11_q13_q23_q33,
-                        ) * inverse_value_of,
+                            two
+                                .mul_add(
+                                    -sum_of_a_squared_q11_q11_q21_q31,
+                                    sum_of_a_squared_q13_b_squared_q23,
+                                ),
+                            sum_of_a_squared_q11_q13_q23_q33 * sum_of_product_of_4,
+                        ) * inverse_value_of_squared
+                        - two * sum_of_a_squared_q11_q13_q23_q33) * inverse_value_of,
                     zero,
                 ],
                 [
-                    quarter * sum_of_sum_of_product_of_2 / value_of_squared_value_of,
-                    -(quarter * sum_of_a_squared_q12_q13_q23_q33)
+                    sum_of_sum_of_2 / value_of_squared_value_of,
+                    -sum_of_a_squared_q12_q13_q23_q33
                         .mul_add(
-                            sum_of_sum_of_product_of_7,
+                            sum_of_sum_of_product_of_4,
                             two * product_of_inverse_value_of_squared_2
                                 * sum_of_a_squared_q11_q12_q22_q32,
                         ) * inverse_value_of,
@@ -564,14 +528,13 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                 ],
                 [
                     two
-                        .mul_add(product_of_5, half * two * product_of_6)
-                        .mul_add(inverse_value_of_squared, -product_of_product_of_4)
+                        .mul_add(product_of_2, product_of_3)
+                        .mul_add(inverse_value_of_squared, -sum_of_sum_of_3)
                         * inverse_value_of,
-                    (quarter * sum_of_a_squared_q13_b_squared_q23)
+                    sum_of_a_squared_q13_b_squared_q23
                         .mul_add(
-                            -sum_of_sum_of_product_of_7,
-                            (three_halves * two)
-                                .mul_add(-product_of_7, sum_of_a_squared_q11_q11_q21_q31),
+                            -sum_of_sum_of_product_of_4,
+                            sum_of_a_squared_q11_q11_q21_q31 - product_of_4,
                         ) * inverse_value_of,
                     zero,
                 ],
@@ -581,24 +544,16 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [
-                    product_of_product_of_7_product_of,
-                    product_of_product_of_4_product_of_2,
+                    -product_of_inverse_value_of_squared_3,
+                    product_of_product_of_2_product_of_3,
                     zero,
                 ],
                 [
-                    product_of_product_of_4_product_of_2,
-                    -product_of_product_of_7_product_of,
+                    product_of_product_of_2_product_of_3,
+                    product_of_inverse_value_of_squared_3,
                     zero,
                 ],
-                [
-                    half * sum_of * inverse_value_of,
-                    (half * two * product_of_inverse_value_of_squared)
-                        .mul_add(
-                            -sum_of_a_squared_q13_b_squared_q23,
-                            sum_of_a_squared_q12_q13_q23_q33,
-                        ) * inverse_value_of,
-                    zero,
-                ],
+                [sum_of_2 * inverse_value_of, sum_of_3 * inverse_value_of, zero],
             ]),
         ]
     }
@@ -928,7 +883,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 69 additions, 175 multiplications (50 of each fused), 2 divisions, 1 function call.
+    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 69 additions, 130 multiplications (54 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn bias_acceleration<T: Scalar>(
@@ -942,11 +897,10 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
         let zero = T::zero();
-        let half = T::from_f64(0.5);
-        let three_quarters = T::from_f64(0.75);
         let one = T::one();
-        let three_halves = T::from_f64(1.5);
         let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let six = T::from_f64(6.0);
         let a_squared = a * a;
         let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
@@ -977,28 +931,37 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let sum_of = sum_of_a_squared_q13_b_squared_q23
             - sum_of_a_squared_q12_q12_q22_q32;
         let speed_tilt_x_sum_of = speed_tilt_x * sum_of;
+        let two_sum_of_a_squared_q11_q12_q22_q32 = two
+            * sum_of_a_squared_q11_q12_q22_q32;
         let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
         let inverse_value_of_squared = one / (value_of * value_of);
         let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
             * inverse_value_of_squared;
-        let product_of = half * sum_of_a_squared_q13_b_squared_q23;
-        let sum_of_product_of = product_of - sum_of_a_squared_q11_q11_q21_q31;
-        let product_of_2 = product_of_inverse_value_of_squared
+        let sum_of_2 = two
+            .mul_add(
+                -sum_of_a_squared_q11_q11_q21_q31,
+                sum_of_a_squared_q13_b_squared_q23,
+            );
+        let product_of = product_of_inverse_value_of_squared
             * sum_of_a_squared_q11_q13_q23_q33;
         let product_of_speed_spin_3 = speed_spin * sum_of_a_squared_q12_q13_q23_q33;
         let product_of_speed_spin_4 = speed_spin * sum_of_a_squared_q11_q13_q23_q33;
-        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+        let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
             - sum_of_a_squared_q11_q11_q21_q31;
-        let product_of_3 = sum_of_a_squared_q11_q13_q23_q33
+        let product_of_2 = sum_of_a_squared_q11_q13_q23_q33
             * sum_of_a_squared_q12_q13_q23_q33;
         let inverse_value_of = one / value_of;
-        let sum_of_product_of_2 = product_of - sum_of_a_squared_q12_q12_q22_q32;
-        let product_of_4 = sum_of_a_squared_q12_q13_q23_q33
+        let sum_of_4 = two
+            .mul_add(
+                -sum_of_a_squared_q12_q12_q22_q32,
+                sum_of_a_squared_q13_b_squared_q23,
+            );
+        let product_of_3 = sum_of_a_squared_q12_q13_q23_q33
             * sum_of_a_squared_q12_q13_q23_q33;
-        let product_of_5 = product_of_inverse_value_of_squared
+        let product_of_4 = product_of_inverse_value_of_squared
             * sum_of_a_squared_q12_q13_q23_q33;
-        let product_of_6 = three_halves * sum_of_a_squared_q11_q13_q23_q33;
-        let product_of_7 = product_of_inverse_value_of_squared
+        let product_of_5 = three * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_6 = product_of_inverse_value_of_squared
             * sum_of_a_squared_q13_b_squared_q23;
         SVector::from([
             zero,
@@ -1017,34 +980,32 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                                 .mul_add(-two, product_of_speed_spin_2),
                             speed_tilt_x
                                 .mul_add(
-                                    (speed_tilt_x_sum_of * half
-                                        * sum_of_a_squared_q11_q13_q23_q33)
+                                    speed_tilt_x_sum_of
                                         .mul_add(
-                                            two,
-                                            (two * sum_of_a_squared_q12_q13_q23_q33)
+                                            sum_of_a_squared_q11_q13_q23_q33,
+                                            sum_of_a_squared_q12_q13_q23_q33
                                                 .mul_add(
                                                     speed_tilt_x
                                                         .mul_add(
-                                                            (two * sum_of_a_squared_q12_q13_q23_q33 * three_quarters)
+                                                            (sum_of_a_squared_q12_q13_q23_q33 * three)
                                                                 .mul_add(
                                                                     product_of_inverse_value_of_squared,
-                                                                    -sum_of_a_squared_q11_q12_q22_q32,
+                                                                    -two_sum_of_a_squared_q11_q12_q22_q32,
                                                                 ),
                                                             speed_tilt_y
                                                                 .mul_add(
-                                                                    -(two * product_of_2)
-                                                                        .mul_add(three_halves, sum_of_product_of),
-                                                                    product_of_speed_spin_3 * half,
+                                                                    -product_of.mul_add(six, sum_of_2),
+                                                                    product_of_speed_spin_3,
                                                                 ),
                                                         ),
-                                                    (product_of_speed_spin_4 * two * half)
+                                                    product_of_speed_spin_4
                                                         .mul_add(
                                                             -sum_of_a_squared_q11_q13_q23_q33,
                                                             speed_tilt_y
-                                                                * (sum_of_a_squared_q11_q13_q23_q33 * two)
+                                                                * (two * sum_of_a_squared_q11_q13_q23_q33)
                                                                     .mul_add(
                                                                         sum_of_a_squared_q11_q12_q22_q32,
-                                                                        sum_of_a_squared_q11_q12_q22_q32 * two
+                                                                        two * sum_of_a_squared_q11_q12_q22_q32
                                                                             * sum_of_a_squared_q11_q13_q23_q33,
                                                                     ),
                                                         ),
@@ -1052,15 +1013,14 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                                         ),
                                     speed_tilt_y
                                         * (speed_tilt_y
-                                            * (two * sum_of_a_squared_q11_q13_q23_q33)
+                                            * sum_of_a_squared_q11_q13_q23_q33
                                                 .mul_add(
-                                                    (two * product_of_2)
-                                                        .mul_add(three_quarters, sum_of_product_of),
-                                                    half * sum_of_a_squared_q11_q13_q23_q33 * two * sum_of_2,
+                                                    product_of.mul_add(three, sum_of_2),
+                                                    sum_of_a_squared_q11_q13_q23_q33 * sum_of_3,
                                                 )
                                             - speed_spin
-                                                * (two * product_of_3)
-                                                    .mul_add(half, half * product_of_3 * two)),
+                                                * sum_of_a_squared_q12_q13_q23_q33
+                                                    .mul_add(sum_of_a_squared_q11_q13_q23_q33, product_of_2)),
                                 ) * inverse_value_of_squared,
                         ),
                 ) * inverse_value_of,
@@ -1075,44 +1035,43 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         .mul_add(
                             -(product_of_speed_tilt_y + product_of_speed_spin),
                             (speed_tilt_x
-                                * (speed_tilt_x_sum_of * two * half)
+                                * speed_tilt_x_sum_of
                                     .mul_add(
                                         sum_of_a_squared_q12_q13_q23_q33,
-                                        (two * sum_of_a_squared_q12_q13_q23_q33)
+                                        sum_of_a_squared_q12_q13_q23_q33
                                             .mul_add(
                                                 speed_tilt_x
                                                     .mul_add(
-                                                        (two * product_of_4 * three_quarters)
-                                                            .mul_add(inverse_value_of_squared, sum_of_product_of_2),
-                                                        product_of_speed_spin_4
+                                                        (product_of_3 * three)
+                                                            .mul_add(inverse_value_of_squared, sum_of_4),
+                                                        speed_tilt_y
                                                             .mul_add(
-                                                                -half,
-                                                                speed_tilt_y
-                                                                    * (two * product_of_5)
-                                                                        .mul_add(-three_halves, sum_of_a_squared_q11_q12_q22_q32),
+                                                                product_of_4
+                                                                    .mul_add(-six, two_sum_of_a_squared_q11_q12_q22_q32),
+                                                                -product_of_speed_spin_4,
                                                             ),
                                                     ),
-                                                (product_of_speed_spin_4 * two * half)
+                                                product_of_speed_spin_4
                                                     .mul_add(
                                                         -sum_of_a_squared_q12_q13_q23_q33,
                                                         speed_tilt_y
-                                                            * (two * sum_of_a_squared_q11_q12_q22_q32
+                                                            * (sum_of_a_squared_q11_q12_q22_q32 * two
                                                                 * sum_of_a_squared_q12_q13_q23_q33
-                                                                - two * sum_of_a_squared_q11_q13_q23_q33
-                                                                    * sum_of_product_of_2),
+                                                                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_4),
                                                     ),
                                             ),
                                     )
                                 - speed_tilt_y
-                                    * (speed_tilt_y
-                                        * (two * sum_of_a_squared_q11_q13_q23_q33
-                                            * (two * product_of_5)
-                                                .mul_add(-three_quarters, sum_of_a_squared_q11_q12_q22_q32)
-                                            - two * sum_of_2 * half * sum_of_a_squared_q12_q13_q23_q33)
-                                        - speed_spin
-                                            * (two * sum_of_a_squared_q11_q13_q23_q33 * half
-                                                * sum_of_a_squared_q11_q13_q23_q33
-                                                - two * product_of_4 * half))) * inverse_value_of_squared,
+                                    * speed_spin
+                                        .mul_add(
+                                            sum_of_a_squared_q11_q13_q23_q33
+                                                .mul_add(-sum_of_a_squared_q11_q13_q23_q33, product_of_3),
+                                            speed_tilt_y
+                                                * (sum_of_a_squared_q11_q13_q23_q33
+                                                    * product_of_4
+                                                        .mul_add(-three, two_sum_of_a_squared_q11_q12_q22_q32)
+                                                    - sum_of_3 * sum_of_a_squared_q12_q13_q23_q33),
+                                        )) * inverse_value_of_squared,
                         ),
                 ) * inverse_value_of,
             speed_tilt_x
@@ -1124,41 +1083,39 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         ),
                     speed_tilt_y
                         .mul_add(
-                            speed_tilt_y.mul_add(-sum_of_2, product_of_speed_spin_3),
+                            speed_tilt_y.mul_add(-sum_of_3, product_of_speed_spin_3),
                             (speed_tilt_x
                                 * speed_tilt_y
                                     .mul_add(
-                                        (two * sum_of_a_squared_q12_q13_q23_q33)
+                                        sum_of_a_squared_q12_q13_q23_q33
                                             .mul_add(
-                                                (two * product_of_7).mul_add(-three_halves, product_of_6),
-                                                (two * sum_of_a_squared_q11_q12_q22_q32)
+                                                product_of_6.mul_add(-six, product_of_5),
+                                                (sum_of_a_squared_q11_q12_q22_q32 * two)
                                                     .mul_add(
                                                         sum_of_a_squared_q13_b_squared_q23,
-                                                        two * product_of_3 * three_halves,
+                                                        product_of_2 * three,
                                                     ),
                                             ),
-                                        (product_of_speed_spin_4 * two * half)
+                                        product_of_speed_spin_4
                                             .mul_add(
                                                 -sum_of_a_squared_q13_b_squared_q23,
                                                 speed_tilt_x
-                                                    * (two * sum_of * half * sum_of_a_squared_q13_b_squared_q23
-                                                        - two * sum_of_a_squared_q12_q13_q23_q33
-                                                            * (three_halves * sum_of_a_squared_q12_q13_q23_q33
-                                                                - two * sum_of_a_squared_q12_q13_q23_q33 * three_quarters
+                                                    * (sum_of * sum_of_a_squared_q13_b_squared_q23
+                                                        - sum_of_a_squared_q12_q13_q23_q33
+                                                            * (three * sum_of_a_squared_q12_q13_q23_q33
+                                                                - sum_of_a_squared_q12_q13_q23_q33 * three
                                                                     * sum_of_a_squared_q13_b_squared_q23
                                                                     * inverse_value_of_squared)),
                                             ),
                                     )
                                 - speed_tilt_y
-                                    * (product_of_speed_spin_3 * two * half)
+                                    * product_of_speed_spin_3
                                         .mul_add(
                                             sum_of_a_squared_q13_b_squared_q23,
                                             speed_tilt_y
-                                                * (two * sum_of_a_squared_q11_q13_q23_q33
-                                                    * (two * product_of_7)
-                                                        .mul_add(-three_quarters, product_of_6)
-                                                    - two * sum_of_2 * half
-                                                        * sum_of_a_squared_q13_b_squared_q23),
+                                                * (sum_of_a_squared_q11_q13_q23_q33
+                                                    * product_of_6.mul_add(-three, product_of_5)
+                                                    - sum_of_3 * sum_of_a_squared_q13_b_squared_q23),
                                         )) * inverse_value_of_squared,
                         ),
                 ) * inverse_value_of,
@@ -1167,7 +1124,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 3-vector. Operations: 66 additions, 115 multiplications (52 of each fused), 3 divisions, 1 function call.
+    /// 3-vector. Operations: 66 additions, 94 multiplications (50 of each fused), 3 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn bias_momentum<T: Scalar>(
@@ -1183,11 +1140,9 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
         let (h4, h5, h6) = (h[3], h[4], h[5]);
         let zero = T::zero();
-        let half = T::from_f64(0.5);
-        let three_quarters = T::from_f64(0.75);
         let one = T::one();
-        let three_halves = T::from_f64(1.5);
         let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
         let a_squared = a * a;
         let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
@@ -1218,38 +1173,33 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let sum_of_2 = sum_of_a_squared_q12_q12_q22_q32
             - sum_of_a_squared_q11_q11_q21_q31;
         let h5_sum_of_a_squared_q11_q12_q22_q32 = h5 * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of = h5_sum_of_a_squared_q11_q12_q22_q32 * two;
         let h6_sum_of_a_squared_q11_q13_q23_q33 = h6 * sum_of_a_squared_q11_q13_q23_q33;
         let product_of_h6 = h6 * sum_of_a_squared_q13_b_squared_q23;
         let sum_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
-            .mul_add(
-                half,
-                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(half, product_of_h6 * half),
-            );
+            + h5_sum_of_a_squared_q12_q13_q23_q33 + product_of_h6;
         let h4_sum_of_a_squared_q11_q12_q22_q32 = h4 * sum_of_a_squared_q11_q12_q22_q32;
-        let product_of = half * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_2 = h4_sum_of_a_squared_q11_q12_q22_q32 * two;
         let h6_sum_of_a_squared_q12_q13_q23_q33 = h6 * sum_of_a_squared_q12_q13_q23_q33;
         let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
         let inverse_value_of_squared = one / (value_of * value_of);
         let product_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
             .mul_add(
-                three_quarters,
-                h5_sum_of_a_squared_q12_q13_q23_q33
-                    .mul_add(three_quarters, product_of_h6 * three_quarters),
+                three,
+                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(three, product_of_h6 * three),
             ) * inverse_value_of_squared;
-        let product_of_product_of_product_of_h6 = two * sum_of_a_squared_q12_q13_q23_q33
+        let product_of_product_of_product_of_h6 = sum_of_a_squared_q12_q13_q23_q33
             * product_of_product_of_h6;
         let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
             - sum_of_a_squared_q11_q11_q21_q31;
-        let product_of_2 = h5_sum_of_a_squared_q11_q12_q22_q32 * half;
-        let product_of_product_of_product_of_h6_2 = two
-            * sum_of_a_squared_q11_q13_q23_q33 * product_of_product_of_h6;
+        let product_of_product_of_product_of_h6_2 = sum_of_a_squared_q11_q13_q23_q33
+            * product_of_product_of_h6;
         let h5_sum_of_a_squared_q11_q13_q23_q33 = h5 * sum_of_a_squared_q11_q13_q23_q33;
         let product_of_speed_spin = speed_spin
-            * (h4_sum_of_a_squared_q12_q13_q23_q33 * half
-                - h5_sum_of_a_squared_q11_q13_q23_q33 * half);
-        let product_of_sum_of_product_of_h6 = two * sum_of_a_squared_q11_q12_q22_q32
+            * (h4_sum_of_a_squared_q12_q13_q23_q33
+                - h5_sum_of_a_squared_q11_q13_q23_q33);
+        let product_of_sum_of_product_of_h6 = sum_of_a_squared_q11_q12_q22_q32
             * sum_of_product_of_h6;
-        let product_of_3 = h4_sum_of_a_squared_q11_q12_q22_q32 * half;
         let speed_spin_sum_of_product_of_h6 = speed_spin * sum_of_product_of_h6;
         SVector::from([
             -speed_tilt_x
@@ -1263,45 +1213,52 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         .mul_add(
                             h6_sum_of_a_squared_q11_q12_q22_q32
                                 - h4_sum_of_a_squared_q12_q13_q23_q33,
-                            (speed_tilt_x * two * sum_of)
+                            (speed_tilt_x * sum_of)
                                 .mul_add(
                                     sum_of_product_of_h6,
-                                    (two * sum_of_a_squared_q12_q13_q23_q33)
+                                    sum_of_a_squared_q12_q13_q23_q33
                                         .mul_add(
                                             speed_tilt_x
                                                 .mul_add(
                                                     h5
                                                         .mul_add(
-                                                            product_of - sum_of_a_squared_q12_q12_q22_q32,
+                                                            two
+                                                                .mul_add(
+                                                                    -sum_of_a_squared_q12_q12_q22_q32,
+                                                                    sum_of_a_squared_q13_b_squared_q23,
+                                                                ),
                                                             h6_sum_of_a_squared_q12_q13_q23_q33
                                                                 .mul_add(
-                                                                    -three_halves,
-                                                                    product_of_product_of_product_of_h6
-                                                                        - h4_sum_of_a_squared_q11_q12_q22_q32,
+                                                                    -three,
+                                                                    product_of_product_of_product_of_h6 - product_of_2,
                                                                 ),
                                                         ),
                                                     speed_tilt_y
                                                         .mul_add(
-                                                            (h4 * half)
+                                                            h6_sum_of_a_squared_q11_q13_q23_q33
                                                                 .mul_add(
-                                                                    -sum_of_3,
-                                                                    product_of_2 + h6_sum_of_a_squared_q11_q13_q23_q33
-                                                                        - product_of_product_of_product_of_h6_2,
+                                                                    two,
+                                                                    h4
+                                                                        .mul_add(
+                                                                            -sum_of_3,
+                                                                            h5_sum_of_a_squared_q11_q12_q22_q32
+                                                                                - product_of_product_of_product_of_h6_2,
+                                                                        ),
                                                                 ),
                                                             product_of_speed_spin,
                                                         ),
                                                 ),
-                                            (speed_spin_sum_of_product_of_h6 * two)
+                                            speed_spin_sum_of_product_of_h6
                                                 .mul_add(
                                                     -sum_of_a_squared_q11_q13_q23_q33,
                                                     speed_tilt_y
-                                                        * (two * sum_of_a_squared_q11_q13_q23_q33)
+                                                        * sum_of_a_squared_q11_q13_q23_q33
                                                             .mul_add(
-                                                                (h5 * half)
+                                                                h5
                                                                     .mul_add(
                                                                         sum_of_a_squared_q12_q12_q22_q32,
-                                                                        h6_sum_of_a_squared_q12_q13_q23_q33
-                                                                            .mul_add(half, product_of_3),
+                                                                        h4_sum_of_a_squared_q11_q12_q22_q32
+                                                                            + h6_sum_of_a_squared_q12_q13_q23_q33,
                                                                     ),
                                                                 product_of_sum_of_product_of_h6,
                                                             ),
@@ -1314,8 +1271,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                                         * h4
                                             .mul_add(
                                                 sum_of_2,
-                                                h5_sum_of_a_squared_q11_q12_q22_q32
-                                                    .mul_add(-two, -h6_sum_of_a_squared_q11_q13_q23_q33),
+                                                -product_of - h6_sum_of_a_squared_q11_q13_q23_q33,
                                             ),
                                 ),
                         ),
@@ -1333,52 +1289,59 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                                 ),
                             speed_spin
                                 .mul_add(
-                                    h4_sum_of_a_squared_q11_q12_q22_q32
+                                    h5
                                         .mul_add(
-                                            two,
-                                            h5.mul_add(sum_of_2, h6_sum_of_a_squared_q12_q13_q23_q33),
+                                            sum_of_2,
+                                            product_of_2 + h6_sum_of_a_squared_q12_q13_q23_q33,
                                         ),
                                     speed_tilt_x
                                         .mul_add(
-                                            (two * sum_of_a_squared_q12_q13_q23_q33)
+                                            sum_of_a_squared_q12_q13_q23_q33
                                                 .mul_add(
-                                                    (h4 * half)
+                                                    h4
                                                         .mul_add(
                                                             sum_of_a_squared_q11_q11_q21_q31,
-                                                            h6_sum_of_a_squared_q11_q13_q23_q33
-                                                                .mul_add(half, product_of_2),
+                                                            h5_sum_of_a_squared_q11_q12_q22_q32
+                                                                + h6_sum_of_a_squared_q11_q13_q23_q33,
                                                         ),
                                                     product_of_sum_of_product_of_h6,
                                                 ),
-                                            (two * sum_of_a_squared_q11_q13_q23_q33)
+                                            sum_of_a_squared_q11_q13_q23_q33
                                                 .mul_add(
                                                     speed_tilt_x
                                                         .mul_add(
-                                                            (h5 * half)
+                                                            h5
                                                                 .mul_add(
                                                                     -sum_of,
-                                                                    product_of_3 + h6_sum_of_a_squared_q12_q13_q23_q33
-                                                                        - product_of_product_of_product_of_h6,
+                                                                    h6_sum_of_a_squared_q12_q13_q23_q33
+                                                                        .mul_add(
+                                                                            two,
+                                                                            h4_sum_of_a_squared_q11_q12_q22_q32
+                                                                                - product_of_product_of_product_of_h6,
+                                                                        ),
                                                                 ),
                                                             speed_tilt_y
                                                                 .mul_add(
                                                                     h4
                                                                         .mul_add(
-                                                                            product_of - sum_of_a_squared_q11_q11_q21_q31,
+                                                                            two
+                                                                                .mul_add(
+                                                                                    -sum_of_a_squared_q11_q11_q21_q31,
+                                                                                    sum_of_a_squared_q13_b_squared_q23,
+                                                                                ),
                                                                             h6_sum_of_a_squared_q11_q13_q23_q33
                                                                                 .mul_add(
-                                                                                    -three_halves,
-                                                                                    -h5_sum_of_a_squared_q11_q12_q22_q32
-                                                                                        + product_of_product_of_product_of_h6_2,
+                                                                                    -three,
+                                                                                    -product_of + product_of_product_of_product_of_h6_2,
                                                                                 ),
                                                                         ),
                                                                     -product_of_speed_spin,
                                                                 ),
                                                         ),
-                                                    (speed_spin_sum_of_product_of_h6 * two)
+                                                    speed_spin_sum_of_product_of_h6
                                                         .mul_add(
                                                             -sum_of_a_squared_q12_q13_q23_q33,
-                                                            speed_tilt_y * two * sum_of_3 * sum_of_product_of_h6,
+                                                            speed_tilt_y * sum_of_3 * sum_of_product_of_h6,
                                                         ),
                                                 ),
                                         ) * inverse_value_of_squared,

@@ -483,59 +483,54 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
 
     /// A(Q) with Aᵀ v = 0 (Definition 2).
     ///
-    /// 5×2. Operations: 15 additions, 27 multiplications (6 of each fused), 1 division, 1 function call.
+    /// 5×2. Operations: 6 additions, 19 multiplications (6 of each fused), 1 division, 1 function call.
     ///
     /// From line 15 `let`, line 17 `let`, line 18 `let`, line 20 `S_bar`.
     fn constraint<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 5, 2> {
         let radius = T::from_f64(self.radius);
-        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, _, _, r_q33, _, _]: [T; 11] = (*q)
-            .into();
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
         let zero = T::zero();
         let one = T::one();
-        let two = T::from_f64(2.0);
-        let r_q11_squared_plus_r_q12_squared = r_q11.mul_add(r_q11, r_q12 * r_q12);
-        let r_q21_squared_plus_r_q22_squared = r_q21.mul_add(r_q21, r_q22 * r_q22);
-        let value_of = (two - r_q11_squared_plus_r_q12_squared
-            - r_q21_squared_plus_r_q22_squared)
-            .sqrt();
-        let inverse_value_of = one / value_of;
-        let product_of_inverse_value_of = (one - r_q21_squared_plus_r_q22_squared)
-            * inverse_value_of;
-        let product_of_r_q11_r_q21_r_q12_r_q22 = r_q11.mul_add(r_q21, r_q12 * r_q22)
-            * inverse_value_of;
-        let sum_of_value_of_inverse_value_of = r_q11_squared_plus_r_q12_squared
-            .mul_add(inverse_value_of, value_of);
-        let sum_of_product_of_inverse_value_of = sum_of_value_of_inverse_value_of
-            - product_of_inverse_value_of;
-        let r_q33_inverse_value_of = r_q33 * inverse_value_of;
+        // line 20 `S_bar`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = r_q33.mul_add(-r_q33, one).sqrt();
+        let product_of_r_q33 = r_q33 / root_one_minus_r_q33_squared;
+        let r_q23_product_of_r_q33 = r_q23 * product_of_r_q33;
+        let r_q13_product_of_r_q33 = r_q13 * product_of_r_q33;
+        let product_of_radius_product_of_r_q33 = radius
+            * product_of_r_q33.mul_add(r_q33, root_one_minus_r_q33_squared);
         from_rows([
             [
                 -radius
                     * r_q21
                         .mul_add(
-                            value_of - product_of_inverse_value_of,
-                            r_q11 * product_of_r_q11_r_q21_r_q12_r_q22,
+                            root_one_minus_r_q33_squared,
+                            r_q23_product_of_r_q33 * r_q31,
                         ),
                 radius
-                    * (r_q11 * sum_of_product_of_inverse_value_of
-                        - r_q22 * r_q33_inverse_value_of),
-            ],
-            [
-                radius
-                    * (r_q11 * r_q33_inverse_value_of
-                        - r_q22 * sum_of_product_of_inverse_value_of),
-                radius
-                    * (r_q22 * product_of_r_q11_r_q21_r_q12_r_q22
-                        - r_q12 * (inverse_value_of - sum_of_value_of_inverse_value_of)),
-            ],
-            [
-                -radius * r_q23 * sum_of_product_of_inverse_value_of,
-                radius
-                    * r_q13
+                    * r_q11
                         .mul_add(
-                            sum_of_value_of_inverse_value_of,
-                            r_q23 * product_of_r_q11_r_q21_r_q12_r_q22,
+                            root_one_minus_r_q33_squared,
+                            r_q13_product_of_r_q33 * r_q31,
                         ),
+            ],
+            [
+                -radius
+                    * r_q22
+                        .mul_add(
+                            root_one_minus_r_q33_squared,
+                            r_q23_product_of_r_q33 * r_q32,
+                        ),
+                radius
+                    * r_q12
+                        .mul_add(
+                            root_one_minus_r_q33_squared,
+                            r_q13_product_of_r_q33 * r_q32,
+                        ),
+            ],
+            [
+                -product_of_radius_product_of_r_q33 * r_q23,
+                product_of_radius_product_of_r_q33 * r_q13,
             ],
             [one, zero],
             [zero, one],

@@ -41,24 +41,14 @@ mod tests {
 
     #[test]
     fn comments_survive_printing() {
-        let comment = comment("line 3 `H`: sin_q, cos_q");
-        let file = syn::parse2(quote! { fn f() { #comment let a = 1; } }).expect("is Rust");
-        let text = with_comments(&prettyplease::unparse(&file));
-        assert_eq!(
-            text,
-            "fn f() {\n    // line 3 `H`: sin_q, cos_q\n    let a = 1;\n}\n"
-        );
-    }
-
-    #[test]
-    fn long_comments_stay_on_one_line() {
-        let long = format!("line 3 `H`: {}", "sin_of_a_long_name ".repeat(9).trim());
-        let comment = comment(&long);
-        let file = syn::parse2(quote! { fn f() { #comment let a = 1; } }).expect("is Rust");
-        let text = with_comments(&prettyplease::unparse(&file));
-        assert_eq!(
-            text,
-            format!("fn f() {{\n    // {long}\n    let a = 1;\n}}\n")
-        );
+        let names = ["cos_q"; 20].join(", ");
+        for text in ["line 3 `H`: sin_q, cos_q", &format!("line 4 `X`: {names}")] {
+            let comment = comment(text);
+            let file = syn::parse2(quote! { fn f() { #comment let a = 1; } }).expect("is Rust");
+            assert_eq!(
+                with_comments(&prettyplease::unparse(&file)),
+                format!("fn f() {{\n    // {text}\n    let a = 1;\n}}\n")
+            );
+        }
     }
 }
