@@ -118,7 +118,7 @@ impl Build {
         watch(&self.specs);
         let joints = self.derive_all()?;
         match &self.target {
-            Target::Single(folder) => self.write_single(&joints, folder.as_deref()),
+            Target::Single(folder) => self.write_single(joints, folder.as_deref()),
             Target::Library { modules, pages } => {
                 println!("cargo::rerun-if-env-changed={GENERATE_VARIABLE}");
                 let accuracy = self.read_accuracy()?;
@@ -165,7 +165,9 @@ impl Build {
             sources.push((label, source));
         }
         let derived = parallel::map(sources, |(label, source)| {
-            derive(&source, &label).map(|joint| (label, joint))
+            let joint = derive(&source, &label)?;
+            crate::emit::rust::simplify(&joint);
+            Ok((label, joint))
         });
         let (mut joints, mut errors) = (vec![], vec![]);
         for result in derived {
@@ -182,7 +184,7 @@ impl Build {
 
     fn write_single(
         &self,
-        joints: &[(String, Derived)],
+        joints: Vec<(String, Derived)>,
         folder: Option<&Path>,
     ) -> Result<(), BuildError> {
         let out_dir = || {
@@ -191,7 +193,7 @@ impl Build {
                 .ok_or(BuildError::NoOutDir)
         };
         let folder = folder.map_or_else(out_dir, |folder| Ok(folder.to_owned()))?;
-        let joints: Vec<Derived> = joints.iter().map(|(_, joint)| joint.clone()).collect();
+        let joints: Vec<Derived> = joints.into_iter().map(|(_, joint)| joint).collect();
         let mut files = Files::default();
         files.insert("joints.rs", index(&joints, &self.label(), Index::Nested)?);
         files.write(&folder)?;

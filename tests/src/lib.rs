@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod differences;
+pub mod extended;
 pub mod figures;
 pub mod fuzz;
 pub mod laws;

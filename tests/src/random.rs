@@ -12,6 +12,9 @@ use std::sync::Arc;
 /// Longest ϕ from home, rad and m: most of a half turn.
 const REACH: f64 = 2.5;
 
+/// Slanted, m/s².
+const GRAVITY: Vector3<f64> = Vector3::new(0.8, -1.1, -9.7);
+
 /// A mechanism with a state and applied efforts.
 #[derive(Clone, Debug)]
 pub struct Case {
@@ -63,13 +66,36 @@ pub fn cases(
 }
 
 fn case(kinds: &[Arc<dyn AnyJoint>], largest: usize, seed: u64) -> Case {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
     let size = 1 + seed as usize % largest;
-    let mut joints = vec![Arc::clone(&kinds[seed as usize % kinds.len()])];
+    let root = &kinds[seed as usize % kinds.len()];
+    rooted(kinds, root, GRAVITY, size, seed)
+}
+
+/// `count` cases without gravity: trees of 1 to `largest` joints, the first of them `root` and the others of the given kinds.
+pub fn weightless<'a>(
+    kinds: &'a [Arc<dyn AnyJoint>],
+    root: &'a Arc<dyn AnyJoint>,
+    largest: usize,
+    count: u64,
+) -> impl Iterator<Item = Case> + 'a {
+    let size = move |seed: u64| 1 + seed as usize % largest;
+    (0..count).map(move |seed| rooted(kinds, root, Vector3::zeros(), size(seed), seed))
+}
+
+/// A tree of `size` joints, random but for the first.
+fn rooted(
+    kinds: &[Arc<dyn AnyJoint>],
+    root: &Arc<dyn AnyJoint>,
+    gravity: Vector3<f64>,
+    size: usize,
+    seed: u64,
+) -> Case {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut joints = vec![Arc::clone(root)];
     for _ in 1..size {
         joints.push(Arc::clone(&kinds[random.random_range(0..kinds.len())]));
     }
-    let mechanism = tree(&mut random, &joints);
+    let mechanism = tree_in(&mut random, gravity, &joints);
     let layout = *mechanism.layout();
     Case {
         seed,
@@ -95,24 +121,56 @@ fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
 /// # Panics
 /// Never, for joints that a mechanism accepts.
 pub fn tree(random: &mut ChaCha8Rng, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism> {
-    let body = |(index, joint): (usize, &Arc<dyn AnyJoint>)| {
-        let last = index.checked_sub(1);
-        let parent = match last {
-            Some(last) if random.random_bool(0.5) => Some(random.random_range(0..=last)),
-            other => other,
-        };
-        BodySpec {
-            name: format!("body {index}"),
-            joint_name: format!("{} {index}", joint.name()),
-            parent,
-            joint: Arc::clone(joint),
-            placement: pose(random),
-            child_placement: pose(random),
-            mass: mass(random),
+    tree_in(random, GRAVITY, joints)
+}
+
+/// As [`tree`], in a gravity of one's own.
+///
+/// # Panics
+/// Never, for joints that a mechanism accepts and a finite gravity.
+pub fn tree_in(
+    random: &mut ChaCha8Rng,
+    gravity: Vector3<f64>,
+    joints: &[Arc<dyn AnyJoint>],
+) -> Arc<Mechanism> {
+    grow(random, gravity, joints, |random, last| {
+        match random.random_bool(0.5) {
+            true => random.random_range(0..=last),
+            false => last,
         }
+    })
+}
+
+/// `count` bodies in slanted gravity, each on the one before by the same joint.
+///
+/// # Panics
+/// Never, for a joint that a mechanism accepts.
+pub fn chain(random: &mut ChaCha8Rng, joint: &Arc<dyn AnyJoint>, count: usize) -> Arc<Mechanism> {
+    grow(
+        random,
+        GRAVITY,
+        &vec![Arc::clone(joint); count],
+        |_, last| last,
+    )
+}
+
+/// Bodies on the given joints; `parent` chooses among those up to the last.
+fn grow(
+    random: &mut ChaCha8Rng,
+    gravity: Vector3<f64>,
+    joints: &[Arc<dyn AnyJoint>],
+    parent: impl Fn(&mut ChaCha8Rng, usize) -> usize,
+) -> Arc<Mechanism> {
+    let body = |(index, joint): (usize, &Arc<dyn AnyJoint>)| BodySpec {
+        name: format!("body {index}"),
+        joint_name: format!("{} {index}", joint.name()),
+        parent: index.checked_sub(1).map(|last| parent(random, last)),
+        joint: Arc::clone(joint),
+        placement: pose(random),
+        child_placement: pose(random),
+        mass: mass(random),
     };
     let bodies = joints.iter().enumerate().map(body).collect();
-    let gravity = Vector3::new(0.8, -1.1, -9.7);
     Arc::new(Mechanism::new(gravity, bodies).expect("valid by construction"))
 }
 

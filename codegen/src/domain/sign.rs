@@ -4,7 +4,7 @@ use super::of_monomial;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Symbol};
 use crate::manifold::Kind;
 use crate::model::{Interval, JointSpec};
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 use std::collections::BTreeSet;
 
 /// What is known of signs and bounds.

@@ -251,7 +251,7 @@ pub fn number_name(value: &Rational) -> String {
     };
     let denominator = value.denom();
     if denominator.is_one() {
-        return word(value.numer())
+        return word(&value.numer())
             .unwrap_or_else(|| short("number", &[value.numer().to_string()]));
     }
     let part = match denominator.to_u8() {
@@ -260,7 +260,7 @@ pub fn number_name(value: &Rational) -> String {
         Some(4) => Some("quarter"),
         _ => None,
     };
-    match (part, word(value.numer()), value.numer().is_one()) {
+    match (part, word(&value.numer()), value.numer().is_one()) {
         (Some(part), _, true) => part.to_owned(),
         (Some("half"), Some(count), false) => format!("{count}_halves"),
         (Some(part), Some(count), false) => format!("{count}_{part}s"),

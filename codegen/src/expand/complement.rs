@@ -111,7 +111,7 @@ fn solved(m: &Matrix, rows: &[usize], minor: &Expr, domain: &Domain<'_>) -> Opti
     let free: Vec<usize> = (0..m.rows()).filter(|row| !rows.contains(row)).collect();
     let solved = domain
         .ideal()
-        .normal_forms(&m.select_rows(&free).times(&inverse).transpose());
+        .simplest_entries(&m.select_rows(&free).times(&inverse).transpose());
     Some(Matrix::from_fn(m.rows(), free.len(), |i, j| {
         match rows.iter().position(|&row| row == i) {
             Some(place) => -solved.at(place, j),

@@ -121,14 +121,16 @@ fn null_space(mut rows: Vec<[Rational; 10]>) -> Vec<[Rational; 10]> {
         };
         rows.swap(from, found);
         let scale = rows[from][column].recip();
-        rows[from].iter_mut().for_each(|entry| *entry *= &scale);
+        rows[from]
+            .iter_mut()
+            .for_each(|entry| *entry = &*entry * &scale);
         let pivot = rows[from].clone();
         for (_, row) in rows.iter_mut().enumerate().filter(|(n, _)| *n != from) {
             let factor = row[column].clone();
             if !factor.is_zero() {
                 row.iter_mut()
                     .zip(&pivot)
-                    .for_each(|(entry, p)| *entry -= &factor * p);
+                    .for_each(|(entry, p)| *entry = &*entry - &factor * p);
             }
         }
         pivots.push(column);

@@ -32,22 +32,18 @@ struct Maker<'a> {
     child_slopes: Vec<Matrix>,
 }
 
-/// ∂X^c/∂ϕ.
+/// ∂X^c/∂ϕ, by the chain rule: multiplied out, what the definition adds up before it divides would cancel.
 fn child_slopes(spec: &JointSpec, x: &Expansion) -> Vec<Matrix> {
     let slope = |k| x.motion.along_each(&x.twist_map_child, k);
     let ideal = spec.manifold.value.ideal();
     (0..x.shape.freedoms)
-        .map(|k| ideal.normal_forms(&slope(k)))
+        .map(|k| ideal.simplest_entries(&slope(k)))
         .collect()
 }
 
 impl Maker<'_> {
     fn short(&self, matrix: &Matrix) -> Matrix {
         self.ideal.simplest_entries(matrix)
-    }
-
-    fn normal(&self, matrix: &Matrix) -> Matrix {
-        self.ideal.normal_forms(matrix)
     }
 
     fn pose_and_velocity(&self) -> Vec<Kernel> {
@@ -75,11 +71,11 @@ impl Maker<'_> {
             plain(KernelKind::VelocityMapGradient, s.slopes.clone()),
             plain(
                 KernelKind::Gamma,
-                vec![self.normal(&hamel::gamma(s, inverse, &velocity))],
+                vec![self.short(&hamel::gamma(s, inverse, &velocity))],
             ),
             plain(
                 KernelKind::J22,
-                vec![self.normal(&hamel::j22(s, inverse, &momentum))],
+                vec![self.short(&hamel::j22(s, inverse, &momentum))],
             ),
         ]
     }
@@ -214,7 +210,7 @@ impl Maker<'_> {
     fn bias(&self) -> Vec<Kernel> {
         let basis = &self.x.nonholonomic.speed_basis;
         let speeds = Matrix::symbols(&self.x.arguments.speeds);
-        let rates = self.normal(&self.x.velocity_map_inverse.times(basis).times(&speeds));
+        let rates = self.short(&self.x.velocity_map_inverse.times(basis).times(&speeds));
         let zero = Matrix::zeros(6, basis.columns());
         let slopes = self.child_slopes.iter().zip(&self.x.nonholonomic.slopes);
         let rate = slopes

@@ -13,6 +13,7 @@ mod motion;
 mod nonholonomic;
 pub(crate) mod rank;
 mod steps;
+pub(crate) mod task;
 mod velocity;
 
 pub use dimension::{Confinement, confine};
@@ -26,7 +27,7 @@ use crate::algebra;
 use crate::derived::{Arguments, Shape};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
-use crate::expr::{Expr, Role, Symbol};
+use crate::expr::{Expr, Role, Symbol, budget};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::{JointSpec, VelocityFrame};
@@ -70,18 +71,22 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
     let exponential = is_exponential(spec);
     dimension::check(spec, exponential)?;
     let arguments = arguments(spec);
+    budget::begin(task::MOTION);
     let motion = match (&spec.retract, exponential) {
         (Some(declared), false) => Motion::of_map(spec, &declared.value),
         _ => Motion::of_exponential(spec),
     };
     let structure_constants = structure_constants(spec);
+    budget::begin(task::TWIST);
     let jacobian = TwistJacobian::new(&spec.pose.value, &motion, ideal);
+    budget::begin(task::TWIST_MAP);
     let to_child = adjoint_inverse(&spec.pose.value);
     let twist_map = twist_map(spec, &jacobian, ideal)?;
     let twist_map_child = match twist_map == jacobian.base {
         true => jacobian.child.clone(),
         false => ideal.simplest_entries(&to_child.times(&twist_map)),
     };
+    budget::begin(task::VELOCITY_MAP);
     let velocity_map = velocity::Solver {
         jacobian: &jacobian,
         twist_map: &twist_map,
@@ -99,7 +104,8 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
         .recip()
         .ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
     let velocity_map_inverse =
-        ideal.normal_forms(&velocity_map.base.adjugate(&simplify).scale(&inverse));
+        ideal.simplest_entries(&velocity_map.base.adjugate(&simplify).scale(&inverse));
+    budget::begin(task::CONSTRAINT);
     let nonholonomic = Nonholonomic::new(spec, &motion, &domain)?;
     Ok(Expansion {
         shape: Shape {

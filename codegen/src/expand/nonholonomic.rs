@@ -46,7 +46,7 @@ impl Nonholonomic {
             .map(|k| {
                 domain
                     .ideal()
-                    .normal_forms(&motion.along_each(&speed_basis, k))
+                    .simplest_entries(&motion.along_each(&speed_basis, k))
             })
             .collect();
         Ok(Self {

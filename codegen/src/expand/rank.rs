@@ -3,7 +3,6 @@
 use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::matrix::Matrix;
-use num_traits::Signed;
 
 /// All ways to choose `size` of `0..count`, ascending.
 pub fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {

@@ -1,7 +1,10 @@
 //! The indeterminates of the polynomial ring: symbols, and functions applied to expressions.
 
 use super::Expr;
+use rustc_hash::FxHasher;
 use std::cmp::Ordering;
+use std::collections::BTreeSet;
+use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 /// What a symbol stands for. The order of the variants is the order of elimination: later ones are larger.
@@ -86,10 +89,10 @@ impl Ord for Symbol {
     }
 }
 
-impl std::hash::Hash for Symbol {
-    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+impl Hash for Symbol {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        // Names differ where these do not only between joints.
         (self.role, self.index).hash(state);
-        self.name.hash(state);
     }
 }
 
@@ -121,12 +124,81 @@ pub enum Function {
 }
 
 /// A function with its arguments.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug)]
 pub struct Application {
     /// The function.
     pub function: Function,
     /// Its arguments, in normal form of the ring without relations.
     pub arguments: Vec<Expr>,
+    hash: u64,
+    symbols: BTreeSet<Symbol>,
+    related: BTreeSet<Atom>,
+}
+
+impl Application {
+    /// The function to look for: what is known of its arguments is found by [`Application::complete`].
+    pub(super) fn new(function: Function, arguments: Vec<Expr>) -> Self {
+        let mut hasher = FxHasher::default();
+        (function, &arguments).hash(&mut hasher);
+        Self {
+            function,
+            arguments,
+            hash: hasher.finish(),
+            symbols: BTreeSet::new(),
+            related: BTreeSet::new(),
+        }
+    }
+
+    /// The same with what is asked of it often.
+    pub(super) fn complete(mut self) -> Self {
+        self.symbols = self.arguments.iter().flat_map(Expr::symbols).collect();
+        let related = self.arguments.iter().flat_map(Expr::related_functions);
+        self.related = related.collect();
+        self
+    }
+
+    /// A number that is the same for equal functions.
+    pub(super) fn hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// All symbols in its arguments, those inside functions included.
+    pub fn symbols(&self) -> &BTreeSet<Symbol> {
+        &self.symbols
+    }
+
+    /// The functions with relations in its arguments: see [`Expr::related_functions`].
+    pub(super) fn related(&self) -> &BTreeSet<Atom> {
+        &self.related
+    }
+}
+
+impl PartialEq for Application {
+    fn eq(&self, other: &Self) -> bool {
+        self.hash == other.hash
+            && self.function == other.function
+            && self.arguments == other.arguments
+    }
+}
+
+impl Eq for Application {}
+
+impl PartialOrd for Application {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Application {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.function.cmp(&other.function)).then_with(|| self.arguments.cmp(&other.arguments))
+    }
+}
+
+impl Hash for Application {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        state.write_u64(self.hash);
+    }
 }
 
 /// An indeterminate. Symbols stand before functions.

@@ -1,12 +1,14 @@
 //! A bound on symbolic work, so that no spec, however wrong, makes the build hang.
 //!
-//! Arithmetic on expressions spends from the budget of the innermost [`scope`] of its thread. Once it is spent, operations
-//! return zero at once, and the scope returns [`Exhausted`] instead of a result: a value made after exhaustion never leaves it.
+//! Arithmetic on expressions spends from the budget of the innermost [`scope`] of its thread, in proportion to the time that it takes. Once
+//! it is spent, operations return zero at once, and the scope returns [`Exhausted`] instead of a result: a value made after exhaustion
+//! never leaves it.
 
 use std::cell::Cell;
 
 thread_local! {
     static REMAINING: Cell<u64> = const { Cell::new(u64::MAX) };
+    static TASK: Cell<&'static str> = const { Cell::new("") };
 }
 
 /// The bound on symbolic work was reached.
@@ -14,17 +16,38 @@ thread_local! {
 pub struct Exhausted {
     /// The bound, in term operations.
     pub limit: u64,
+    /// What was being worked on, as [`begin`] named it.
+    pub task: &'static str,
 }
 
-/// Runs `work` with at most `limit` term operations (products of two terms).
+/// Runs `work` with at most `limit` term operations, and no more than the scope around it has left. A term operation is the
+/// product of two short terms; others count as many of these as take the same time.
 pub fn scope<T>(limit: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
-    let outer = REMAINING.replace(limit);
+    let given = limit.min(REMAINING.get());
+    let outer = REMAINING.replace(given);
     let result = work();
     let left = REMAINING.replace(outer);
-    spend(limit - left.min(limit));
+    spend(given - left.min(given));
     match left {
-        0 => Err(Exhausted { limit }),
+        0 => Err(Exhausted {
+            limit,
+            task: TASK.get(),
+        }),
         _ => Ok(result),
+    }
+}
+
+/// Runs `work`, and says how many term operations it took.
+pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
+    let before = REMAINING.get();
+    let result = work();
+    (result, before - REMAINING.get())
+}
+
+/// Names what is worked on from here, unless the budget is spent: what spent it keeps its name.
+pub(crate) fn begin(task: &'static str) {
+    if !is_exhausted() {
+        TASK.set(task);
     }
 }
 

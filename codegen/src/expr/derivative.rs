@@ -54,7 +54,7 @@ impl Expr {
         for (monomial, coefficient) in self.terms() {
             let power = monomial.power(atom);
             if let (true, Some(rest)) = (power != 0, lower(monomial)) {
-                let factor = Rational::from_integer(power.into());
+                let factor = Rational::from(i64::from(power));
                 derivative += &Self::term(coefficient * factor, rest);
             }
         }
@@ -78,6 +78,9 @@ impl Expr {
 
     /// Replaces atoms of the expression itself, not those inside functions.
     pub fn replace_atoms(&self, values: &BTreeMap<Atom, Self>) -> Self {
+        if values.is_empty() {
+            return self.clone();
+        }
         self.terms()
             .map(|(monomial, coefficient)| substituted_term(monomial, coefficient, values))
             .sum()
@@ -95,12 +98,15 @@ fn substituted_term(
     coefficient: &Rational,
     replaced: &BTreeMap<Atom, Expr>,
 ) -> Expr {
-    let mut product = Expr::rational(coefficient.clone());
-    for (atom, power) in monomial.factors() {
-        let factor = replaced
-            .get(atom)
-            .cloned()
-            .unwrap_or_else(|| Expr::atom(atom.clone()));
+    let (kept, changed): (Vec<_>, Vec<_>) = monomial
+        .factors()
+        .partition(|(atom, _)| !replaced.contains_key(*atom));
+    if changed.is_empty() {
+        return Expr::term(coefficient.clone(), monomial.clone());
+    }
+    let mut product = Expr::term(coefficient.clone(), Monomial::of_factors(kept));
+    for (atom, power) in changed {
+        let factor = replaced.get(atom).cloned().unwrap_or_default();
         let factor = match power < 0 {
             true => factor.recip().unwrap_or_default(),
             false => factor,
@@ -116,9 +122,9 @@ fn substituted_atom(atom: &Atom, values: &BTreeMap<Symbol, Expr>) -> Option<Expr
         Atom::Symbol(symbol) => values.get(symbol).cloned(),
         Atom::Apply(application) => {
             let touched = application
-                .arguments
+                .symbols()
                 .iter()
-                .any(|argument| argument.symbols().iter().any(|s| values.contains_key(s)));
+                .any(|symbol| values.contains_key(symbol));
             touched.then(|| {
                 let arguments: Vec<Expr> = application
                     .arguments
@@ -167,7 +173,7 @@ fn slope_of_function(
         }
         (Function::Stumpff(order), [x], [dx]) => {
             let upper = x.stumpff(order + 2);
-            let weighted = upper.scaled(&Rational::from_integer(order.into()), &Monomial::one());
+            let weighted = upper.scaled(&Rational::from(i64::from(order)), &Monomial::one());
             let half = Rational::one() / Rational::from_integer(2.into());
             (&weighted - &x.stumpff(order + 1)).scaled(&half, &Monomial::one()) * dx.clone()
         }

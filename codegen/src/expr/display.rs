@@ -1,7 +1,7 @@
 //! Expressions as text in the notation of the spec language.
 
 use super::{Atom, Expr, Function, Monomial};
-use num_traits::{One, Signed};
+use num_traits::One;
 use std::fmt::{Display, Formatter, Result};
 
 impl Display for Expr {

@@ -1,18 +1,14 @@
 //! Functions of expressions, folded where their value is known, and the relations between them.
 
-use super::{Application, Atom, Expr, Function, Monomial, Rational};
+use super::{Atom, Expr, Function, Monomial, Rational, intern};
 use num_bigint::BigInt;
-use num_traits::{One, Signed, ToPrimitive, Zero};
-use std::sync::Arc;
+use num_traits::{One, ToPrimitive, Zero};
 
 /// Largest integer multiple of an angle that is expanded by the addition theorems.
 const LARGEST_MULTIPLE: i64 = 16;
 
 fn apply(function: Function, arguments: Vec<Expr>) -> Expr {
-    Expr::atom(Atom::Apply(Arc::new(Application {
-        function,
-        arguments,
-    })))
+    Expr::atom(Atom::Apply(intern::application(function, arguments)))
 }
 
 impl Expr {
@@ -91,12 +87,19 @@ impl Expr {
         Some(product.fold(&scale * &units, |product, factor| &product * &factor))
     }
 
-    /// The same value as one factor, where it is a sum.
+    /// The same value as one factor, where it is a sum; a number that all terms share stands before it.
     pub fn grouped(&self) -> Self {
-        match self.terms().len() {
-            0 | 1 => self.clone(),
-            _ => apply(Function::Group, vec![self.clone()]),
-        }
+        let Some((_, first)) = self.leading().filter(|_| self.terms().len() > 1) else {
+            return self.clone();
+        };
+        let shared = self.terms().all(|(_, c)| c.abs() == first.abs());
+        let number = if shared {
+            first.clone()
+        } else {
+            Rational::one()
+        };
+        let sum = self.scaled(&number.recip(), &Monomial::one());
+        apply(Function::Group, vec![sum]).scaled(&number, &Monomial::one())
     }
 
     /// Stumpff function `c_order`.

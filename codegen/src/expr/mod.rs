@@ -10,18 +10,20 @@ mod derivative;
 mod display;
 mod evaluate;
 mod function;
+mod intern;
 mod monomial;
+mod rational;
 
 pub use atom::{Application, Atom, Function, Role, Symbol};
 pub use evaluate::{Number, evaluate_f64};
 pub use monomial::Monomial;
+pub(crate) use monomial::reverse_lexicographic;
+pub use rational::Rational;
 
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
+use rustc_hash::FxHashSet;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
-
-/// An exact rational number.
-pub type Rational = num_rational::BigRational;
 
 /// A polynomial with rational coefficients in [`Atom`]s.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -42,7 +44,7 @@ impl Expr {
 
     /// The integer `value`.
     pub fn integer(value: i64) -> Self {
-        Self::rational(Rational::from_integer(value.into()))
+        Self::rational(value.into())
     }
 
     /// The fraction `numerator / denominator`; zero denominators are a programming error of the caller.
@@ -142,7 +144,7 @@ impl Expr {
                     symbols.insert(symbol);
                 }
                 Atom::Apply(application) => {
-                    symbols.extend(application.arguments.iter().flat_map(Self::symbols));
+                    symbols.extend(application.symbols().iter().cloned());
                 }
             }
         }
@@ -151,13 +153,37 @@ impl Expr {
 
     /// The atoms of the polynomial itself, not those inside functions.
     pub fn atoms(&self) -> BTreeSet<Atom> {
+        budget::spend(self.work());
         let factors = self.terms.keys().flat_map(Monomial::factors);
-        factors.map(|(atom, _)| atom.clone()).collect()
+        // Most occur in many terms: hashing finds that sooner than sorting.
+        let distinct: FxHashSet<&Atom> = factors.map(|(atom, _)| atom).collect();
+        distinct.into_iter().cloned().collect()
+    }
+
+    /// The functions with relations that occur, those inside arguments of roots and quotients included.
+    pub(crate) fn related_functions(&self) -> BTreeSet<Atom> {
+        let mut found = BTreeSet::new();
+        for atom in self.atoms() {
+            let Atom::Apply(application) = &atom else {
+                continue;
+            };
+            match application.function {
+                Function::Cos | Function::Sin => {
+                    found.insert(atom);
+                }
+                Function::Sqrt | Function::Recip | Function::Group => {
+                    found.extend(application.related().iter().cloned());
+                    found.insert(atom);
+                }
+                _ => {}
+            }
+        }
+        found
     }
 
     /// `self · coefficient · monomial`.
     pub fn scaled(&self, coefficient: &Rational, monomial: &Monomial) -> Self {
-        if coefficient.is_zero() || !budget::spend(self.terms.len() as u64) {
+        if coefficient.is_zero() || !budget::spend(self.work()) {
             return Self::zero();
         }
         let scale = |(m, c): (&Monomial, &Rational)| (m.times(monomial), c * coefficient);
@@ -191,6 +217,12 @@ impl Expr {
         self.leading().is_some_and(|(_, c)| c.is_negative())
     }
 
+    /// Term operations that a pass over the terms takes: long monomials take longer to multiply and to compare.
+    fn work(&self) -> u64 {
+        let longest = self.leading().map_or(0, |(monomial, _)| monomial.len());
+        self.terms.len() as u64 * (1 + longest as u64 / 4)
+    }
+
     fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
         use std::collections::btree_map::Entry;
         match self.terms.entry(monomial) {
@@ -208,7 +240,7 @@ impl Expr {
 
     /// Adds `coefficient · monomial · other` in place.
     pub fn add_scaled(&mut self, coefficient: &Rational, monomial: &Monomial, other: &Self) {
-        if !budget::spend(other.terms.len() as u64) {
+        if !budget::spend(other.work()) {
             return;
         }
         for (m, c) in &other.terms {
@@ -219,6 +251,9 @@ impl Expr {
 
 impl AddAssign<&Expr> for Expr {
     fn add_assign(&mut self, other: &Expr) {
+        if !budget::spend(other.work()) {
+            return;
+        }
         for (monomial, coefficient) in &other.terms {
             self.add_term(monomial.clone(), coefficient.clone());
         }
@@ -227,6 +262,9 @@ impl AddAssign<&Expr> for Expr {
 
 impl SubAssign<&Expr> for Expr {
     fn sub_assign(&mut self, other: &Expr) {
+        if !budget::spend(other.work()) {
+            return;
+        }
         for (monomial, coefficient) in &other.terms {
             self.add_term(monomial.clone(), -coefficient);
         }

@@ -45,6 +45,11 @@ impl Monomial {
         self.main.is_empty()
     }
 
+    /// Number of its atoms.
+    pub(super) fn len(&self) -> usize {
+        self.main.len() + self.units.len()
+    }
+
     /// Total degree in the atoms of the ring.
     pub fn degree(&self) -> u32 {
         self.main.iter().map(|(_, power)| power).sum()
@@ -81,6 +86,18 @@ impl Monomial {
             .iter()
             .map(|(atom, power)| (atom, *power))
             .chain(main)
+    }
+
+    /// The product of some of the factors of a monomial, in their order.
+    pub(super) fn of_factors<'a>(factors: impl IntoIterator<Item = (&'a Atom, i32)>) -> Self {
+        let mut product = Self::one();
+        for (atom, power) in factors {
+            match atom.is_unit() {
+                true => product.units.push((atom.clone(), power)),
+                false => product.main.push((atom.clone(), power.unsigned_abs())),
+            }
+        }
+        product
     }
 
     /// The power of `atom`.
@@ -192,7 +209,7 @@ impl Ord for Monomial {
 }
 
 /// Of two monomials of one degree, the larger has the smaller power of the smallest atom in which they differ.
-fn reverse_lexicographic(a: &[(Atom, u32)], b: &[(Atom, u32)]) -> Ordering {
+pub(crate) fn reverse_lexicographic<A: Ord>(a: &[(A, u32)], b: &[(A, u32)]) -> Ordering {
     for (x, y) in a.iter().zip(b) {
         match x.0.cmp(&y.0) {
             Ordering::Equal if x.1 == y.1 => {}

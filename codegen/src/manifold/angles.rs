@@ -67,7 +67,7 @@ fn by_common_part(atom: &Atom, angles: &BTreeMap<Monomial, BTreeSet<Rational>>) 
 /// The largest number of which all are multiples.
 fn common_part(coefficients: &BTreeSet<Rational>) -> Rational {
     coefficients.iter().fold(Rational::zero(), |common, c| {
-        let denominator: BigInt = common.denom().lcm(c.denom());
+        let denominator: BigInt = common.denom().lcm(&c.denom());
         let scaled = |x: &Rational| {
             (x * Rational::from_integer(denominator.clone()))
                 .to_integer()

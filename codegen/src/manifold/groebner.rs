@@ -2,6 +2,7 @@
 
 use crate::expr::{Expr, Rational, budget};
 use num_traits::One;
+use std::borrow::Borrow;
 
 /// A relation whose leading coefficient is a sum of parameters cannot be solved for its leading monomial.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,7 +55,7 @@ fn completed(mut basis: Vec<Expr>, mut pairs: Vec<(usize, usize)>) -> Result<Vec
 }
 
 /// The normal form of `expression` modulo a Gröbner basis of monic polynomials.
-pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
+pub fn reduce<E: Borrow<Expr>>(expression: &Expr, basis: &[E]) -> Expr {
     let mut rest = expression.clone();
     let mut normal = Expr::zero();
     while let Some((monomial, coefficient)) = rest.leading().map(|(m, c)| (m.clone(), c.clone())) {
@@ -64,6 +65,7 @@ pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
         }
         let step = basis
             .iter()
+            .map(Borrow::borrow)
             .find_map(|g| Some((g, monomial.divided_by(g.leading()?.0)?)));
         match step {
             Some((g, quotient)) => {
@@ -83,7 +85,7 @@ pub fn reduce(expression: &Expr, basis: &[Expr]) -> Expr {
 
 /// Work of an operation on the number beyond that on a small one: reducing a fraction takes some 64 steps for each machine word.
 fn weight(number: &Rational) -> u64 {
-    8 * ((number.numer().bits() + number.denom().bits()) / 64)
+    8 * number.excess()
 }
 
 fn pairs_up_to(count: usize) -> Vec<(usize, usize)> {

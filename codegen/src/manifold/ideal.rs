@@ -4,8 +4,10 @@ use super::angles;
 use super::reduction::Reduction;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::matrix::Matrix;
+use rustc_hash::FxHashMap;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Most term operations that the search for a shorter form of one expression may take.
 const SIMPLIFICATION_LIMIT: u64 = 10_000;
@@ -17,7 +19,9 @@ pub struct Ideal {
     /// Parameters that are positive, so that the root of their square is the parameter itself.
     positive: BTreeSet<Symbol>,
     /// Bases extended by the relations of the functions that an expression holds, by those functions.
-    extended: RefCell<BTreeMap<BTreeSet<Atom>, Reduction>>,
+    extended: RefCell<BTreeMap<BTreeSet<Atom>, Arc<Reduction>>>,
+    /// Functions with their arguments in normal form.
+    settled: RefCell<FxHashMap<Arc<Application>, Expr>>,
 }
 
 impl Ideal {
@@ -25,8 +29,7 @@ impl Ideal {
     pub fn new(relations: &[Expr]) -> Self {
         Self {
             own: Reduction::new(relations),
-            positive: BTreeSet::new(),
-            extended: RefCell::default(),
+            ..Self::default()
         }
     }
 
@@ -35,6 +38,7 @@ impl Ideal {
     pub fn with_positive(mut self, parameters: BTreeSet<Symbol>) -> Self {
         self.positive = parameters;
         self.extended = RefCell::default();
+        self.settled = RefCell::default();
         self
     }
 
@@ -50,12 +54,11 @@ impl Ideal {
 
     /// The normal form: zero exactly for the expressions that vanish modulo the relations.
     pub fn normal_form(&self, expression: &Expr) -> Expr {
-        let functions = related_functions(expression);
-        if functions.is_empty() {
+        if expression.related_functions().is_empty() {
             return self.own.normal_form(expression);
         }
         let settled = self.settled(expression);
-        let functions = related_functions(&settled);
+        let functions = settled.related_functions();
         let known = self.extended.borrow().get(&functions).cloned();
         let reduction = known.unwrap_or_else(|| self.extend(functions));
         reduction.normal_form(&settled)
@@ -63,25 +66,35 @@ impl Ideal {
 
     /// The expression with the arguments of its functions in normal form, so that functions of equal arguments are equal.
     fn settled(&self, expression: &Expr) -> Expr {
-        let term = |(monomial, coefficient): (&Monomial, &Rational)| {
-            let start = Expr::rational(coefficient.clone());
-            monomial.factors().fold(start, |product, (atom, power)| {
-                let value = match atom {
-                    Atom::Apply(application) => self.settled_function(application),
-                    Atom::Symbol(_) => Expr::atom(atom.clone()),
+        let changed: BTreeMap<Atom, Expr> = expression
+            .atoms()
+            .into_iter()
+            .filter_map(|atom| {
+                let Atom::Apply(application) = &atom else {
+                    return None;
                 };
-                let value = match power < 0 {
-                    true => value.recip().unwrap_or_default(),
-                    false => value,
-                };
-                &product * &value.pow(power.unsigned_abs())
+                let value = self.settled_function(application);
+                (value != Expr::atom(atom.clone())).then_some((atom, value))
             })
-        };
-        let settled: Expr = expression.terms().map(term).sum();
-        angles::unified(&settled)
+            .collect();
+        angles::unified(&expression.replace_atoms(&changed))
     }
 
-    fn settled_function(&self, application: &Application) -> Expr {
+    /// The function with its arguments in normal form; found once.
+    fn settled_function(&self, application: &Arc<Application>) -> Expr {
+        if let Some(known) = self.settled.borrow().get(application) {
+            return known.clone();
+        }
+        let value = self.settle_function(application);
+        // What is made after the budget is spent means nothing.
+        if !budget::is_exhausted() {
+            let mut settled = self.settled.borrow_mut();
+            settled.insert(application.clone(), value.clone());
+        }
+        value
+    }
+
+    fn settle_function(&self, application: &Application) -> Expr {
         let arguments = application
             .arguments
             .iter()
@@ -164,7 +177,10 @@ impl Ideal {
     /// Whether the expressions have no common zero on the manifold, shown by 1 being among the combinations of their numerators.
     pub fn has_no_zero_with(&self, expressions: &[Expr]) -> bool {
         let numerators: Vec<Expr> = expressions.iter().map(|e| self.numerator(e)).collect();
-        let functions: BTreeSet<Atom> = numerators.iter().flat_map(related_functions).collect();
+        let functions: BTreeSet<Atom> = numerators
+            .iter()
+            .flat_map(Expr::related_functions)
+            .collect();
         let relations = relations_of(&functions, |function| function != Function::Recip);
         self.own
             .with(&[relations, numerators].concat())
@@ -172,16 +188,18 @@ impl Ideal {
     }
 
     /// Sines and roots complete the basis; quotients only rewrite, since their completion grows.
-    fn extend(&self, functions: BTreeSet<Atom>) -> Reduction {
+    fn extend(&self, functions: BTreeSet<Atom>) -> Arc<Reduction> {
         let mut reduction = self.own.with(&relations_of(&functions, |function| {
             function != Function::Recip
         }));
         reduction.add_rules(&relations_of(&functions, |function| {
             function == Function::Recip
         }));
-        self.extended
-            .borrow_mut()
-            .insert(functions, reduction.clone());
+        let reduction = Arc::new(reduction);
+        if !budget::is_exhausted() {
+            let mut extended = self.extended.borrow_mut();
+            extended.insert(functions, reduction.clone());
+        }
         reduction
     }
 }
@@ -253,25 +271,4 @@ fn weight(expression: &Expr) -> usize {
             Atom::Symbol(_) => None,
         });
     expression.terms().map(of_term).sum::<usize>() + functions.sum::<usize>()
-}
-
-/// The functions with relations that occur in the expression, those inside arguments of roots and quotients included.
-fn related_functions(expression: &Expr) -> BTreeSet<Atom> {
-    let mut found = BTreeSet::new();
-    for atom in expression.atoms() {
-        let Atom::Apply(application) = &atom else {
-            continue;
-        };
-        match application.function {
-            Function::Cos | Function::Sin => {
-                found.insert(atom);
-            }
-            Function::Sqrt | Function::Recip | Function::Group => {
-                found.extend(application.arguments.iter().flat_map(related_functions));
-                found.insert(atom);
-            }
-            _ => {}
-        }
-    }
-    found
 }

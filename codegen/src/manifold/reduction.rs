@@ -79,7 +79,7 @@ impl Reduction {
 
     /// The normal form of an expression.
     pub fn normal_form(&self, expression: &Expr) -> Expr {
-        let all = [&self.basis[..], &self.rules].concat();
+        let all: Vec<&Expr> = self.basis.iter().chain(&self.rules).collect();
         match self.freed.is_empty() {
             true => groebner::reduce(expression, &all),
             false => self.bound(&groebner::reduce(&freely(expression, &self.freed), &all)),

@@ -245,10 +245,10 @@ fn integer(value: &BigInt, bits: usize) -> Precise {
 
 impl Number for Precise {
     fn rational(&self, value: &Rational) -> Self {
-        let numerator = integer(value.numer(), self.bits);
+        let numerator = integer(&value.numer(), self.bits);
         match value.is_integer() {
             true => numerator,
-            false => numerator.quotient(&integer(value.denom(), self.bits)),
+            false => numerator.quotient(&integer(&value.denom(), self.bits)),
         }
     }
 

@@ -190,7 +190,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
-    /// 1 slices of 6×1. Operations: 6 additions, 18 multiplications (4 of each fused), 3 divisions, 1 function call.
+    /// 1 slices of 6×1. Operations: 4 additions, 18 multiplications (3 of each fused), 3 divisions, 2 function calls.
     ///
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn twist_map_child_gradient<T: Scalar>(
@@ -202,35 +202,32 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let [q_c, q_s]: [T; 2] = (*q).into();
         let zero = T::zero();
         let two = T::from_f64(2.0);
-        let q_c_q_s = q_c * q_s;
         let a_squared = a * a;
         let b_squared = b * b;
-        let a_squared_minus_b_squared = a_squared - b_squared;
-        let q_c_squared = q_c * q_c;
-        let value_of_a_squared_q_c_squared = q_c_squared
-            .mul_add(-a_squared_minus_b_squared, a_squared)
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
             .sqrt();
-        let product_of = value_of_a_squared_q_c_squared * value_of_a_squared_q_c_squared;
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
         [
             from_rows([
                 [zero],
                 [zero],
                 [
-                    -two * a * b * q_c_q_s * a_squared_minus_b_squared
-                        / (product_of * product_of),
+                    -two * a * b * q_c_a_squared_minus_b_squared_q_s
+                        / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                            * value_of_a_squared_q_c * value_of_a_squared_q_c),
                 ],
                 [
-                    q_c_q_s
-                        * two
-                            .mul_add(
-                                a_squared_minus_b_squared,
-                                -(a_squared
-                                    * q_c_squared
-                                        .mul_add(
-                                            two.mul_add(b_squared, -a_squared),
-                                            a_squared_minus_b_squared,
-                                        ) - b_squared * b_squared * q_c_squared) / product_of,
-                            ) / value_of_a_squared_q_c_squared,
+                    two
+                        .mul_add(
+                            q_c_a_squared_minus_b_squared_q_s,
+                            -q_c_a_squared_minus_b_squared_q_s
+                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                        ) / value_of,
                 ],
                 [zero],
                 [zero],
@@ -436,7 +433,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 6 additions, 20 multiplications (4 of each fused), 3 divisions, 1 function call.
+    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 4 additions, 21 multiplications (3 of each fused), 3 divisions, 2 function calls.
     ///
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn bias_acceleration<T: Scalar>(
@@ -450,31 +447,30 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let speed_angle = speeds[0];
         let zero = T::zero();
         let two = T::from_f64(2.0);
-        let q_c_q_s_speed_angle_squared = q_c * q_s * speed_angle * speed_angle;
+        let speed_angle_squared = speed_angle * speed_angle;
         let a_squared = a * a;
         let b_squared = b * b;
-        let a_squared_minus_b_squared = a_squared - b_squared;
-        let q_c_squared = q_c * q_c;
-        let value_of_a_squared_q_c_squared = q_c_squared
-            .mul_add(-a_squared_minus_b_squared, a_squared)
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
             .sqrt();
-        let product_of = value_of_a_squared_q_c_squared * value_of_a_squared_q_c_squared;
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
         SVector::from([
             zero,
             zero,
-            -two * a * b * q_c_q_s_speed_angle_squared * a_squared_minus_b_squared
-                / (product_of * product_of),
-            q_c_q_s_speed_angle_squared
+            -two * a * b * speed_angle_squared * q_c_a_squared_minus_b_squared_q_s
+                / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                    * value_of_a_squared_q_c * value_of_a_squared_q_c),
+            speed_angle_squared
                 * two
                     .mul_add(
-                        a_squared_minus_b_squared,
-                        -(a_squared
-                            * q_c_squared
-                                .mul_add(
-                                    two.mul_add(b_squared, -a_squared),
-                                    a_squared_minus_b_squared,
-                                ) - b_squared * b_squared * q_c_squared) / product_of,
-                    ) / value_of_a_squared_q_c_squared,
+                        q_c_a_squared_minus_b_squared_q_s,
+                        -q_c_a_squared_minus_b_squared_q_s
+                            * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                    ) / value_of,
             zero,
             zero,
         ])
@@ -482,7 +478,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 1-vector. Operations: 7 additions, 20 multiplications (5 of each fused), 3 divisions, 1 function call.
+    /// 1-vector. Operations: 5 additions, 21 multiplications (3 of each fused), 3 divisions, 2 function calls.
     ///
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn bias_momentum<T: Scalar>(
@@ -499,29 +495,26 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let two = T::from_f64(2.0);
         let a_squared = a * a;
         let b_squared = b * b;
-        let a_squared_minus_b_squared = a_squared - b_squared;
-        let q_c_squared = q_c * q_c;
-        let value_of_a_squared_q_c_squared = q_c_squared
-            .mul_add(-a_squared_minus_b_squared, a_squared)
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
             .sqrt();
-        let product_of = value_of_a_squared_q_c_squared * value_of_a_squared_q_c_squared;
         SVector::from([
-            q_c * q_s * speed_angle
-                * h4
-                    .mul_add(
-                        two
-                            .mul_add(
-                                a_squared_minus_b_squared,
-                                -(a_squared
-                                    * q_c_squared
-                                        .mul_add(
-                                            two.mul_add(b_squared, -a_squared),
-                                            a_squared_minus_b_squared,
-                                        ) - b_squared * b_squared * q_c_squared) / product_of,
-                            ),
-                        -two * a * b * h3 * a_squared_minus_b_squared
-                            / (product_of * value_of_a_squared_q_c_squared),
-                    ) / value_of_a_squared_q_c_squared,
+            speed_angle
+                * (h4
+                    * two
+                        .mul_add(
+                            q_c_a_squared_minus_b_squared_q_s,
+                            -q_c_a_squared_minus_b_squared_q_s
+                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                        ) / value_of
+                    - two * a * b * h3 * q_c_a_squared_minus_b_squared_q_s
+                        / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                            * value_of_a_squared_q_c * value_of_a_squared_q_c)),
         ])
     }
 }

@@ -15,12 +15,12 @@
 //!     ⎢Q₃₁  Q₃₂  Q₃₃  c² Q₃₃ / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
 //!     ⎣  0    0    0                                        1⎦
 //!
-//!     ⎡                                          Q₁₁                                             Q₁₂                    Q₁₃⎤
-//!     ⎢                                          Q₂₁                                             Q₂₂                    Q₂₃⎥
-//! X = ⎢                                          Q₃₁                                             Q₃₂                    Q₃₃⎥
-//!     ⎢(w₄ Q₃₁ − w₁ (Q₁₂ − ½ Q₁₃ 2 w₉) − w₆ Q₂₁) w₁₀  (w₁ (Q₁₁ − ½ Q₁₃ 2 w₁₁) − w₆ Q₂₂ + w₄ Q₃₂) w₁₀  Q₂₃ Q₃₃ (w₃ − w₅) w₁₀⎥
-//!     ⎢(w₆ Q₁₁ − w₂ Q₃₁ − w₃ (Q₂₂ − ½ Q₂₃ 2 w₉)) w₁₀  (w₃ (Q₂₁ − ½ Q₂₃ 2 w₁₁) + w₆ Q₁₂ − w₂ Q₃₂) w₁₀      w₁₂ Q₃₃ (w₅ − w₁)⎥
-//!     ⎣(w₂ Q₂₁ − w₅ (Q₃₂ − ½ Q₃₃ 2 w₉) − w₄ Q₁₁) w₁₀  (w₅ (Q₃₁ − ½ Q₃₃ 2 w₁₁) − w₄ Q₁₂ + w₂ Q₂₂) w₁₀      w₁₂ Q₂₃ (w₁ − w₃)⎦
+//!     ⎡                                      Q₁₁                                         Q₁₂                    Q₁₃⎤
+//!     ⎢                                      Q₂₁                                         Q₂₂                    Q₂₃⎥
+//! X = ⎢                                      Q₃₁                                         Q₃₂                    Q₃₃⎥
+//!     ⎢(w₄ Q₃₁ − w₁ (Q₁₂ − Q₁₃ w₉) − w₆ Q₂₁) w₁₀  (w₁ (Q₁₁ − Q₁₃ w₁₁) − w₆ Q₂₂ + w₄ Q₃₂) w₁₀  Q₂₃ Q₃₃ (w₃ − w₅) w₁₀⎥
+//!     ⎢(w₆ Q₁₁ − w₂ Q₃₁ − w₃ (Q₂₂ − Q₂₃ w₉)) w₁₀  (w₃ (Q₂₁ − Q₂₃ w₁₁) + w₆ Q₁₂ − w₂ Q₃₂) w₁₀      w₁₂ Q₃₃ (w₅ − w₁)⎥
+//!     ⎣(w₂ Q₂₁ − w₅ (Q₃₂ − Q₃₃ w₉) − w₄ Q₁₁) w₁₀  (w₅ (Q₃₁ − Q₃₃ w₁₁) − w₄ Q₁₂ + w₂ Q₂₂) w₁₀      w₁₂ Q₂₃ (w₁ − w₃)⎦
 //!
 //! w₁ = a²
 //!
@@ -170,7 +170,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 68 multiplications (24 of each fused), 2 divisions, 1 function call.
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 56 multiplications (24 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
@@ -178,9 +178,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let b = T::from_f64(self.b);
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let half = T::from_f64(0.5);
         let one = T::one();
-        let two = T::from_f64(2.0);
         let a_squared = a * a;
         let a_squared_q13 = a_squared * q13;
         let b_squared = b * b;
@@ -205,14 +203,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [
                 a_squared
                     .mul_add(
-                        (half * q13 * two)
-                            .mul_add(product_of_a_squared_q13_q12_q22_q32, -q12),
+                        q13.mul_add(product_of_a_squared_q13_q12_q22_q32, -q12),
                         c_squared_q33.mul_add(-q21, b_squared_q23 * q31),
                     ) * quotient_of_2,
                 a_squared
                     .mul_add(
-                        (half * q13 * two)
-                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q11),
+                        q13.mul_add(-product_of_a_squared_q13_q11_q21_q31, q11),
                         c_squared_q33.mul_add(-q22, b_squared_q23 * q32),
                     ) * quotient_of_2,
                 q23 * q33 * (b_squared - c_squared) * quotient_of_2,
@@ -223,15 +219,13 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         -q31,
                         b_squared
                             .mul_add(
-                                (half * q23 * two)
-                                    .mul_add(product_of_a_squared_q13_q12_q22_q32, -q22),
+                                q23.mul_add(product_of_a_squared_q13_q12_q22_q32, -q22),
                                 c_squared_q33 * q11,
                             ),
                     ) * quotient_of_2,
                 b_squared
                     .mul_add(
-                        (half * q23 * two)
-                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q21),
+                        q23.mul_add(-product_of_a_squared_q13_q11_q21_q31, q21),
                         a_squared_q13.mul_add(-q32, c_squared_q33 * q12),
                     ) * quotient_of_2,
                 q13_quotient_of_2 * q33 * (c_squared - a_squared),
@@ -239,14 +233,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [
                 c_squared
                     .mul_add(
-                        (half * q33 * two)
-                            .mul_add(product_of_a_squared_q13_q12_q22_q32, -q32),
+                        q33.mul_add(product_of_a_squared_q13_q12_q22_q32, -q32),
                         b_squared_q23.mul_add(-q11, a_squared_q13 * q21),
                     ) * quotient_of_2,
                 c_squared
                     .mul_add(
-                        (half * q33 * two)
-                            .mul_add(-product_of_a_squared_q13_q11_q21_q31, q31),
+                        q33.mul_add(-product_of_a_squared_q13_q11_q21_q31, q31),
                         b_squared_q23.mul_add(-q12, a_squared_q13 * q22),
                     ) * quotient_of_2,
                 q13_quotient_of_2 * q23 * (a_squared - b_squared),
@@ -256,7 +248,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 18 additions, 57 multiplications (18 of each fused), 2 divisions, 1 function call.
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 18 additions, 45 multiplications (18 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
@@ -265,9 +257,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let zero = T::zero();
-        let half = T::from_f64(0.5);
         let one = T::one();
-        let two = T::from_f64(2.0);
         let a_squared = a * a;
         let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
@@ -297,7 +287,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             [zero, one, zero],
             [zero, zero, one],
             [
-                (half * two * sum_of_a_squared_q12_q13_q23_q33)
+                sum_of_a_squared_q12_q13_q23_q33
                     .mul_add(
                         product_of_inverse_value_of_squared,
                         -sum_of_a_squared_q11_q12_q22_q32,
@@ -308,7 +298,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         b_squared_q21
                             .mul_add(
                                 q21,
-                                (half * two * product_of_inverse_value_of_squared)
+                                product_of_inverse_value_of_squared
                                     .mul_add(
                                         -sum_of_a_squared_q11_q13_q23_q33,
                                         c_squared_q31 * q31,
@@ -327,12 +317,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                                 c_squared_q32
                                     .mul_add(
                                         -q32,
-                                        half * two * product_of_inverse_value_of_squared_2
+                                        product_of_inverse_value_of_squared_2
                                             * sum_of_a_squared_q12_q13_q23_q33,
                                     ),
                             ),
                     ) * inverse_value_of,
-                (half * two * product_of_inverse_value_of_squared)
+                product_of_inverse_value_of_squared
                     .mul_add(
                         -sum_of_a_squared_q12_q13_q23_q33,
                         sum_of_a_squared_q11_q12_q22_q32,
@@ -340,12 +330,12 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                 zero,
             ],
             [
-                (half * two * product_of_inverse_value_of_squared_2)
+                product_of_inverse_value_of_squared_2
                     .mul_add(
                         sum_of_a_squared_q13_b_squared_q23,
                         -sum_of_a_squared_q12_q13_q23_q33,
                     ) * inverse_value_of,
-                (half * two * product_of_inverse_value_of_squared)
+                product_of_inverse_value_of_squared
                     .mul_add(
                         -sum_of_a_squared_q13_b_squared_q23,
                         sum_of_a_squared_q11_q13_q23_q33,
@@ -357,7 +347,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
-    /// 3 slices of 6×3. Operations: 275 additions, 493 multiplications (201 of each fused), 4 divisions, 1 function call.
+    /// 3 slices of 6×3. Operations: 49 additions, 97 multiplications (36 of each fused), 4 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map_child_gradient<T: Scalar>(
@@ -372,932 +362,138 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let one = T::one();
         let two = T::from_f64(2.0);
         let three = T::from_f64(3.0);
-        let four = T::from_f64(4.0);
-        let five = T::from_f64(5.0);
-        let six = T::from_f64(6.0);
-        let seven = T::from_f64(7.0);
-        let eight = T::from_f64(8.0);
-        let nine = T::from_f64(9.0);
-        let ten = T::from_f64(10.0);
-        let twelve = T::from_f64(12.0);
-        let number_15 = T::from_f64(15.0);
-        let number_18 = T::from_f64(18.0);
-        let number_24 = T::from_f64(24.0);
-        let q11_q13 = q11 * q13;
         let a_squared = a * a;
-        let c_squared = c * c;
-        let a_squared_minus_c_squared = a_squared - c_squared;
-        let q11_q13_a_squared_minus_c_squared = q11_q13 * a_squared_minus_c_squared;
-        let q21_q23 = q21 * q23;
+        let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
-        let b_squared_minus_c_squared = b_squared - c_squared;
-        let q21_q23_b_squared_minus_c_squared = q21_q23 * b_squared_minus_c_squared;
-        let sum_of = q11_q13_a_squared_minus_c_squared
-            + q21_q23_b_squared_minus_c_squared;
-        let q12_q32 = q12 * q32;
-        let product_of_a_squared_minus_c_squared = a_squared_minus_c_squared
-            * b_squared_minus_c_squared;
-        let b_squared_squared = b_squared * b_squared;
-        let c_squared_squared = c_squared * c_squared;
-        let sum_of_b_squared_c_squared = (two * b_squared)
-            .mul_add(c_squared, -b_squared_squared - c_squared_squared);
-        let q11_q12 = q11 * q12;
-        let q12_q13 = q12 * q13;
-        let a_squared_c_squared = a_squared * c_squared;
-        let a_squared_squared = a_squared * a_squared;
-        let sum_of_a_squared_c_squared = two
-            .mul_add(a_squared_c_squared, -a_squared_squared - c_squared_squared);
-        let q12_q13_sum_of_a_squared_c_squared = q12_q13 * sum_of_a_squared_c_squared;
-        let q22_q23 = q22 * q23;
-        let sum_of_q22_q23 = (two * q22_q23)
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let value_of_squared = value_of * value_of;
+        let inverse_value_of_squared = one / value_of_squared;
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q12_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of = three * product_of_inverse_value_of_squared
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_product_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32 + product_of;
+        let sum_of_sum_of_product_of = sum_of_product_of
+            .mul_add(-inverse_value_of_squared, one);
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let inverse_value_of = one / value_of;
+        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let sum_of = (three * sum_of_a_squared_q12_q13_q23_q33)
             .mul_add(
-                -product_of_a_squared_minus_c_squared,
-                q12_q13_sum_of_a_squared_c_squared,
+                -product_of_inverse_value_of_squared_2,
+                sum_of_a_squared_q11_q12_q22_q32,
             );
-        let sum_of_q22_q12_q32_q21_q23_q11_q12 = q22
-            * (q12_q32 * product_of_a_squared_minus_c_squared
-                - q21_q23 * q22 * sum_of_b_squared_c_squared) - q11_q12 * sum_of_q22_q23;
-        let q11_squared = q11 * q11;
-        let product_of_q11_squared = q11_squared * sum_of_a_squared_c_squared;
-        let product_of_q21 = q21 * product_of_a_squared_minus_c_squared;
-        let q21_squared = q21 * q21;
-        let sum_of_q21_squared_q11_squared = q21_squared * sum_of_b_squared_c_squared
-            - two * q11_squared * product_of_a_squared_minus_c_squared;
-        let sum_of_q11_product_of_q11_squared = q21_q23
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_sum_of = sum_of_a_squared_q11_q13_q23_q33
             .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11 * (product_of_q11_squared * q13 - product_of_q21 * q32),
-            );
-        let a_squared_minus_b_squared = a_squared - b_squared;
-        let two_a_squared = two * a_squared;
-        let two_a_squared_minus_three_c_squared = three
-            .mul_add(-c_squared, two_a_squared);
-        let a_squared_b_squared_minus_c_squared = a_squared * b_squared_minus_c_squared;
-        let product_of_a_squared = a_squared_b_squared_minus_c_squared * a_squared;
-        let b_squared_a_squared_minus_c_squared = b_squared * a_squared_minus_c_squared;
-        let product_of_b_squared = b_squared_a_squared_minus_c_squared * b_squared;
-        let q11_q32 = q11 * q32;
-        let product_of_b_squared_minus_c_squared = b_squared_minus_c_squared
-            * sum_of_a_squared_c_squared;
-        let product_of_a_squared_minus_c_squared_2 = a_squared_minus_c_squared
-            * sum_of_b_squared_c_squared;
-        let product_of_q32 = q32 * product_of_a_squared_minus_c_squared_2;
-        let q22_squared = q22 * q22;
-        let q21_squared_plus_two_q22_squared = two.mul_add(q22_squared, q21_squared);
-        let q12_squared = q12 * q12;
-        let q11_squared_plus_q12_squared = q11_squared + q12_squared;
-        let a_squared_a_squared_minus_c_squared = a_squared * a_squared_minus_c_squared;
-        let c_squared_squared_c_squared = c_squared_squared * c_squared;
-        let sum_of_c_squared_a_squared_squared = (three
-            * a_squared_a_squared_minus_c_squared)
-            .mul_add(
-                c_squared,
-                a_squared_squared.mul_add(-a_squared, c_squared_squared_c_squared),
-            );
-        let sum_of_q12_q13_q22_q23 = q12_q13
-            .mul_add(
-                sum_of_c_squared_a_squared_squared,
-                three * q22_q23 * product_of_b_squared_minus_c_squared,
-            );
-        let product_of_sum_of_q12_q13_q22_q23 = q11_squared_plus_q12_squared
-            * sum_of_q12_q13_q22_q23;
-        let q22_q23_b_squared_minus_c_squared = q22_q23 * b_squared_minus_c_squared;
-        let product_of_q22_squared = q22_squared
-            * product_of_a_squared_minus_c_squared_2;
-        let q11_q21 = q11 * q21;
-        let q12_q22 = q12 * q22;
-        let q11_q21_plus_q12_q22 = q11_q21 + q12_q22;
-        let q23_q11_q21_plus_q12_q22 = q23 * q11_q21_plus_q12_q22;
-        let sum_of_b_squared_squared = b_squared_squared - c_squared_squared;
-        let q21_squared_plus_q22_squared = q21_squared + q22_squared;
-        let b_squared_b_squared_minus_c_squared = b_squared * b_squared_minus_c_squared;
-        let sum_of_c_squared_b_squared_squared = (three
-            * b_squared_b_squared_minus_c_squared)
-            .mul_add(
-                c_squared,
-                b_squared_squared.mul_add(-b_squared, c_squared_squared_c_squared),
-            );
-        let two_q11_squared_plus_q12_squared = two.mul_add(q11_squared, q12_squared);
-        let product_of = product_of_b_squared_minus_c_squared
-            * two_q11_squared_plus_q12_squared;
-        let sum_of_q11_squared_plus_q12_squared = one - q11_squared_plus_q12_squared;
-        let value_of_b_squared = a_squared_minus_c_squared
-            .mul_add(
-                sum_of_q11_squared_plus_q12_squared,
-                b_squared_minus_c_squared
-                    .mul_add(-q21_squared_plus_q22_squared, b_squared),
-            )
-            .sqrt();
-        let value_of_b_squared_squared = value_of_b_squared * value_of_b_squared;
-        let inverse_value_of_b_squared_squared = one / value_of_b_squared_squared;
-        let product_of_q11_q21_q23_c_squared_q12 = (q11
-            * (q12 * three)
-                .mul_add(
-                    sum_of_a_squared_c_squared
-                        .mul_add(
-                            q12_q13
-                                .mul_add(
-                                    a_squared_minus_b_squared,
-                                    q22_q23_b_squared_minus_c_squared,
-                                ),
-                            -product_of_sum_of_q12_q13_q22_q23,
-                        ),
-                    (nine * product_of_q22_squared)
-                        .mul_add(
-                            -q23_q11_q21_plus_q12_q22,
-                            q21
-                                * (product_of_q32 * six)
-                                    .mul_add(
-                                        one - q21_squared_plus_two_q22_squared,
-                                        q11
-                                            * (q23
-                                                * (three
-                                                    * c_squared
-                                                        .mul_add(
-                                                            b_squared
-                                                                .mul_add(
-                                                                    two_a_squared_minus_three_c_squared,
-                                                                    c_squared_squared,
-                                                                ),
-                                                            product_of_a_squared,
-                                                        ) - six * product_of_b_squared)
-                                                - three * q11_q32 * product_of_b_squared_minus_c_squared),
-                                    ),
-                        ),
-                )
-            - q22
-                * q22
+                sum_of_a_squared_q11_q12_q22_q32,
+                sum_of
                     .mul_add(
-                        q21_q23
-                            .mul_add(
-                                (six * a_squared)
-                                    .mul_add(
-                                        sum_of_b_squared_c_squared,
-                                        three
-                                            * b_squared_minus_c_squared
-                                                .mul_add(
-                                                    sum_of_b_squared_squared,
-                                                    q21_squared_plus_q22_squared
-                                                        * sum_of_c_squared_b_squared_squared,
-                                                ),
-                                    ),
-                                six * q12_q22 * product_of_q32,
-                            ),
-                        three * q12_q32 * product_of,
-                    )) * inverse_value_of_b_squared_squared;
-        let inverse_value_of_b_squared = one / value_of_b_squared;
-        let product_of_sum_of = four
-            .mul_add(
-                sum_of_q22_q12_q32_q21_q23_q11_q12,
-                a_squared_minus_b_squared
-                    .mul_add(
-                        q21_q23_b_squared_minus_c_squared
-                            - q11_q13_a_squared_minus_c_squared,
-                        -sum_of_q11_product_of_q11_squared
-                            + product_of_q11_q21_q23_c_squared_q12,
-                    ),
-            )
-            .mul_add(inverse_value_of_b_squared_squared, sum_of)
-            * inverse_value_of_b_squared;
-        let q11_sum_of_a_squared_c_squared = q11 * sum_of_a_squared_c_squared;
-        let sum_of_q11_q12_q13_product_of_q21 = q22_q23
-            .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11 * (q11_sum_of_a_squared_c_squared * q12_q13 - product_of_q21 * q31),
-            );
-        let four_b_squared_minus_c_squared = four.mul_add(b_squared, -c_squared);
-        let two_c_squared = two * c_squared;
-        let five_b_squared_minus_two_c_squared = five.mul_add(b_squared, -two_c_squared);
-        let sum_of_a_squared_squared = a_squared_squared - c_squared_squared;
-        let product_of_a_squared_minus_c_squared_3 = a_squared_minus_c_squared
-            * sum_of_a_squared_squared;
-        let q11_q21_q31 = q11_q21 * q31;
-        let one_minus_q22_squared = one - q22_squared;
-        let product_of_q21_squared = q21_squared
-            * product_of_a_squared_minus_c_squared_2;
-        let product_of_q11_squared_2 = q11_squared
-            * product_of_a_squared_minus_c_squared_2;
-        let sum_of_q21_squared = q21_squared
-            .mul_add(
-                sum_of_c_squared_b_squared_squared,
-                three * product_of_q11_squared_2,
-            );
-        let sum_of_one_minus_q22_squared = one_minus_q22_squared - q12_squared;
-        let product_of_q11_q22_q23_a_squared_q22 = q11
-            .mul_add(
-                q11
-                    .mul_add(
-                        three
-                            .mul_add(
-                                q12_q13
-                                    .mul_add(
-                                        product_of_a_squared_minus_c_squared_3,
-                                        product_of_sum_of_q12_q13_q22_q23
-                                            - q22_q23
-                                                * (a_squared
-                                                    * c_squared
-                                                        .mul_add(
-                                                            four_b_squared_minus_c_squared,
-                                                            a_squared_b_squared_minus_c_squared,
-                                                        ) - c_squared_squared * five_b_squared_minus_two_c_squared),
-                                    ),
-                                b_squared
-                                    .mul_add(
-                                        six
-                                            .mul_add(
-                                                q12_q13_sum_of_a_squared_c_squared,
-                                                nine * b_squared_a_squared_minus_c_squared * q22_q23,
-                                            ),
-                                        six * q11_q21_q31 * product_of_b_squared_minus_c_squared,
-                                    ),
-                            ),
-                        (three * product_of_q21_squared * q21)
-                            .mul_add(
-                                q31,
-                                -q22 * q32
-                                    * (product_of_a_squared_minus_c_squared_2
-                                        * (twelve * one_minus_q22_squared - number_15 * q21_squared)
-                                        - six * product_of),
-                            ),
-                    ),
-                q22_q23 * three
-                    * (q21_squared_plus_q22_squared * sum_of_q21_squared
-                        - sum_of_b_squared_c_squared
-                            * (a_squared_minus_c_squared * sum_of_one_minus_q22_squared
-                                - q21_squared * a_squared_minus_b_squared)),
-            ) * inverse_value_of_b_squared_squared;
-        let product_of_value_of_b_squared = value_of_b_squared_squared
-            * value_of_b_squared;
-        let sum_of_q12_q13 = q12_q13
-            .mul_add(a_squared_minus_c_squared, q22_q23_b_squared_minus_c_squared);
-        let two_b_squared = two * b_squared;
-        let product_of_q22_squared_2 = q22_squared * sum_of_b_squared_c_squared;
-        let product_of_q11_q32 = q11_q32 * product_of_a_squared_minus_c_squared;
-        let q12_sum_of_q22_q23 = q12 * sum_of_q22_q23;
-        let three_c_squared_squared = three * c_squared_squared;
-        let five_c_squared = five * c_squared;
-        let product_of_a_squared_two_a_squared = a_squared
-            * (two_a_squared - five_c_squared);
-        let sum_of_three_c_squared_squared = three_c_squared_squared
-            + product_of_a_squared_two_a_squared;
-        let sum_of_q21_squared_plus_q22_squared = one - q21_squared_plus_q22_squared;
-        let a_squared_plus_b_squared = a_squared + b_squared;
-        let sum_of_two_c_squared = two_c_squared - a_squared_plus_b_squared;
-        let sum_of_q21_squared_q11_squared_q11 = q21_squared
-            .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11_squared * q11_sum_of_a_squared_c_squared * q11,
-            );
-        let product_of_q12_squared_q22_squared = q12_squared
-            * (q12_squared * sum_of_a_squared_c_squared
-                - two * q22_squared * product_of_a_squared_minus_c_squared);
-        let sum_of_product_of_q22_squared_2 = product_of_q22_squared_2
-            .mul_add(q22_squared, product_of_q12_squared_q22_squared);
-        let q22_q33 = q22 * q33;
-        let sum_of_a_squared_q22_squared_q11 = a_squared
-            .mul_add(
-                a_squared_minus_b_squared,
-                (six * q22_squared)
-                    .mul_add(
-                        -sum_of_q21_squared_q11_squared,
-                        (six * q11)
-                            .mul_add(
-                                -q11_sum_of_a_squared_c_squared
-                                    .mul_add(
-                                        q12_squared,
-                                        two * q22_q33 * product_of_a_squared_minus_c_squared,
-                                    ),
-                                sum_of_b_squared_squared,
-                            ),
+                        sum_of_a_squared_q11_q13_q23_q33,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            * sum_of_a_squared_q11_q11_q21_q31,
                     ),
             );
-        let sum_of_c_squared_squared_a_squared = two
+        let value_of_squared_value_of = value_of_squared * value_of;
+        let sum_of_2 = product_of_inverse_value_of_squared_2
             .mul_add(
-                c_squared_squared,
-                a_squared * three.mul_add(a_squared, -five_c_squared),
+                -sum_of_a_squared_q13_b_squared_q23,
+                sum_of_a_squared_q11_q13_q23_q33,
             );
-        let sum_of_b_squared_squared_c_squared = three * b_squared_squared
-            - c_squared * five_b_squared_minus_two_c_squared;
-        let two_a_squared_minus_b_squared = two_a_squared - b_squared;
-        let product_of_a_squared_minus_c_squared_4 = a_squared_minus_c_squared
-            * two_a_squared_minus_b_squared;
-        let a_squared_minus_two_b_squared = a_squared - two_b_squared;
-        let product_of_b_squared_minus_c_squared_2 = b_squared_minus_c_squared
-            * a_squared_minus_two_b_squared;
-        let nine_c_squared = nine * c_squared;
-        let product_of_sum_of_q21_squared = sum_of_q21_squared
-            * q21_squared_plus_two_q22_squared;
-        let sum_of_product_of_sum_of_q21_squared = (q22_squared * q22_squared)
-            .mul_add(sum_of_c_squared_b_squared_squared, product_of_sum_of_q21_squared);
-        let product_of_2 = sum_of_b_squared_c_squared * q21_squared_plus_q22_squared;
-        let sum_of_q12_squared_q11_squared = q12_squared
-            .mul_add(two_q11_squared_plus_q12_squared, q11_squared * q11_squared);
-        let a_squared_b_squared = a_squared * b_squared;
-        let c_squared_a_squared_minus_c_squared = c_squared * a_squared_minus_c_squared;
-        let q11_q33 = q11 * q33;
-        let sum_of_c_squared_q22_q11_q33 = (c_squared * q22)
+        let sum_of_sum_of_2 = sum_of_a_squared_q12_q13_q23_q33
             .mul_add(
-                two.mul_add(a_squared_b_squared, -c_squared_a_squared_minus_c_squared),
-                q11_q33 * product_of_q21_squared,
-            );
-        let sum_of_product_of_b_squared = c_squared
-            .mul_add(
-                (two * c_squared)
+                sum_of_a_squared_q11_q12_q22_q32,
+                sum_of
                     .mul_add(
-                        a_squared_plus_b_squared,
-                        three.mul_add(-a_squared_b_squared, -c_squared_squared),
-                    ),
-                product_of_b_squared + product_of_a_squared,
-            );
-        let product_of_3 = sum_of_c_squared_a_squared_squared
-            * sum_of_q12_squared_q11_squared;
-        let product_of_q11_squared_3 = q11_squared
-            * product_of_b_squared_minus_c_squared;
-        let q21_q22 = q21 * q22;
-        let sum_of_q11_q12_q21_q22 = q11_q12
-            .mul_add(a_squared_minus_c_squared, q21_q22 * b_squared_minus_c_squared);
-        let q11_q22 = q11 * q22;
-        let sum_of_q12_q21_q22_q33_q11_q22 = (q11_sum_of_a_squared_c_squared * q12)
-            .mul_add(
-                sum_of_q11_squared_plus_q12_squared,
-                (product_of_a_squared_minus_c_squared * q11_q21_plus_q12_q22)
-                    .mul_add(
-                        two.mul_add(q11_q22, -q33),
-                        q21_q22 * sum_of_b_squared_c_squared
-                            * sum_of_q21_squared_plus_q22_squared,
+                        sum_of_a_squared_q12_q13_q23_q33,
+                        sum_of_a_squared_q11_q13_q23_q33
+                            * sum_of_a_squared_q12_q12_q22_q32,
                     ),
             );
-        let q11_q11_q21_plus_q12_q22 = q11 * q11_q21_plus_q12_q22;
-        let q12_q33 = q12 * q33;
-        let product_of_q12_squared = q12_squared * product_of_b_squared_minus_c_squared;
-        let sum_of_product_of_3_q22_squared = (three * q22_squared)
-            .mul_add(product_of, product_of_3);
-        let sum_of_product_of_q11_squared_3 = product_of_q11_squared_3
-            .mul_add(q11_q21, q12_q22 * product_of_q22_squared);
-        let product_of_sum_of_q12_q13_q12_q13 = four
+        let sum_of_sum_of_3 = (sum_of * sum_of_a_squared_q13_b_squared_q23)
+            .mul_add(-inverse_value_of_squared, sum_of_a_squared_q11_q12_q22_q32);
+        let product_of_2 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_3 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_3 = product_of_inverse_value_of_squared
             .mul_add(
-                sum_of_q11_q12_q13_product_of_q21,
-                q12
-                    .mul_add(
-                        (q13 * a_squared_minus_c_squared)
-                            .mul_add(a_squared_minus_b_squared, q12_sum_of_q22_q23),
-                        q22
-                            .mul_add(
-                                -(q23 * sum_of_b_squared_c_squared)
-                                    .mul_add(one_minus_q22_squared, seven * product_of_q11_q32),
-                                product_of_q11_q22_q23_a_squared_q22,
-                            ),
-                    ),
-            )
-            .mul_add(-inverse_value_of_b_squared_squared, sum_of_q12_q13)
-            * inverse_value_of_b_squared;
-        let product_of_b_squared_two_b_squared = b_squared
-            * (two_b_squared - five_c_squared);
-        let q32_q11_q21_plus_q12_q22 = q32 * q11_q21_plus_q12_q22;
-        let product_of_4 = sum_of_a_squared_c_squared * q11_squared_plus_q12_squared;
-        let q11_squared_minus_q12_squared = q11_squared - q12_squared;
-        let product_of_a_squared_minus_c_squared_5 = a_squared_minus_c_squared
-            .mul_add(
-                q11_squared_minus_q12_squared,
-                sum_of_a_squared_c_squared
-                    .mul_add(
-                        -q11_squared_minus_q12_squared,
-                        sum_of_b_squared_c_squared
-                            .mul_add(
-                                q22_squared.mul_add(one_minus_q22_squared, -q21_squared),
-                                sum_of_q21_squared_q11_squared_q11
-                                    - product_of_q12_squared_q22_squared,
-                            ),
-                    )
-                    .mul_add(
-                        -inverse_value_of_b_squared_squared,
-                        b_squared_minus_c_squared * (q21_squared - q22_squared),
-                    ),
-            ) * inverse_value_of_b_squared;
-        let product_of_sum_of_q11_q12_q21_q22 = two
-            .mul_add(
-                sum_of_q11_q12_q21_q22,
-                two * sum_of_q12_q21_q22_q33_q11_q22 * inverse_value_of_b_squared_squared,
-            ) * inverse_value_of_b_squared;
+                -sum_of_a_squared_q13_b_squared_q23,
+                sum_of_a_squared_q12_q13_q23_q33,
+            );
+        let product_of_4 = three * product_of_inverse_value_of_squared_2
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_product_of_4 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31 + product_of_4;
+        let sum_of_sum_of_product_of_4 = sum_of_product_of_4
+            .mul_add(-inverse_value_of_squared, one);
+        let product_of_inverse_value_of_squared_3 = (sum_of_a_squared_q12_q12_q22_q32
+            - sum_of_a_squared_q11_q11_q21_q31
+            - (sum_of_a_squared_q12_q13_q23_q33 * sum_of_a_squared_q12_q13_q23_q33
+                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_a_squared_q11_q13_q23_q33)
+                * inverse_value_of_squared) * inverse_value_of;
+        let product_of_product_of_2_product_of_3 = (two
+            * sum_of_a_squared_q11_q12_q22_q32
+            - (product_of_2 + product_of_3) * inverse_value_of_squared)
+            * inverse_value_of;
         [
             from_rows([
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [
-                    -product_of_sum_of,
-                    -three
+                    -sum_of_a_squared_q11_q13_q23_q33
                         .mul_add(
-                            sum_of_q11_q12_q13_product_of_q21,
-                            b_squared_a_squared_minus_c_squared
-                                .mul_add(
-                                    -q12_q13,
-                                    (q22 * b_squared_minus_c_squared)
-                                        .mul_add(
-                                            -a_squared
-                                                .mul_add(q23, six * q11_q32 * a_squared_minus_c_squared),
-                                            product_of_q11_q22_q23_a_squared_q22,
-                                        ),
-                                ),
-                        ) / product_of_value_of_b_squared,
+                            sum_of_sum_of_product_of,
+                            two * product_of_inverse_value_of_squared
+                                * sum_of_a_squared_q11_q12_q22_q32,
+                        ) * inverse_value_of,
+                    sum_of_sum_of / value_of_squared_value_of,
                     zero,
                 ],
                 [
-                    (two
+                    (sum_of_a_squared_q12_q13_q23_q33
                         .mul_add(
-                            sum_of_q11_q12_q13_product_of_q21,
-                            q22
-                                .mul_add(
-                                    q23
-                                        .mul_add(
-                                            b_squared
-                                                .mul_add(
-                                                    ten.mul_add(-c_squared, two_b_squared),
-                                                    eight
-                                                        .mul_add(
-                                                            c_squared_squared,
-                                                            five
-                                                                * (a_squared_b_squared_minus_c_squared
-                                                                    + product_of_q22_squared_2),
-                                                        ),
-                                                ),
-                                            product_of_q11_q32,
-                                        ),
-                                    (three * q12_squared * sum_of_q12_q13_q22_q23)
-                                        .mul_add(
-                                            sum_of_q11_squared_plus_q12_squared,
-                                            q22
-                                                * q23
-                                                    .mul_add(
-                                                        nine
-                                                            .mul_add(
-                                                                product_of_q11_squared_2,
-                                                                q22_squared
-                                                                    * (three * sum_of_c_squared_b_squared_squared
-                                                                        * sum_of_q21_squared_plus_q22_squared
-                                                                        - nine * product_of_a_squared_minus_c_squared_2
-                                                                            * q11_squared_plus_q12_squared),
-                                                            ),
-                                                        nine * q11_q32 * product_of_a_squared_minus_c_squared_2
-                                                            * sum_of_q21_squared_plus_q22_squared,
-                                                    ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            q12
-                                                * five
-                                                    .mul_add(
-                                                        q12_sum_of_q22_q23,
-                                                        q13 * sum_of_three_c_squared_squared,
-                                                    ),
-                                        ),
-                                ),
-                        ) * inverse_value_of_b_squared_squared - two * sum_of_q12_q13)
-                        * inverse_value_of_b_squared,
-                    product_of_sum_of,
-                    zero,
-                ],
-                [
-                    b_squared_minus_c_squared
-                        .mul_add(
-                            q21_squared_plus_two_q22_squared,
-                            a_squared_minus_c_squared
-                                .mul_add(
-                                    two.mul_add(q12_squared, q11_squared),
-                                    five
-                                        .mul_add(
-                                            sum_of_product_of_q22_squared_2,
-                                            two
-                                                .mul_add(
-                                                    q12_squared
-                                                        .mul_add(
-                                                            sum_of_c_squared_squared_a_squared,
-                                                            q22_squared * sum_of_b_squared_squared_c_squared,
-                                                        ),
-                                                    q11_squared
-                                                        .mul_add(
-                                                            product_of_a_squared_minus_c_squared_4,
-                                                            q21_squared
-                                                                .mul_add(
-                                                                    -product_of_b_squared_minus_c_squared_2,
-                                                                    q22
-                                                                        .mul_add(
-                                                                            six
-                                                                                .mul_add(
-                                                                                    -sum_of_c_squared_q22_q11_q33,
-                                                                                    q11_q33
-                                                                                        .mul_add(
-                                                                                            -six
-                                                                                                .mul_add(
-                                                                                                    sum_of_product_of_b_squared,
-                                                                                                    twelve * product_of_b_squared_minus_c_squared
-                                                                                                        * q11_squared_plus_q12_squared,
-                                                                                                ),
-                                                                                            q22
-                                                                                                * b_squared
-                                                                                                    .mul_add(
-                                                                                                        nine
-                                                                                                            .mul_add(
-                                                                                                                c_squared_squared,
-                                                                                                                b_squared
-                                                                                                                    * q21_squared_plus_q22_squared
-                                                                                                                        .mul_add(
-                                                                                                                            six.mul_add(b_squared, -nine_c_squared),
-                                                                                                                            three * two_a_squared_minus_b_squared,
-                                                                                                                        ),
-                                                                                                            ),
-                                                                                                        three
-                                                                                                            .mul_add(
-                                                                                                                c_squared_squared_c_squared
-                                                                                                                    .mul_add(
-                                                                                                                        q21_squared_plus_q22_squared,
-                                                                                                                        (q11_squared * b_squared_minus_c_squared)
-                                                                                                                            .mul_add(
-                                                                                                                                sum_of_a_squared_squared,
-                                                                                                                                sum_of_product_of_sum_of_q21_squared,
-                                                                                                                            ),
-                                                                                                                    ),
-                                                                                                                (six * a_squared)
-                                                                                                                    .mul_add(
-                                                                                                                        product_of_2,
-                                                                                                                        (nine * product_of_b_squared_minus_c_squared)
-                                                                                                                            .mul_add(
-                                                                                                                                sum_of_q12_squared_q11_squared,
-                                                                                                                                a_squared_minus_c_squared
-                                                                                                                                    * (q12_squared
-                                                                                                                                        * six
-                                                                                                                                            .mul_add(
-                                                                                                                                                a_squared_b_squared_minus_c_squared,
-                                                                                                                                                nine * product_of_q22_squared_2,
-                                                                                                                                            ) - number_24 * q11 * q22_q33 * sum_of_b_squared_c_squared),
-                                                                                                                            ),
-                                                                                                                    ),
-                                                                                                            ),
-                                                                                                    ),
-                                                                                        ),
-                                                                                ),
-                                                                            (twelve * a_squared * c_squared_squared * q12_squared)
-                                                                                .mul_add(
-                                                                                    q12_squared,
-                                                                                    three
-                                                                                        * (q12_squared
-                                                                                            * a_squared
-                                                                                                .mul_add(
-                                                                                                    product_of_a_squared_two_a_squared
-                                                                                                        .mul_add(q12_squared, sum_of_a_squared_c_squared),
-                                                                                                    c_squared_squared_c_squared
-                                                                                                        .mul_add(
-                                                                                                            -q12_squared,
-                                                                                                            product_of_q11_squared
-                                                                                                                .mul_add(-two_a_squared_minus_b_squared, product_of_3),
-                                                                                                        ),
-                                                                                                )
-                                                                                            - product_of_q11_squared_3
-                                                                                                * (one - q11_squared - q21_squared)),
-                                                                                ),
-                                                                        )
-                                                                        .mul_add(
-                                                                            inverse_value_of_b_squared_squared,
-                                                                            sum_of_q21_squared_q11_squared_q11
-                                                                                - sum_of_a_squared_q22_squared_q11,
-                                                                        ),
-                                                                ),
-                                                        ),
-                                                ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            sum_of_two_c_squared,
-                                        ),
-                                ),
-                        ) * inverse_value_of_b_squared,
-                    -b_squared_a_squared_minus_c_squared
-                        .mul_add(
-                            -q11_q12,
-                            a_squared_b_squared_minus_c_squared
-                                .mul_add(
-                                    -q21_q22,
-                                    three
-                                        .mul_add(
-                                            q21
-                                                .mul_add(
-                                                    -sum_of_c_squared_q22_q11_q33,
-                                                    q11
-                                                        .mul_add(
-                                                            -q12
-                                                                .mul_add(
-                                                                    sum_of_a_squared_c_squared
-                                                                        .mul_add(
-                                                                            q11_squared_plus_q12_squared
-                                                                                .mul_add(two_a_squared_minus_b_squared, b_squared),
-                                                                            -sum_of_product_of_3_q22_squared
-                                                                                + product_of_a_squared_minus_c_squared_3,
-                                                                        ),
-                                                                    b_squared * product_of_q21 * q33,
-                                                                ),
-                                                            q22
-                                                                * b_squared
-                                                                    .mul_add(
-                                                                        b_squared
-                                                                            .mul_add(
-                                                                                q21
-                                                                                    .mul_add(
-                                                                                        a_squared - b_squared_minus_c_squared,
-                                                                                        q11_q11_q21_plus_q12_q22 * a_squared_minus_c_squared,
-                                                                                    ),
-                                                                                q11_sum_of_a_squared_c_squared
-                                                                                    .mul_add(-q11_q21_plus_q12_q22, c_squared_squared * q21),
-                                                                            ),
-                                                                        a_squared_a_squared_minus_c_squared
-                                                                            .mul_add(
-                                                                                -c_squared
-                                                                                    .mul_add(
-                                                                                        q11_q11_q21_plus_q12_q22,
-                                                                                        q12_q33 * b_squared_minus_c_squared,
-                                                                                    ),
-                                                                                product_of_q12_squared
-                                                                                    .mul_add(
-                                                                                        -q12_q33,
-                                                                                        q21
-                                                                                            * product_of_2
-                                                                                                .mul_add(
-                                                                                                    a_squared_minus_two_b_squared,
-                                                                                                    sum_of_product_of_sum_of_q21_squared,
-                                                                                                ),
-                                                                                    ),
-                                                                            ),
-                                                                    ),
-                                                        ),
-                                                ),
-                                            (six * q33)
-                                                .mul_add(
-                                                    -sum_of_product_of_q11_squared_3,
-                                                    q11_q22
-                                                        * (nine * sum_of_product_of_q11_squared_3
-                                                            - q33 * number_18
-                                                                * q11_q12
-                                                                    .mul_add(
-                                                                        product_of_b_squared_minus_c_squared,
-                                                                        q21_q22 * product_of_a_squared_minus_c_squared_2,
-                                                                    )),
-                                                ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            four * sum_of_q12_q21_q22_q33_q11_q22,
-                                        ),
-                                ),
-                        )
-                        .mul_add(
-                            inverse_value_of_b_squared_squared,
-                            sum_of_q11_q12_q21_q22,
-                        ) * inverse_value_of_b_squared,
-                    zero,
-                ],
-            ]),
-            from_rows([
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [
-                    product_of_sum_of_q12_q13_q12_q13,
-                    -two
-                        .mul_add(
-                            sum_of,
                             two
                                 .mul_add(
-                                    sum_of_q22_q12_q32_q21_q23_q11_q12,
-                                    five
-                                        .mul_add(
-                                            -sum_of_q11_product_of_q11_squared,
-                                            q21_q23
-                                                .mul_add(
-                                                    -(three_c_squared_squared
-                                                        + product_of_b_squared_two_b_squared),
-                                                    q11_q13
-                                                        .mul_add(
-                                                            -sum_of_three_c_squared_squared,
-                                                            (three * q21_q23 * sum_of_q21_squared)
-                                                                .mul_add(
-                                                                    sum_of_q21_squared_plus_q22_squared,
-                                                                    q11
-                                                                        * (nine * q21 * product_of_q32)
-                                                                            .mul_add(
-                                                                                sum_of_q21_squared_plus_q22_squared,
-                                                                                q11
-                                                                                    * (q11
-                                                                                        * (three * q13 * sum_of_c_squared_a_squared_squared
-                                                                                            * sum_of_q11_squared_plus_q12_squared
-                                                                                            - nine * q23_q11_q21_plus_q12_q22
-                                                                                                * product_of_b_squared_minus_c_squared)
-                                                                                        - nine * q32_q11_q21_plus_q12_q22
-                                                                                            * product_of_b_squared_minus_c_squared),
-                                                                            ),
-                                                                ) * inverse_value_of_b_squared_squared,
-                                                        ),
-                                                ),
-                                        ),
-                                ) * inverse_value_of_b_squared_squared,
-                        ) * inverse_value_of_b_squared,
+                                    -sum_of_a_squared_q12_q12_q22_q32,
+                                    sum_of_a_squared_q13_b_squared_q23,
+                                ),
+                            sum_of_a_squared_q12_q13_q23_q33 * sum_of_product_of,
+                        ) * inverse_value_of_squared
+                        - two * sum_of_a_squared_q12_q13_q23_q33) * inverse_value_of,
+                    sum_of_sum_of_2.mul_add(inverse_value_of_squared, sum_of_2)
+                        * inverse_value_of,
                     zero,
                 ],
                 [
-                    three
+                    sum_of_a_squared_q13_b_squared_q23
                         .mul_add(
-                            sum_of_q22_q12_q32_q21_q23_q11_q12,
-                            b_squared_a_squared_minus_c_squared
-                                .mul_add(
-                                    q11_q13,
-                                    a_squared_b_squared_minus_c_squared
-                                        .mul_add(q21_q23, product_of_q11_q21_q23_c_squared_q12),
-                                ),
-                        ) / product_of_value_of_b_squared,
-                    -product_of_sum_of_q12_q13_q12_q13,
-                    zero,
-                ],
-                [
-                    -b_squared_a_squared_minus_c_squared
-                        .mul_add(
-                            -q11_q12,
-                            a_squared_b_squared_minus_c_squared
-                                .mul_add(
-                                    -q21_q22,
-                                    three
-                                        .mul_add(
-                                            q21
-                                                .mul_add(
-                                                    -sum_of_c_squared_q22_q11_q33,
-                                                    q11
-                                                        .mul_add(
-                                                            -q12
-                                                                .mul_add(
-                                                                    sum_of_a_squared_c_squared
-                                                                        .mul_add(
-                                                                            q11_squared_plus_q12_squared
-                                                                                .mul_add(two_a_squared_minus_b_squared, b_squared),
-                                                                            -sum_of_product_of_3_q22_squared
-                                                                                + product_of_a_squared_minus_c_squared_3,
-                                                                        ),
-                                                                    b_squared * product_of_q21 * q33,
-                                                                ),
-                                                            q22
-                                                                * b_squared
-                                                                    .mul_add(
-                                                                        b_squared
-                                                                            .mul_add(
-                                                                                q21
-                                                                                    .mul_add(
-                                                                                        a_squared - b_squared_minus_c_squared,
-                                                                                        q11_q11_q21_plus_q12_q22 * a_squared_minus_c_squared,
-                                                                                    ),
-                                                                                q11_sum_of_a_squared_c_squared
-                                                                                    .mul_add(-q11_q21_plus_q12_q22, c_squared_squared * q21),
-                                                                            ),
-                                                                        a_squared_a_squared_minus_c_squared
-                                                                            .mul_add(
-                                                                                -c_squared
-                                                                                    .mul_add(
-                                                                                        q11_q11_q21_plus_q12_q22,
-                                                                                        q12_q33 * b_squared_minus_c_squared,
-                                                                                    ),
-                                                                                product_of_q12_squared
-                                                                                    .mul_add(
-                                                                                        -q12_q33,
-                                                                                        q21
-                                                                                            * product_of_2
-                                                                                                .mul_add(
-                                                                                                    a_squared_minus_two_b_squared,
-                                                                                                    sum_of_product_of_sum_of_q21_squared,
-                                                                                                ),
-                                                                                    ),
-                                                                            ),
-                                                                    ),
-                                                        ),
-                                                ),
-                                            (six * q33)
-                                                .mul_add(
-                                                    -sum_of_product_of_q11_squared_3,
-                                                    q11_q22
-                                                        * (nine * sum_of_product_of_q11_squared_3
-                                                            - q33 * number_18
-                                                                * q11_q12
-                                                                    .mul_add(
-                                                                        product_of_b_squared_minus_c_squared,
-                                                                        q21_q22 * product_of_a_squared_minus_c_squared_2,
-                                                                    )),
-                                                ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            four * sum_of_q12_q21_q22_q33_q11_q22,
-                                        ),
-                                ),
-                        )
-                        .mul_add(
-                            inverse_value_of_b_squared_squared,
-                            sum_of_q11_q12_q21_q22,
-                        ) * inverse_value_of_b_squared,
-                    a_squared_minus_c_squared
-                        .mul_add(
-                            two_q11_squared_plus_q12_squared,
-                            b_squared_minus_c_squared
-                                .mul_add(
-                                    two.mul_add(q21_squared, q22_squared),
-                                    five
-                                        .mul_add(
-                                            sum_of_q21_squared_q11_squared_q11,
-                                            two
-                                                .mul_add(
-                                                    q11_squared
-                                                        .mul_add(
-                                                            sum_of_c_squared_squared_a_squared,
-                                                            q21_squared * sum_of_b_squared_squared_c_squared,
-                                                        ),
-                                                    q12_squared
-                                                        .mul_add(
-                                                            product_of_a_squared_minus_c_squared_4,
-                                                            q22_squared
-                                                                .mul_add(
-                                                                    -product_of_b_squared_minus_c_squared_2,
-                                                                    sum_of_product_of_q22_squared_2
-                                                                        - sum_of_a_squared_q22_squared_q11
-                                                                        - (q11
-                                                                            * q11
-                                                                                .mul_add(
-                                                                                    a_squared_c_squared
-                                                                                        .mul_add(
-                                                                                            twelve.mul_add(b_squared, -nine_c_squared),
-                                                                                            three
-                                                                                                .mul_add(
-                                                                                                    a_squared_squared
-                                                                                                        .mul_add(
-                                                                                                            q11_squared_plus_q12_squared
-                                                                                                                .mul_add(
-                                                                                                                    -two_a_squared_minus_three_c_squared,
-                                                                                                                    a_squared_minus_two_b_squared,
-                                                                                                                ),
-                                                                                                            (q22_squared * a_squared_minus_c_squared)
-                                                                                                                .mul_add(
-                                                                                                                    -sum_of_b_squared_squared,
-                                                                                                                    c_squared_squared_c_squared
-                                                                                                                        .mul_add(
-                                                                                                                            -q11_squared_plus_q12_squared,
-                                                                                                                            -sum_of_product_of_3_q22_squared,
-                                                                                                                        ),
-                                                                                                                ),
-                                                                                                        ),
-                                                                                                    (six * b_squared)
-                                                                                                        .mul_add(
-                                                                                                            -product_of_4,
-                                                                                                            -b_squared_minus_c_squared
-                                                                                                                * (six
-                                                                                                                    * b_squared_a_squared_minus_c_squared
-                                                                                                                        .mul_add(q21_squared, c_squared_squared)
-                                                                                                                    - q11_sum_of_a_squared_c_squared
-                                                                                                                        * (number_24 * q22_q33 - nine * q11 * q21_squared)),
-                                                                                                        ),
-                                                                                                ),
-                                                                                        ),
-                                                                                    q22_q33
-                                                                                        * six
-                                                                                            .mul_add(
-                                                                                                sum_of_product_of_b_squared + product_of_q12_squared,
-                                                                                                twelve * product_of_a_squared_minus_c_squared_2
-                                                                                                    * q21_squared_plus_q22_squared,
-                                                                                            ),
-                                                                                )
-                                                                            - three
-                                                                                * q21_squared
-                                                                                    .mul_add(
-                                                                                        b_squared
-                                                                                            .mul_add(
-                                                                                                product_of_b_squared_two_b_squared
-                                                                                                    .mul_add(q21_squared, sum_of_b_squared_c_squared),
-                                                                                                (c_squared_squared * q21_squared)
-                                                                                                    .mul_add(
-                                                                                                        four_b_squared_minus_c_squared,
-                                                                                                        product_of_q22_squared_2
-                                                                                                            .mul_add(
-                                                                                                                a_squared_minus_two_b_squared,
-                                                                                                                product_of_sum_of_q21_squared,
-                                                                                                            ),
-                                                                                                    ),
-                                                                                            ),
-                                                                                        q22_squared
-                                                                                            * (q22_squared * sum_of_q21_squared
-                                                                                                - product_of_a_squared_minus_c_squared_2
-                                                                                                    * sum_of_one_minus_q22_squared),
-                                                                                    )) * inverse_value_of_b_squared_squared,
-                                                                ),
-                                                        ),
-                                                ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            sum_of_two_c_squared,
-                                        ),
-                                ),
-                        ) * inverse_value_of_b_squared,
+                            -sum_of_sum_of_product_of,
+                            sum_of_a_squared_q12_q12_q22_q32 - product_of,
+                        ) * inverse_value_of,
+                    two
+                        .mul_add(product_of_3, product_of_2)
+                        .mul_add(inverse_value_of_squared, -sum_of_sum_of_3)
+                        * inverse_value_of,
                     zero,
                 ],
             ]),
@@ -1306,54 +502,58 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [
-                    product_of_a_squared_minus_c_squared_5,
-                    product_of_sum_of_q11_q12_q21_q22,
+                    sum_of_sum_of.mul_add(inverse_value_of_squared, sum_of_3)
+                        * inverse_value_of,
+                    (sum_of_a_squared_q11_q13_q23_q33
+                        .mul_add(
+                            two
+                                .mul_add(
+                                    -sum_of_a_squared_q11_q11_q21_q31,
+                                    sum_of_a_squared_q13_b_squared_q23,
+                                ),
+                            sum_of_a_squared_q11_q13_q23_q33 * sum_of_product_of_4,
+                        ) * inverse_value_of_squared
+                        - two * sum_of_a_squared_q11_q13_q23_q33) * inverse_value_of,
                     zero,
                 ],
                 [
-                    product_of_sum_of_q11_q12_q21_q22,
-                    -product_of_a_squared_minus_c_squared_5,
+                    sum_of_sum_of_2 / value_of_squared_value_of,
+                    -sum_of_a_squared_q12_q13_q23_q33
+                        .mul_add(
+                            sum_of_sum_of_product_of_4,
+                            two * product_of_inverse_value_of_squared_2
+                                * sum_of_a_squared_q11_q12_q22_q32,
+                        ) * inverse_value_of,
                     zero,
                 ],
                 [
-                    q21_q23
+                    two
+                        .mul_add(product_of_2, product_of_3)
+                        .mul_add(inverse_value_of_squared, -sum_of_sum_of_3)
+                        * inverse_value_of,
+                    sum_of_a_squared_q13_b_squared_q23
                         .mul_add(
-                            b_squared_b_squared_minus_c_squared + product_of_2,
-                            q32_q11_q21_plus_q12_q22
-                                .mul_add(
-                                    -product_of_a_squared_minus_c_squared,
-                                    q11
-                                        * (q13
-                                            * (a_squared_a_squared_minus_c_squared + product_of_4)
-                                            - two * q23_q11_q21_plus_q12_q22
-                                                * product_of_a_squared_minus_c_squared),
-                                ),
-                        )
-                        .mul_add(-inverse_value_of_b_squared_squared, sum_of)
-                        * inverse_value_of_b_squared,
-                    q11_squared_plus_q12_squared
-                        .mul_add(
-                            sum_of_q22_q23,
-                            q22
-                                .mul_add(
-                                    -q23
-                                        .mul_add(
-                                            b_squared
-                                                .mul_add(
-                                                    sum_of_two_c_squared,
-                                                    c_squared_a_squared_minus_c_squared - product_of_2,
-                                                ),
-                                            product_of_q11_q32,
-                                        ),
-                                    a_squared_minus_c_squared
-                                        * (a_squared * q12_q13
-                                            - q11_q21_q31 * b_squared_minus_c_squared),
-                                ),
-                        )
-                        .mul_add(-inverse_value_of_b_squared_squared, sum_of_q12_q13)
-                        * inverse_value_of_b_squared,
+                            -sum_of_sum_of_product_of_4,
+                            sum_of_a_squared_q11_q11_q21_q31 - product_of_4,
+                        ) * inverse_value_of,
                     zero,
                 ],
+            ]),
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [
+                    -product_of_inverse_value_of_squared_3,
+                    product_of_product_of_2_product_of_3,
+                    zero,
+                ],
+                [
+                    product_of_product_of_2_product_of_3,
+                    product_of_inverse_value_of_squared_3,
+                    zero,
+                ],
+                [sum_of_2 * inverse_value_of, sum_of_3 * inverse_value_of, zero],
             ]),
         ]
     }
@@ -1683,7 +883,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 273 additions, 485 multiplications (188 of each fused), 2 divisions, 1 function call.
+    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 69 additions, 130 multiplications (54 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn bias_acceleration<T: Scalar>(
@@ -1700,946 +900,231 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let one = T::one();
         let two = T::from_f64(2.0);
         let three = T::from_f64(3.0);
-        let four = T::from_f64(4.0);
-        let five = T::from_f64(5.0);
         let six = T::from_f64(6.0);
-        let seven = T::from_f64(7.0);
-        let eight = T::from_f64(8.0);
-        let nine = T::from_f64(9.0);
-        let ten = T::from_f64(10.0);
-        let twelve = T::from_f64(12.0);
-        let number_13 = T::from_f64(13.0);
-        let number_18 = T::from_f64(18.0);
-        let number_24 = T::from_f64(24.0);
-        let number_36 = T::from_f64(36.0);
         let a_squared = a * a;
-        let c_squared = c * c;
-        let a_squared_minus_c_squared = a_squared - c_squared;
-        let q11_a_squared_minus_c_squared = q11 * a_squared_minus_c_squared;
-        let q11_a_squared_minus_c_squared_q13 = q11_a_squared_minus_c_squared * q13;
-        let q21_q23 = q21 * q23;
+        let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
-        let b_squared_minus_c_squared = b_squared - c_squared;
-        let q21_q23_b_squared_minus_c_squared = q21_q23 * b_squared_minus_c_squared;
-        let sum_of = q11_a_squared_minus_c_squared_q13
-            + q21_q23_b_squared_minus_c_squared;
-        let q12_q13 = q12 * q13;
-        let q12_q13_a_squared_minus_c_squared = q12_q13 * a_squared_minus_c_squared;
-        let q22_q23 = q22 * q23;
-        let sum_of_q22_q23 = q22_q23
-            .mul_add(b_squared_minus_c_squared, q12_q13_a_squared_minus_c_squared);
-        let q11_squared = q11 * q11;
-        let q12_squared = q12 * q12;
-        let q11_squared_minus_q12_squared = q11_squared - q12_squared;
-        let q21_squared = q21 * q21;
-        let q22_squared = q22 * q22;
-        let q21_squared_minus_q22_squared = q21_squared - q22_squared;
-        let sum_of_a_squared_minus_c_squared = a_squared_minus_c_squared
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let product_of_speed_tilt_y = speed_tilt_y * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let product_of_speed_spin = speed_spin
+            * (sum_of_a_squared_q11_q11_q21_q31 - sum_of_a_squared_q12_q12_q22_q32);
+        let product_of_speed_tilt_y_2 = speed_tilt_y * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let product_of_speed_spin_2 = speed_spin * two
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let speed_tilt_x_sum_of = speed_tilt_x * sum_of;
+        let two_sum_of_a_squared_q11_q12_q22_q32 = two
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let sum_of_2 = two
             .mul_add(
-                q11_squared_minus_q12_squared,
-                b_squared_minus_c_squared * q21_squared_minus_q22_squared,
+                -sum_of_a_squared_q11_q11_q21_q31,
+                sum_of_a_squared_q13_b_squared_q23,
             );
-        let product_of_a_squared_minus_c_squared = a_squared_minus_c_squared
-            * b_squared_minus_c_squared;
-        let product_of_q32 = q32 * product_of_a_squared_minus_c_squared;
-        let b_squared_squared = b_squared * b_squared;
-        let c_squared_squared = c_squared * c_squared;
-        let sum_of_b_squared_c_squared = (two * b_squared)
-            .mul_add(c_squared, -b_squared_squared - c_squared_squared);
-        let q22_q23_sum_of_b_squared_c_squared = q22_q23 * sum_of_b_squared_c_squared;
-        let q11_q12 = q11 * q12;
-        let a_squared_squared = a_squared * a_squared;
-        let sum_of_a_squared_c_squared = (two * a_squared)
-            .mul_add(c_squared, -a_squared_squared - c_squared_squared);
-        let sum_of_q12_q13_q22_q23 = q12_q13 * sum_of_a_squared_c_squared
-            - two * q22_q23 * product_of_a_squared_minus_c_squared;
-        let sum_of_q22_q12_product_of_q32_q21 = q22
-            * (q12 * product_of_q32 - q21 * q22_q23_sum_of_b_squared_c_squared)
-            - q11_q12 * sum_of_q12_q13_q22_q23;
-        let product_of_q11_squared = q11_squared * sum_of_a_squared_c_squared;
-        let sum_of_q21_squared_q11_squared = q21_squared * sum_of_b_squared_c_squared
-            - two * q11_squared * product_of_a_squared_minus_c_squared;
-        let sum_of_q11_product_of_q11_squared = q21_q23
+        let product_of = product_of_inverse_value_of_squared
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin_3 = speed_spin * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_spin_4 = speed_spin * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_2 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let inverse_value_of = one / value_of;
+        let sum_of_4 = two
             .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11 * (product_of_q11_squared * q13 - q21 * product_of_q32),
+                -sum_of_a_squared_q12_q12_q22_q32,
+                sum_of_a_squared_q13_b_squared_q23,
             );
-        let a_squared_minus_b_squared = a_squared - b_squared;
-        let q11_squared_plus_q12_squared = q11_squared + q12_squared;
-        let a_squared_a_squared_minus_c_squared = a_squared * a_squared_minus_c_squared;
-        let product_of_c_squared = a_squared_a_squared_minus_c_squared * c_squared;
-        let c_squared_squared_c_squared = c_squared_squared * c_squared;
-        let sum_of_product_of_c_squared = three
-            .mul_add(
-                product_of_c_squared,
-                a_squared_squared.mul_add(-a_squared, c_squared_squared_c_squared),
-            );
-        let product_of_b_squared_minus_c_squared = b_squared_minus_c_squared
-            * sum_of_a_squared_c_squared;
-        let sum_of_q12_q13_q22_q23_2 = q12_q13
-            .mul_add(
-                sum_of_product_of_c_squared,
-                three * q22_q23 * product_of_b_squared_minus_c_squared,
-            );
-        let product_of_sum_of_q12_q13_q22_q23_2 = q11_squared_plus_q12_squared
-            * sum_of_q12_q13_q22_q23_2;
-        let sum_of_b_squared_squared = b_squared_squared - c_squared_squared;
-        let q22_squared_sum_of_b_squared_squared = q22_squared
-            * sum_of_b_squared_squared;
-        let product_of_q12_squared = q12_squared * sum_of_a_squared_c_squared;
-        let product_of_a_squared_minus_c_squared_2 = a_squared_minus_c_squared
-            * sum_of_b_squared_c_squared;
-        let product_of_q22_squared = q22_squared
-            * product_of_a_squared_minus_c_squared_2;
-        let q11_q21 = q11 * q21;
-        let q12_q22 = q12 * q22;
-        let q11_q21_plus_q12_q22 = q11_q21 + q12_q22;
-        let q23_q11_q21_plus_q12_q22 = q23 * q11_q21_plus_q12_q22;
-        let a_squared_b_squared_minus_c_squared = a_squared * b_squared_minus_c_squared;
-        let product_of_a_squared = a_squared_b_squared_minus_c_squared * a_squared;
-        let q11_q23 = q11 * q23;
-        let product_of_q32_2 = q32 * product_of_a_squared_minus_c_squared_2;
-        let sum_of_product_of_a_squared_q11_q23 = product_of_a_squared * q11_q23
-            - four * q22_squared * product_of_q32_2;
-        let product_of_q32_3 = q32 * product_of_b_squared_minus_c_squared;
-        let two_q11_squared_plus_q12_squared = two.mul_add(q11_squared, q12_squared);
-        let sum_of_q12_q22_q11_squared_q11_q21 = q12_q22
-            .mul_add(two_q11_squared_plus_q12_squared, q11_squared * q11_q21);
-        let a_squared_b_squared = a_squared * b_squared;
-        let two_a_squared_b_squared = two * a_squared_b_squared;
-        let sum_of_c_squared_q11_q23 = (c_squared * q11_q23)
-            .mul_add(
-                two_a_squared_b_squared + c_squared_squared,
-                two * product_of_q32_2,
-            );
-        let three_c_squared_squared = three * c_squared_squared;
-        let b_squared_a_squared_minus_c_squared = b_squared * a_squared_minus_c_squared;
-        let product_of_q22_squared_2 = q22_squared * sum_of_b_squared_c_squared;
-        let product_of_q11_q12 = q11_q12 * product_of_b_squared_minus_c_squared;
-        let q21_q22 = q21 * q22;
-        let q21_squared_plus_q22_squared = q21_squared + q22_squared;
-        let b_squared_b_squared_minus_c_squared = b_squared * b_squared_minus_c_squared;
-        let sum_of_c_squared_b_squared_squared = (three
-            * b_squared_b_squared_minus_c_squared)
-            .mul_add(
-                c_squared,
-                b_squared_squared.mul_add(-b_squared, c_squared_squared_c_squared),
-            );
-        let sum_of_q11_squared_plus_q12_squared = one - q11_squared_plus_q12_squared;
-        let value_of_b_squared = a_squared_minus_c_squared
-            .mul_add(
-                sum_of_q11_squared_plus_q12_squared,
-                b_squared_minus_c_squared
-                    .mul_add(-q21_squared_plus_q22_squared, b_squared),
-            )
-            .sqrt();
-        let inverse_value_of_b_squared_squared = one
-            / (value_of_b_squared * value_of_b_squared);
-        let product_of_q11_q12_q11_q13_q11_q21 = q11_q12
-            .mul_add(
-                product_of_sum_of_q12_q13_q22_q23_2,
-                q21_q23_b_squared_minus_c_squared
-                    .mul_add(
-                        q22_squared_sum_of_b_squared_squared,
-                        q11_q21
-                            .mul_add(
-                                -sum_of_product_of_a_squared_q11_q23,
-                                product_of_q32_3
-                                    .mul_add(
-                                        sum_of_q12_q22_q11_squared_q11_q21,
-                                        q11_q21
-                                            .mul_add(
-                                                -sum_of_c_squared_q11_q23,
-                                                (two * product_of_q32_2)
-                                                    .mul_add(
-                                                        q11_q21.mul_add(q21_squared, q12_q22 * q22_squared),
-                                                        -q11
-                                                            * (product_of_q12_squared * q13 * a_squared_minus_b_squared
-                                                                - three * product_of_q22_squared * q23_q11_q21_plus_q12_q22)
-                                                            + q23
-                                                                * (q21
-                                                                    * (b_squared * q11_squared)
-                                                                        .mul_add(
-                                                                            two
-                                                                                .mul_add(
-                                                                                    b_squared_a_squared_minus_c_squared,
-                                                                                    three_c_squared_squared,
-                                                                                ),
-                                                                            two * a_squared * product_of_q22_squared_2,
-                                                                        )
-                                                                    - q22
-                                                                        * (q21_q22 * q21_squared_plus_q22_squared)
-                                                                            .mul_add(
-                                                                                -sum_of_c_squared_b_squared_squared,
-                                                                                product_of_q11_q12,
-                                                                            )),
-                                                    ),
-                                            ),
-                                    ),
-                            ),
-                    ),
-            ) * inverse_value_of_b_squared_squared;
-        let q11_q12_q13 = q11 * q12_q13;
-        let q21_q31 = q21 * q31;
-        let sum_of_q11_q11_q12_q13_q21_q31 = q22_q23
-            .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11
-                    * (q11_q12_q13 * sum_of_a_squared_c_squared
-                        - q21_q31 * product_of_a_squared_minus_c_squared),
-            );
-        let sum_of_q12_squared_q22_q23 = q12_squared
-            .mul_add(sum_of_q12_q13_q22_q23, product_of_q22_squared_2 * q22_q23);
-        let sum_of_sum_of_q12_squared_q22_q23 = sum_of_q12_squared_q22_q23
-            - q22_q23_sum_of_b_squared_c_squared;
-        let q22_b_squared_minus_c_squared = q22 * b_squared_minus_c_squared;
-        let q11_a_squared_minus_c_squared_q32 = q11_a_squared_minus_c_squared * q32;
-        let two_b_squared = two * b_squared;
-        let a_squared_minus_two_b_squared = a_squared - two_b_squared;
-        let product_of_b_squared = b_squared_a_squared_minus_c_squared * b_squared;
-        let sum_of_a_squared_squared = a_squared_squared - c_squared_squared;
-        let q12_squared_plus_q22_squared = q12_squared + q22_squared;
-        let sum_of_q12_squared_plus_q22_squared = one - q12_squared_plus_q22_squared;
-        let product_of_q11_squared_2 = q11_squared
-            * product_of_a_squared_minus_c_squared_2;
-        let sum_of_q21_squared = q21_squared
-            .mul_add(
-                sum_of_c_squared_b_squared_squared,
-                three * product_of_q11_squared_2,
-            );
-        let product_of_q11_squared_3 = q11_squared
-            * product_of_b_squared_minus_c_squared;
-        let product_of_q21_squared = q21_squared
-            * product_of_a_squared_minus_c_squared_2;
-        let sum_of_product_of_q11_squared_3 = two
-            .mul_add(product_of_q11_squared_3, product_of_q21_squared);
-        let sum_of_q11_squared_q22_q23_a_squared = q11_squared
-            .mul_add(
-                q22_q23
-                    .mul_add(
-                        three
-                            .mul_add(
-                                product_of_b_squared,
-                                c_squared_squared * five.mul_add(b_squared, a_squared),
-                            ),
-                        q12_q13_a_squared_minus_c_squared * sum_of_a_squared_squared,
-                    ),
-                q11_squared
-                    .mul_add(
-                        product_of_sum_of_q12_q13_q22_q23_2,
-                        (q22_q23 * q21_squared_plus_q22_squared)
-                            .mul_add(
-                                sum_of_q21_squared,
-                                q22 * sum_of_b_squared_c_squared
-                                    * (q21_squared
-                                        * q23
-                                            .mul_add(
-                                                a_squared_minus_b_squared,
-                                                five * q11_a_squared_minus_c_squared_q32,
-                                            )
-                                        - q23 * a_squared_minus_c_squared
-                                            * sum_of_q12_squared_plus_q22_squared)
-                                    - q11
-                                        * (q22 * sum_of_product_of_a_squared_q11_q23
-                                            - q21_q31 * sum_of_product_of_q11_squared_3),
-                            ),
-                    ),
-            );
-        let q22_b_squared_minus_c_squared_q32 = q22_b_squared_minus_c_squared * q32;
-        let product_of_q11_q22_b_squared = q11
-            * (q22 * sum_of_c_squared_q11_q23
-                - sum_of_a_squared_c_squared
-                    * b_squared
-                        .mul_add(
-                            q11_q12_q13,
-                            q22_b_squared_minus_c_squared_q32
-                                * two_q11_squared_plus_q12_squared,
-                        ));
-        let sum_of_q21_squared_q11_squared_2 = q21_squared
-            .mul_add(
-                sum_of_q21_squared_q11_squared,
-                product_of_q11_squared * q11_squared,
-            );
-        let sum_of_q22_squared_q12_squared = q22_squared
-            .mul_add(
-                (two * q12_squared)
-                    .mul_add(
-                        -product_of_a_squared_minus_c_squared,
-                        product_of_q22_squared_2,
-                    ),
-                product_of_q12_squared * q12_squared,
-            );
-        let sum_of_sum_of_b_squared_c_squared = sum_of_b_squared_c_squared
-            .mul_add(
-                -q21_squared_minus_q22_squared,
-                sum_of_a_squared_c_squared
-                    .mul_add(
-                        -q11_squared_minus_q12_squared,
-                        sum_of_q21_squared_q11_squared_2 - sum_of_q22_squared_q12_squared,
-                    ),
-            );
-        let five_c_squared = five * c_squared;
-        let two_b_squared_minus_five_c_squared = two_b_squared - five_c_squared;
-        let two_a_squared = two * a_squared;
-        let two_a_squared_minus_five_c_squared = two_a_squared - five_c_squared;
-        let sum_of_three_c_squared_squared = a_squared
-            .mul_add(two_a_squared_minus_five_c_squared, three_c_squared_squared);
-        let sum_of_q21_squared_plus_q22_squared = one - q21_squared_plus_q22_squared;
-        let product_of_product_of_q32_2 = product_of_q32_2
-            * sum_of_q21_squared_plus_q22_squared;
-        let q11_a_squared_minus_c_squared_q12 = q11_a_squared_minus_c_squared * q12;
-        let sum_of_q21_q22 = q21_q22
-            .mul_add(b_squared_minus_c_squared, q11_a_squared_minus_c_squared_q12);
-        let sum_of_q11_q12_q21_q22_q33_q11_q22 = (q11_q12 * sum_of_a_squared_c_squared)
-            .mul_add(
-                sum_of_q11_squared_plus_q12_squared,
-                (product_of_a_squared_minus_c_squared * q11_q21_plus_q12_q22)
-                    .mul_add(
-                        (two * q11).mul_add(q22, -q33),
-                        q21_q22 * sum_of_b_squared_c_squared
-                            * sum_of_q21_squared_plus_q22_squared,
-                    ),
-            );
-        let inverse_value_of_b_squared = one / value_of_b_squared;
-        let q11_product_of_q32 = q11 * product_of_q32;
-        let two_a_squared_minus_b_squared = two_a_squared - b_squared;
-        let a_squared_plus_b_squared = a_squared + b_squared;
-        let sum_of_c_squared = two.mul_add(c_squared, -a_squared_plus_b_squared);
-        let q21_squared_plus_two_q22_squared = two.mul_add(q22_squared, q21_squared);
-        let sum_of_a_squared_q22_squared = a_squared * a_squared_minus_b_squared
-            - six * q22_squared * sum_of_q21_squared_q11_squared;
-        let q22_q33 = q22 * q33;
-        let sum_of_sum_of_b_squared_squared_q11 = (six * q11)
-            .mul_add(
-                -q11
-                    .mul_add(
-                        product_of_q12_squared,
-                        two * q22_q33 * product_of_a_squared_minus_c_squared,
-                    ),
-                sum_of_b_squared_squared,
-            );
-        let a_squared_q12_squared = a_squared * q12_squared;
-        let three_a_squared_minus_five_c_squared = three
-            .mul_add(a_squared, -five_c_squared);
-        let three_b_squared_minus_five_c_squared = three
-            .mul_add(b_squared, -five_c_squared);
-        let product_of_a_squared_minus_c_squared_3 = a_squared_minus_c_squared
-            * two_a_squared_minus_b_squared;
-        let product_of_b_squared_minus_c_squared_2 = b_squared_minus_c_squared
-            * a_squared_minus_two_b_squared;
-        let nine_c_squared = nine * c_squared;
-        let c_squared_a_squared_minus_c_squared = c_squared * a_squared_minus_c_squared;
-        let sum_of_two_a_squared_b_squared = two_a_squared_b_squared
-            - c_squared_a_squared_minus_c_squared;
-        let product_of_sum_of_q21_squared = sum_of_q21_squared
-            * q21_squared_plus_two_q22_squared;
-        let sum_of_product_of_sum_of_q21_squared = (q22_squared * q22_squared)
-            .mul_add(sum_of_c_squared_b_squared_squared, product_of_sum_of_q21_squared);
-        let sum_of_q12_squared_q11_squared = q12_squared
-            .mul_add(two_q11_squared_plus_q12_squared, q11_squared * q11_squared);
-        let sum_of_product_of_b_squared = c_squared
-            .mul_add(
-                (two * c_squared)
-                    .mul_add(
-                        a_squared_plus_b_squared,
-                        three.mul_add(-a_squared_b_squared, -c_squared_squared),
-                    ),
-                product_of_b_squared + product_of_a_squared,
-            );
-        let product_of = sum_of_product_of_c_squared * sum_of_q12_squared_q11_squared;
-        let sum_of_product_of_q22_squared = (three * product_of_q22_squared)
-            .mul_add(q22_squared, product_of);
-        let q11_squared_plus_q21_squared = q11_squared + q21_squared;
-        let product_of_2 = sum_of_b_squared_c_squared * q21_squared_plus_q22_squared;
-        let q12_q33 = q12 * q33;
-        let product_of_3 = sum_of_a_squared_c_squared * q11_squared_plus_q12_squared;
-        let b_squared_q21_squared = b_squared * q21_squared;
+        let product_of_3 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_4 = product_of_inverse_value_of_squared
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_5 = three * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_6 = product_of_inverse_value_of_squared
+            * sum_of_a_squared_q13_b_squared_q23;
         SVector::from([
             zero,
             zero,
             zero,
-            -speed_tilt_x
-                .mul_add(
-                    speed_tilt_x
-                        .mul_add(
-                            sum_of,
-                            speed_tilt_y
-                                .mul_add(
-                                    -sum_of_q22_q23,
-                                    speed_spin
-                                        .mul_add(
-                                            -sum_of_a_squared_minus_c_squared,
-                                            speed_tilt_x
-                                                .mul_add(
-                                                    four
-                                                        .mul_add(
-                                                            sum_of_q22_q12_product_of_q32_q21,
-                                                            a_squared_minus_b_squared
-                                                                .mul_add(
-                                                                    q21_q23_b_squared_minus_c_squared
-                                                                        - q11_a_squared_minus_c_squared_q13,
-                                                                    three
-                                                                        .mul_add(
-                                                                            -product_of_q11_q12_q11_q13_q11_q21,
-                                                                            -sum_of_q11_product_of_q11_squared,
-                                                                        ),
-                                                                ),
-                                                        ),
-                                                    speed_tilt_y
-                                                        .mul_add(
-                                                            seven
-                                                                .mul_add(
-                                                                    sum_of_q11_q11_q12_q13_q21_q31,
-                                                                    q22_b_squared_minus_c_squared
-                                                                        .mul_add(
-                                                                            -a_squared
-                                                                                .mul_add(
-                                                                                    q23,
-                                                                                    number_13 * q11_a_squared_minus_c_squared_q32,
-                                                                                ),
-                                                                            q12_q13_a_squared_minus_c_squared
-                                                                                .mul_add(
-                                                                                    a_squared_minus_two_b_squared,
-                                                                                    sum_of_sum_of_q12_squared_q22_q23
-                                                                                        + (six * sum_of_q11_squared_q22_q23_a_squared
-                                                                                            - twelve * product_of_q11_q22_b_squared)
-                                                                                            * inverse_value_of_b_squared_squared,
-                                                                                ),
-                                                                        ),
-                                                                ),
-                                                            speed_spin * sum_of_sum_of_b_squared_c_squared,
-                                                        ),
-                                                ) * inverse_value_of_b_squared_squared,
-                                        ),
-                                ),
-                        ),
-                    speed_tilt_y
-                        * (speed_tilt_y
-                            * two
-                                .mul_add(
-                                    sum_of,
-                                    two
-                                        .mul_add(
-                                            sum_of_q22_q12_product_of_q32_q21,
-                                            five
-                                                .mul_add(
-                                                    -sum_of_q11_product_of_q11_squared,
-                                                    q21_q23
-                                                        .mul_add(
-                                                            -b_squared
-                                                                .mul_add(
-                                                                    two_b_squared_minus_five_c_squared,
-                                                                    three_c_squared_squared,
-                                                                ),
-                                                            (q11 * q13)
-                                                                .mul_add(
-                                                                    -sum_of_three_c_squared_squared,
-                                                                    (three * q21_q23 * sum_of_q21_squared)
-                                                                        .mul_add(
-                                                                            sum_of_q21_squared_plus_q22_squared,
-                                                                            q11
-                                                                                * (nine * q21)
-                                                                                    .mul_add(
-                                                                                        product_of_product_of_q32_2,
-                                                                                        q11
-                                                                                            * (q11
-                                                                                                * (three * q13 * sum_of_product_of_c_squared
-                                                                                                    * sum_of_q11_squared_plus_q12_squared
-                                                                                                    - nine * q23_q11_q21_plus_q12_q22
-                                                                                                        * product_of_b_squared_minus_c_squared)
-                                                                                                - nine * product_of_q32_3 * q11_q21_plus_q12_q22),
-                                                                                    ),
-                                                                        ) * inverse_value_of_b_squared_squared,
-                                                                ),
-                                                        ),
-                                                ),
-                                        ) * inverse_value_of_b_squared_squared,
-                                )
-                            - speed_spin
-                                * two
-                                    .mul_add(
-                                        sum_of_q21_q22,
-                                        two * sum_of_q11_q12_q21_q22_q33_q11_q22
-                                            * inverse_value_of_b_squared_squared,
-                                    )),
-                ) * inverse_value_of_b_squared,
-            -speed_tilt_x
-                .mul_add(
-                    speed_tilt_y
-                        .mul_add(
-                            -sum_of,
-                            (speed_spin * two)
-                                .mul_add(
-                                    -sum_of_q21_q22,
-                                    speed_tilt_x
-                                        .mul_add(
-                                            five
-                                                .mul_add(
-                                                    sum_of_q12_squared_q22_q23,
-                                                    two
-                                                        .mul_add(
-                                                            sum_of_q11_q11_q12_q13_q21_q31,
-                                                            q22
-                                                                .mul_add(
-                                                                    q23
-                                                                        .mul_add(
-                                                                            b_squared
-                                                                                .mul_add(
-                                                                                    ten.mul_add(-c_squared, two_b_squared),
-                                                                                    eight
-                                                                                        .mul_add(
-                                                                                            c_squared_squared,
-                                                                                            five * a_squared_b_squared_minus_c_squared,
-                                                                                        ),
-                                                                                ),
-                                                                            q11_product_of_q32,
-                                                                        ),
-                                                                    (three * q12_squared * sum_of_q12_q13_q22_q23_2)
-                                                                        .mul_add(
-                                                                            sum_of_q11_squared_plus_q12_squared,
-                                                                            q22
-                                                                                * q23
-                                                                                    .mul_add(
-                                                                                        nine
-                                                                                            .mul_add(
-                                                                                                product_of_q11_squared_2,
-                                                                                                q22_squared
-                                                                                                    * (three * sum_of_c_squared_b_squared_squared
-                                                                                                        * sum_of_q21_squared_plus_q22_squared
-                                                                                                        - nine * product_of_a_squared_minus_c_squared_2
-                                                                                                            * q11_squared_plus_q12_squared),
-                                                                                            ),
-                                                                                        nine * q11 * product_of_product_of_q32_2,
-                                                                                    ),
-                                                                        )
-                                                                        .mul_add(
-                                                                            -inverse_value_of_b_squared_squared,
-                                                                            q12_q13 * sum_of_three_c_squared_squared,
-                                                                        ),
-                                                                ),
-                                                        ),
-                                                ),
-                                            speed_tilt_y
-                                                .mul_add(
-                                                    seven
-                                                        .mul_add(
-                                                            sum_of_q22_q12_product_of_q32_q21,
-                                                            q11_a_squared_minus_c_squared_q13
-                                                                .mul_add(
-                                                                    -a_squared_minus_two_b_squared,
-                                                                    q21_q23_b_squared_minus_c_squared
-                                                                        .mul_add(
-                                                                            two_a_squared_minus_b_squared,
-                                                                            six
-                                                                                .mul_add(
-                                                                                    -product_of_q11_q12_q11_q13_q11_q21,
-                                                                                    -sum_of_q11_product_of_q11_squared,
-                                                                                ),
-                                                                        ),
-                                                                ),
-                                                        ),
-                                                    speed_spin * two * sum_of_q11_q12_q21_q22_q33_q11_q22,
-                                                ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            speed_tilt_x * two * sum_of_q22_q23,
-                                        ),
-                                ),
-                        ),
-                    speed_tilt_y
-                        * speed_tilt_y
-                            .mul_add(
-                                four
-                                    .mul_add(
-                                        sum_of_q11_q11_q12_q13_q21_q31,
-                                        sum_of_sum_of_q12_squared_q22_q23
-                                            + a_squared_minus_c_squared
-                                                * (q12_q13 * a_squared_minus_b_squared
-                                                    - seven * q11 * q22_b_squared_minus_c_squared_q32)
-                                            + (three * sum_of_q11_squared_q22_q23_a_squared
-                                                - six * product_of_q11_q22_b_squared)
-                                                * inverse_value_of_b_squared_squared,
-                                    )
-                                    .mul_add(
-                                        -inverse_value_of_b_squared_squared,
-                                        sum_of_q22_q23,
-                                    ),
-                                speed_spin
-                                    * sum_of_sum_of_b_squared_c_squared
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            sum_of_a_squared_minus_c_squared,
-                                        ),
-                            ),
-                ) * inverse_value_of_b_squared,
             speed_tilt_x
                 .mul_add(
                     speed_tilt_x
                         .mul_add(
-                            b_squared_minus_c_squared
-                                .mul_add(
-                                    q21_squared_plus_two_q22_squared,
-                                    a_squared_minus_c_squared
-                                        .mul_add(
-                                            two.mul_add(q12_squared, q11_squared),
-                                            sum_of_c_squared,
-                                        ),
-                                ),
-                            (speed_tilt_y * two)
-                                .mul_add(
-                                    -sum_of_q21_q22,
-                                    speed_tilt_x
-                                        .mul_add(
-                                            (four * c_squared_squared)
-                                                .mul_add(
-                                                    q12_squared_plus_q22_squared,
-                                                    five
-                                                        .mul_add(
-                                                            sum_of_q22_squared_q12_squared,
-                                                            two
-                                                                .mul_add(
-                                                                    a_squared_q12_squared
-                                                                        .mul_add(
-                                                                            three_a_squared_minus_five_c_squared,
-                                                                            b_squared * q22_squared
-                                                                                * three_b_squared_minus_five_c_squared,
-                                                                        ),
-                                                                    q11_squared
-                                                                        .mul_add(
-                                                                            product_of_a_squared_minus_c_squared_3,
-                                                                            q21_squared
-                                                                                .mul_add(
-                                                                                    -product_of_b_squared_minus_c_squared_2,
-                                                                                    (twelve * a_squared_q12_squared * c_squared_squared)
-                                                                                        .mul_add(
-                                                                                            q12_squared,
-                                                                                            q22
-                                                                                                * (q22
-                                                                                                    * b_squared
-                                                                                                        .mul_add(
-                                                                                                            nine
-                                                                                                                .mul_add(
-                                                                                                                    c_squared_squared,
-                                                                                                                    b_squared
-                                                                                                                        * q21_squared_plus_q22_squared
-                                                                                                                            .mul_add(
-                                                                                                                                six.mul_add(b_squared, -nine_c_squared),
-                                                                                                                                three * two_a_squared_minus_b_squared,
-                                                                                                                            ),
-                                                                                                                ),
-                                                                                                            three
-                                                                                                                .mul_add(
-                                                                                                                    sum_of_product_of_sum_of_q21_squared,
-                                                                                                                    b_squared_minus_c_squared
-                                                                                                                        .mul_add(
-                                                                                                                            (nine * sum_of_a_squared_c_squared)
-                                                                                                                                .mul_add(
-                                                                                                                                    sum_of_q12_squared_q11_squared,
-                                                                                                                                    (three * q11_squared)
-                                                                                                                                        .mul_add(
-                                                                                                                                            sum_of_a_squared_squared,
-                                                                                                                                            six * a_squared_a_squared_minus_c_squared * q12_squared,
-                                                                                                                                        ),
-                                                                                                                                ),
-                                                                                                                            c_squared
-                                                                                                                                * (three * c_squared_squared * q21_squared_plus_q22_squared
-                                                                                                                                    - six * sum_of_two_a_squared_b_squared)
-                                                                                                                                + sum_of_b_squared_c_squared
-                                                                                                                                    * (six * a_squared * q21_squared_plus_q22_squared
-                                                                                                                                        - number_24 * q11_a_squared_minus_c_squared * q22_q33),
-                                                                                                                        ),
-                                                                                                                ),
-                                                                                                        )
-                                                                                                    - q11 * q33
-                                                                                                        * six
-                                                                                                            .mul_add(
-                                                                                                                sum_of_product_of_b_squared + product_of_q21_squared,
-                                                                                                                twelve * product_of_b_squared_minus_c_squared
-                                                                                                                    * q11_squared_plus_q12_squared,
-                                                                                                            ))
-                                                                                                + three
-                                                                                                    * (q12_squared
-                                                                                                        * a_squared
-                                                                                                            .mul_add(
-                                                                                                                a_squared_q12_squared
-                                                                                                                    .mul_add(
-                                                                                                                        two_a_squared_minus_five_c_squared,
-                                                                                                                        sum_of_a_squared_c_squared,
-                                                                                                                    ),
-                                                                                                                c_squared_squared_c_squared
-                                                                                                                    .mul_add(
-                                                                                                                        -q12_squared,
-                                                                                                                        product_of_q11_squared
-                                                                                                                            .mul_add(
-                                                                                                                                -two_a_squared_minus_b_squared,
-                                                                                                                                sum_of_product_of_q22_squared,
-                                                                                                                            ),
-                                                                                                                    ),
-                                                                                                            )
-                                                                                                        - product_of_q11_squared_3
-                                                                                                            * (one - q11_squared_plus_q21_squared)),
-                                                                                        )
-                                                                                        .mul_add(
-                                                                                            inverse_value_of_b_squared_squared,
-                                                                                            sum_of_q21_squared_q11_squared_2
-                                                                                                - sum_of_a_squared_q22_squared
-                                                                                                - sum_of_sum_of_b_squared_squared_q11,
-                                                                                        ),
-                                                                                ),
-                                                                        ),
-                                                                ),
-                                                        ),
-                                                ),
-                                            speed_tilt_y
-                                                .mul_add(
-                                                    two
-                                                        .mul_add(
-                                                            -b_squared
-                                                                .mul_add(
-                                                                    q11_a_squared_minus_c_squared_q12,
-                                                                    a_squared_b_squared_minus_c_squared * q21_q22,
-                                                                ),
-                                                            (six
-                                                                * (q22
-                                                                    * (q11 * q11_q21_plus_q12_q22)
-                                                                        .mul_add(
-                                                                            b_squared
-                                                                                .mul_add(
-                                                                                    b_squared_a_squared_minus_c_squared
-                                                                                        - sum_of_a_squared_c_squared,
-                                                                                    -product_of_c_squared,
-                                                                                ),
-                                                                            (q12_q33 * b_squared_minus_c_squared)
-                                                                                .mul_add(
-                                                                                    -(a_squared_a_squared_minus_c_squared
-                                                                                        + product_of_q12_squared),
-                                                                                    q21
-                                                                                        * b_squared
-                                                                                            .mul_add(
-                                                                                                b_squared
-                                                                                                    .mul_add(
-                                                                                                        a_squared - b_squared_minus_c_squared,
-                                                                                                        c_squared_squared,
-                                                                                                    ),
-                                                                                                c_squared
-                                                                                                    .mul_add(
-                                                                                                        -sum_of_two_a_squared_b_squared,
-                                                                                                        product_of_2
-                                                                                                            .mul_add(
-                                                                                                                a_squared_minus_two_b_squared,
-                                                                                                                sum_of_product_of_sum_of_q21_squared,
-                                                                                                            ),
-                                                                                                    ),
-                                                                                            ),
-                                                                                ),
-                                                                        )
-                                                                    - q11
-                                                                        * q12
-                                                                            .mul_add(
-                                                                                sum_of_a_squared_c_squared
-                                                                                    .mul_add(
-                                                                                        q11_squared_plus_q12_squared
-                                                                                            .mul_add(two_a_squared_minus_b_squared, b_squared),
-                                                                                        a_squared_minus_c_squared
-                                                                                            .mul_add(
-                                                                                                sum_of_a_squared_squared,
-                                                                                                -sum_of_product_of_q22_squared,
-                                                                                            ),
-                                                                                    ),
-                                                                                q21 * q33
-                                                                                    * b_squared
-                                                                                        .mul_add(
-                                                                                            product_of_a_squared_minus_c_squared,
-                                                                                            sum_of_product_of_q11_squared_3,
-                                                                                        ),
-                                                                            ))
-                                                                + q22
-                                                                    * (q11
-                                                                        * (number_18 * product_of_b_squared_minus_c_squared
-                                                                            * sum_of_q12_q22_q11_squared_q11_q21
-                                                                            - q33 * number_36
-                                                                                * q21_q22
-                                                                                    .mul_add(
-                                                                                        product_of_a_squared_minus_c_squared_2,
-                                                                                        product_of_q11_q12,
-                                                                                    )) - twelve * q12_q33 * product_of_q22_squared))
-                                                                .mul_add(
-                                                                    -inverse_value_of_b_squared_squared,
-                                                                    eight * sum_of_q11_q12_q21_q22_q33_q11_q22,
-                                                                ),
-                                                        ),
-                                                    speed_spin
-                                                        * q21_q23
-                                                            .mul_add(
-                                                                b_squared_b_squared_minus_c_squared + product_of_2,
-                                                                product_of_q32
-                                                                    .mul_add(
-                                                                        -q11_q21_plus_q12_q22,
-                                                                        q11
-                                                                            * (q13
-                                                                                * (a_squared_a_squared_minus_c_squared + product_of_3)
-                                                                                - two * q23_q11_q21_plus_q12_q22
-                                                                                    * product_of_a_squared_minus_c_squared),
-                                                                    ),
-                                                            ),
-                                                ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            speed_spin * sum_of,
-                                        ),
-                                ),
+                            -sum_of_a_squared_q11_q13_q23_q33,
+                            product_of_speed_tilt_y + product_of_speed_spin,
                         ),
                     speed_tilt_y
-                        * speed_tilt_y
-                            .mul_add(
-                                a_squared_minus_c_squared
-                                    .mul_add(
-                                        two_q11_squared_plus_q12_squared,
-                                        b_squared_minus_c_squared
-                                            .mul_add(
-                                                two.mul_add(q21_squared, q22_squared),
-                                                five
-                                                    .mul_add(
-                                                        sum_of_q21_squared_q11_squared_2,
-                                                        (four * c_squared_squared)
-                                                            .mul_add(
-                                                                q11_squared_plus_q21_squared,
-                                                                two
+                        .mul_add(
+                            product_of_speed_tilt_y_2
+                                .mul_add(-two, product_of_speed_spin_2),
+                            speed_tilt_x
+                                .mul_add(
+                                    speed_tilt_x_sum_of
+                                        .mul_add(
+                                            sum_of_a_squared_q11_q13_q23_q33,
+                                            sum_of_a_squared_q12_q13_q23_q33
+                                                .mul_add(
+                                                    speed_tilt_x
+                                                        .mul_add(
+                                                            (sum_of_a_squared_q12_q13_q23_q33 * three)
+                                                                .mul_add(
+                                                                    product_of_inverse_value_of_squared,
+                                                                    -two_sum_of_a_squared_q11_q12_q22_q32,
+                                                                ),
+                                                            speed_tilt_y
+                                                                .mul_add(
+                                                                    -product_of.mul_add(six, sum_of_2),
+                                                                    product_of_speed_spin_3,
+                                                                ),
+                                                        ),
+                                                    product_of_speed_spin_4
+                                                        .mul_add(
+                                                            -sum_of_a_squared_q11_q13_q23_q33,
+                                                            speed_tilt_y
+                                                                * (two * sum_of_a_squared_q11_q13_q23_q33)
                                                                     .mul_add(
-                                                                        (a_squared * q11_squared)
-                                                                            .mul_add(
-                                                                                three_a_squared_minus_five_c_squared,
-                                                                                b_squared_q21_squared * three_b_squared_minus_five_c_squared,
-                                                                            ),
-                                                                        q12_squared
-                                                                            .mul_add(
-                                                                                product_of_a_squared_minus_c_squared_3,
-                                                                                q22_squared
-                                                                                    .mul_add(
-                                                                                        -product_of_b_squared_minus_c_squared_2,
-                                                                                        three
-                                                                                            .mul_add(
-                                                                                                -q21_squared
-                                                                                                    .mul_add(
-                                                                                                        b_squared
-                                                                                                            .mul_add(
-                                                                                                                b_squared_q21_squared
-                                                                                                                    .mul_add(
-                                                                                                                        two_b_squared_minus_five_c_squared,
-                                                                                                                        sum_of_b_squared_c_squared,
-                                                                                                                    ),
-                                                                                                                c_squared_squared_c_squared
-                                                                                                                    .mul_add(
-                                                                                                                        -q21_squared,
-                                                                                                                        product_of_q22_squared_2
-                                                                                                                            .mul_add(
-                                                                                                                                a_squared_minus_two_b_squared,
-                                                                                                                                product_of_sum_of_q21_squared,
-                                                                                                                            ),
-                                                                                                                    ),
-                                                                                                            ),
-                                                                                                        q22_squared
-                                                                                                            * (q22_squared * sum_of_q21_squared
-                                                                                                                - product_of_a_squared_minus_c_squared_2
-                                                                                                                    * sum_of_q12_squared_plus_q22_squared),
-                                                                                                    ),
-                                                                                                (twelve * b_squared_q21_squared * c_squared_squared)
-                                                                                                    .mul_add(
-                                                                                                        -q21_squared,
-                                                                                                        q11
-                                                                                                            * q11
-                                                                                                                .mul_add(
-                                                                                                                    three
-                                                                                                                        .mul_add(
-                                                                                                                            -c_squared_squared_c_squared
-                                                                                                                                .mul_add(
-                                                                                                                                    q11_squared_plus_q12_squared,
-                                                                                                                                    q22_squared_sum_of_b_squared_squared
-                                                                                                                                        .mul_add(a_squared_minus_c_squared, product_of),
-                                                                                                                                ),
-                                                                                                                            (six * b_squared)
-                                                                                                                                .mul_add(
-                                                                                                                                    -product_of_3,
-                                                                                                                                    a_squared
-                                                                                                                                        * (c_squared * twelve.mul_add(b_squared, -nine_c_squared)
-                                                                                                                                            - a_squared
-                                                                                                                                                * (q11_squared_plus_q12_squared
-                                                                                                                                                    * six.mul_add(a_squared, -nine_c_squared)
-                                                                                                                                                    - three * a_squared_minus_two_b_squared))
-                                                                                                                                        - b_squared_minus_c_squared
-                                                                                                                                            * (six
-                                                                                                                                                * b_squared_a_squared_minus_c_squared
-                                                                                                                                                    .mul_add(q21_squared, c_squared_squared)
-                                                                                                                                                - sum_of_a_squared_c_squared
-                                                                                                                                                    * (q11 * (number_24 * q22_q33 - nine * q11 * q21_squared)
-                                                                                                                                                        - nine * q22_squared * two_q11_squared_plus_q12_squared)),
-                                                                                                                                ),
-                                                                                                                        ),
-                                                                                                                    q22_q33
-                                                                                                                        * six
-                                                                                                                            .mul_add(
-                                                                                                                                q12_squared
-                                                                                                                                    .mul_add(
-                                                                                                                                        product_of_b_squared_minus_c_squared,
-                                                                                                                                        sum_of_product_of_b_squared,
-                                                                                                                                    ),
-                                                                                                                                twelve * product_of_a_squared_minus_c_squared_2
-                                                                                                                                    * q21_squared_plus_q22_squared,
-                                                                                                                            ),
-                                                                                                                ),
-                                                                                                    ),
-                                                                                            )
-                                                                                            .mul_add(
-                                                                                                -inverse_value_of_b_squared_squared,
-                                                                                                sum_of_q22_squared_q12_squared
-                                                                                                    - sum_of_a_squared_q22_squared
-                                                                                                    - sum_of_sum_of_b_squared_squared_q11,
-                                                                                            ),
-                                                                                    ),
-                                                                            ),
+                                                                        sum_of_a_squared_q11_q12_q22_q32,
+                                                                        two * sum_of_a_squared_q11_q12_q22_q32
+                                                                            * sum_of_a_squared_q11_q13_q23_q33,
                                                                     ),
-                                                            ),
-                                                    )
+                                                        ),
+                                                ),
+                                        ),
+                                    speed_tilt_y
+                                        * (speed_tilt_y
+                                            * sum_of_a_squared_q11_q13_q23_q33
+                                                .mul_add(
+                                                    product_of.mul_add(three, sum_of_2),
+                                                    sum_of_a_squared_q11_q13_q23_q33 * sum_of_3,
+                                                )
+                                            - speed_spin
+                                                * sum_of_a_squared_q12_q13_q23_q33
+                                                    .mul_add(sum_of_a_squared_q11_q13_q23_q33, product_of_2)),
+                                ) * inverse_value_of_squared,
+                        ),
+                ) * inverse_value_of,
+            speed_tilt_x
+                .mul_add(
+                    (speed_tilt_x * two)
+                        .mul_add(
+                            -sum_of_a_squared_q12_q13_q23_q33,
+                            product_of_speed_tilt_y_2 + product_of_speed_spin_2,
+                        ),
+                    speed_tilt_y
+                        .mul_add(
+                            -(product_of_speed_tilt_y + product_of_speed_spin),
+                            (speed_tilt_x
+                                * speed_tilt_x_sum_of
+                                    .mul_add(
+                                        sum_of_a_squared_q12_q13_q23_q33,
+                                        sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(
+                                                speed_tilt_x
                                                     .mul_add(
-                                                        -inverse_value_of_b_squared_squared,
-                                                        sum_of_c_squared,
+                                                        (product_of_3 * three)
+                                                            .mul_add(inverse_value_of_squared, sum_of_4),
+                                                        speed_tilt_y
+                                                            .mul_add(
+                                                                product_of_4
+                                                                    .mul_add(-six, two_sum_of_a_squared_q11_q12_q22_q32),
+                                                                -product_of_speed_spin_4,
+                                                            ),
+                                                    ),
+                                                product_of_speed_spin_4
+                                                    .mul_add(
+                                                        -sum_of_a_squared_q12_q13_q23_q33,
+                                                        speed_tilt_y
+                                                            * (sum_of_a_squared_q11_q12_q22_q32 * two
+                                                                * sum_of_a_squared_q12_q13_q23_q33
+                                                                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_4),
                                                     ),
                                             ),
-                                    ),
-                                speed_spin
-                                    * q11_squared_plus_q12_squared
+                                    )
+                                - speed_tilt_y
+                                    * speed_spin
                                         .mul_add(
-                                            sum_of_q12_q13_q22_q23,
-                                            q22
-                                                .mul_add(
-                                                    -q23
-                                                        .mul_add(
-                                                            b_squared
-                                                                .mul_add(
-                                                                    sum_of_c_squared,
-                                                                    c_squared_a_squared_minus_c_squared - product_of_2,
-                                                                ),
-                                                            q11_product_of_q32,
-                                                        ),
-                                                    a_squared_minus_c_squared
-                                                        * (a_squared * q12_q13
-                                                            - q11_q21 * q31 * b_squared_minus_c_squared),
-                                                ),
-                                        )
+                                            sum_of_a_squared_q11_q13_q23_q33
+                                                .mul_add(-sum_of_a_squared_q11_q13_q23_q33, product_of_3),
+                                            speed_tilt_y
+                                                * (sum_of_a_squared_q11_q13_q23_q33
+                                                    * product_of_4
+                                                        .mul_add(-three, two_sum_of_a_squared_q11_q12_q22_q32)
+                                                    - sum_of_3 * sum_of_a_squared_q12_q13_q23_q33),
+                                        )) * inverse_value_of_squared,
+                        ),
+                ) * inverse_value_of,
+            speed_tilt_x
+                .mul_add(
+                    (speed_tilt_y * two)
+                        .mul_add(
+                            -sum_of_a_squared_q11_q12_q22_q32,
+                            product_of_speed_spin_4 - speed_tilt_x_sum_of,
+                        ),
+                    speed_tilt_y
+                        .mul_add(
+                            speed_tilt_y.mul_add(-sum_of_3, product_of_speed_spin_3),
+                            (speed_tilt_x
+                                * speed_tilt_y
+                                    .mul_add(
+                                        sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(
+                                                product_of_6.mul_add(-six, product_of_5),
+                                                (sum_of_a_squared_q11_q12_q22_q32 * two)
+                                                    .mul_add(
+                                                        sum_of_a_squared_q13_b_squared_q23,
+                                                        product_of_2 * three,
+                                                    ),
+                                            ),
+                                        product_of_speed_spin_4
+                                            .mul_add(
+                                                -sum_of_a_squared_q13_b_squared_q23,
+                                                speed_tilt_x
+                                                    * (sum_of * sum_of_a_squared_q13_b_squared_q23
+                                                        - sum_of_a_squared_q12_q13_q23_q33
+                                                            * (three * sum_of_a_squared_q12_q13_q23_q33
+                                                                - sum_of_a_squared_q12_q13_q23_q33 * three
+                                                                    * sum_of_a_squared_q13_b_squared_q23
+                                                                    * inverse_value_of_squared)),
+                                            ),
+                                    )
+                                - speed_tilt_y
+                                    * product_of_speed_spin_3
                                         .mul_add(
-                                            -inverse_value_of_b_squared_squared,
-                                            sum_of_q22_q23,
-                                        ),
-                            ),
-                ) * inverse_value_of_b_squared,
+                                            sum_of_a_squared_q13_b_squared_q23,
+                                            speed_tilt_y
+                                                * (sum_of_a_squared_q11_q13_q23_q33
+                                                    * product_of_6.mul_add(-three, product_of_5)
+                                                    - sum_of_3 * sum_of_a_squared_q13_b_squared_q23),
+                                        )) * inverse_value_of_squared,
+                        ),
+                ) * inverse_value_of,
         ])
     }
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 3-vector. Operations: 274 additions, 486 multiplications (204 of each fused), 3 divisions, 1 function call.
+    /// 3-vector. Operations: 66 additions, 94 multiplications (50 of each fused), 3 divisions, 1 function call.
     ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn bias_momentum<T: Scalar>(
@@ -2658,948 +1143,211 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let one = T::one();
         let two = T::from_f64(2.0);
         let three = T::from_f64(3.0);
-        let four = T::from_f64(4.0);
-        let five = T::from_f64(5.0);
-        let six = T::from_f64(6.0);
-        let seven = T::from_f64(7.0);
-        let eight = T::from_f64(8.0);
-        let nine = T::from_f64(9.0);
-        let ten = T::from_f64(10.0);
-        let twelve = T::from_f64(12.0);
-        let number_15 = T::from_f64(15.0);
-        let number_18 = T::from_f64(18.0);
-        let number_24 = T::from_f64(24.0);
-        let q11_q13 = q11 * q13;
         let a_squared = a * a;
-        let c_squared = c * c;
-        let a_squared_minus_c_squared = a_squared - c_squared;
-        let q11_q13_a_squared_minus_c_squared = q11_q13 * a_squared_minus_c_squared;
-        let q21_q23 = q21 * q23;
+        let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
-        let b_squared_minus_c_squared = b_squared - c_squared;
-        let q21_q23_b_squared_minus_c_squared = q21_q23 * b_squared_minus_c_squared;
-        let sum_of = q11_q13_a_squared_minus_c_squared
-            + q21_q23_b_squared_minus_c_squared;
-        let h4_sum_of = h4 * sum_of;
-        let q12_q13 = q12 * q13;
-        let q22_q23 = q22 * q23;
-        let q22_q23_b_squared_minus_c_squared = q22_q23 * b_squared_minus_c_squared;
-        let sum_of_q12_q13 = q12_q13
-            .mul_add(a_squared_minus_c_squared, q22_q23_b_squared_minus_c_squared);
-        let h5_sum_of_q12_q13 = h5 * sum_of_q12_q13;
-        let two_c_squared = two * c_squared;
-        let a_squared_plus_b_squared = a_squared + b_squared;
-        let sum_of_two_c_squared = two_c_squared - a_squared_plus_b_squared;
-        let q21_squared = q21 * q21;
-        let q22_squared = q22 * q22;
-        let q21_squared_plus_two_q22_squared = two.mul_add(q22_squared, q21_squared);
-        let q11_squared = q11 * q11;
-        let q12_squared = q12 * q12;
-        let q11_q12 = q11 * q12;
-        let q21_q22 = q21 * q22;
-        let sum_of_q11_q12_q21_q22 = q11_q12
-            .mul_add(a_squared_minus_c_squared, q21_q22 * b_squared_minus_c_squared);
-        let h6_sum_of_q11_q12_q21_q22 = h6 * sum_of_q11_q12_q21_q22;
-        let q11_squared_minus_q12_squared = q11_squared - q12_squared;
-        let sum_of_a_squared_minus_c_squared = a_squared_minus_c_squared
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let h4_sum_of_a_squared_q11_q13_q23_q33 = h4 * sum_of_a_squared_q11_q13_q23_q33;
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let h5_sum_of_a_squared_q12_q13_q23_q33 = h5 * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let h4_sum_of_a_squared_q12_q13_q23_q33 = h4 * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let h6_sum_of_a_squared_q11_q12_q22_q32 = h6 * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_2 = sum_of_a_squared_q12_q12_q22_q32
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let h5_sum_of_a_squared_q11_q12_q22_q32 = h5 * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of = h5_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let h6_sum_of_a_squared_q11_q13_q23_q33 = h6 * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_h6 = h6 * sum_of_a_squared_q13_b_squared_q23;
+        let sum_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
+            + h5_sum_of_a_squared_q12_q13_q23_q33 + product_of_h6;
+        let h4_sum_of_a_squared_q11_q12_q22_q32 = h4 * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_2 = h4_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let h6_sum_of_a_squared_q12_q13_q23_q33 = h6 * sum_of_a_squared_q12_q13_q23_q33;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
             .mul_add(
-                q11_squared_minus_q12_squared,
-                b_squared_minus_c_squared * (q21_squared - q22_squared),
-            );
-        let q12_q32 = q12 * q32;
-        let product_of_a_squared_minus_c_squared = a_squared_minus_c_squared
-            * b_squared_minus_c_squared;
-        let b_squared_squared = b_squared * b_squared;
-        let c_squared_squared = c_squared * c_squared;
-        let sum_of_b_squared_c_squared = (two * b_squared)
-            .mul_add(c_squared, -b_squared_squared - c_squared_squared);
-        let a_squared_c_squared = a_squared * c_squared;
-        let a_squared_squared = a_squared * a_squared;
-        let sum_of_a_squared_c_squared = two
-            .mul_add(a_squared_c_squared, -a_squared_squared - c_squared_squared);
-        let q12_q13_sum_of_a_squared_c_squared = q12_q13 * sum_of_a_squared_c_squared;
-        let sum_of_q22_q23 = (two * q22_q23)
-            .mul_add(
-                -product_of_a_squared_minus_c_squared,
-                q12_q13_sum_of_a_squared_c_squared,
-            );
-        let sum_of_q22_q12_q32_q21_q23_q11_q12 = q22
-            * (q12_q32 * product_of_a_squared_minus_c_squared
-                - q21_q23 * q22 * sum_of_b_squared_c_squared) - q11_q12 * sum_of_q22_q23;
-        let product_of_q11_squared = q11_squared * sum_of_a_squared_c_squared;
-        let product_of_q21 = q21 * product_of_a_squared_minus_c_squared;
-        let sum_of_q21_squared_q11_squared = q21_squared * sum_of_b_squared_c_squared
-            - two * q11_squared * product_of_a_squared_minus_c_squared;
-        let sum_of_q11_product_of_q11_squared = q21_q23
-            .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11 * (product_of_q11_squared * q13 - product_of_q21 * q32),
-            );
-        let a_squared_minus_b_squared = a_squared - b_squared;
-        let sum_of_a_squared_minus_b_squared = four
-            .mul_add(
-                sum_of_q22_q12_q32_q21_q23_q11_q12,
-                a_squared_minus_b_squared
-                    .mul_add(
-                        q21_q23_b_squared_minus_c_squared
-                            - q11_q13_a_squared_minus_c_squared,
-                        -sum_of_q11_product_of_q11_squared,
-                    ),
-            );
-        let q11_sum_of_a_squared_c_squared = q11 * sum_of_a_squared_c_squared;
-        let sum_of_q11_q12_q13_product_of_q21 = q22_q23
-            .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11 * (q11_sum_of_a_squared_c_squared * q12_q13 - product_of_q21 * q31),
-            );
-        let two_b_squared = two * b_squared;
-        let a_squared_b_squared_minus_c_squared = a_squared * b_squared_minus_c_squared;
-        let product_of_q22_squared = q22_squared * sum_of_b_squared_c_squared;
-        let q11_q32 = q11 * q32;
-        let product_of_q11_q32 = q11_q32 * product_of_a_squared_minus_c_squared;
-        let q12_sum_of_q22_q23 = q12 * sum_of_q22_q23;
-        let three_c_squared_squared = three * c_squared_squared;
-        let two_a_squared = two * a_squared;
-        let five_c_squared = five * c_squared;
-        let product_of_a_squared_two_a_squared = a_squared
-            * (two_a_squared - five_c_squared);
-        let sum_of_three_c_squared_squared = three_c_squared_squared
-            + product_of_a_squared_two_a_squared;
-        let sum_of_q21_squared_q11_squared_q11 = q21_squared
-            .mul_add(
-                sum_of_q21_squared_q11_squared,
-                q11_squared * q11_sum_of_a_squared_c_squared * q11,
-            );
-        let product_of_q12_squared_q22_squared = q12_squared
-            * (q12_squared * sum_of_a_squared_c_squared
-                - two * q22_squared * product_of_a_squared_minus_c_squared);
-        let sum_of_product_of_q22_squared = product_of_q22_squared
-            .mul_add(q22_squared, product_of_q12_squared_q22_squared);
-        let sum_of_b_squared_squared = b_squared_squared - c_squared_squared;
-        let q22_q33 = q22 * q33;
-        let sum_of_a_squared_q22_squared_q11 = a_squared
-            .mul_add(
-                a_squared_minus_b_squared,
-                (six * q22_squared)
-                    .mul_add(
-                        -sum_of_q21_squared_q11_squared,
-                        (six * q11)
-                            .mul_add(
-                                -q11_sum_of_a_squared_c_squared
-                                    .mul_add(
-                                        q12_squared,
-                                        two * q22_q33 * product_of_a_squared_minus_c_squared,
-                                    ),
-                                sum_of_b_squared_squared,
-                            ),
-                    ),
-            );
-        let sum_of_c_squared_squared_a_squared = two
-            .mul_add(
-                c_squared_squared,
-                a_squared * three.mul_add(a_squared, -five_c_squared),
-            );
-        let five_b_squared_minus_two_c_squared = five.mul_add(b_squared, -two_c_squared);
-        let sum_of_b_squared_squared_c_squared = three * b_squared_squared
-            - c_squared * five_b_squared_minus_two_c_squared;
-        let two_a_squared_minus_b_squared = two_a_squared - b_squared;
-        let product_of_a_squared_minus_c_squared_2 = a_squared_minus_c_squared
-            * two_a_squared_minus_b_squared;
-        let a_squared_minus_two_b_squared = a_squared - two_b_squared;
-        let product_of_b_squared_minus_c_squared = b_squared_minus_c_squared
-            * a_squared_minus_two_b_squared;
-        let two_a_squared_minus_three_c_squared = three
-            .mul_add(-c_squared, two_a_squared);
-        let product_of_a_squared = a_squared_b_squared_minus_c_squared * a_squared;
-        let b_squared_a_squared_minus_c_squared = b_squared * a_squared_minus_c_squared;
-        let product_of_b_squared = b_squared_a_squared_minus_c_squared * b_squared;
-        let product_of_b_squared_minus_c_squared_2 = b_squared_minus_c_squared
-            * sum_of_a_squared_c_squared;
-        let product_of_a_squared_minus_c_squared_3 = a_squared_minus_c_squared
-            * sum_of_b_squared_c_squared;
-        let product_of_q32 = q32 * product_of_a_squared_minus_c_squared_3;
-        let q11_squared_plus_q12_squared = q11_squared + q12_squared;
-        let a_squared_a_squared_minus_c_squared = a_squared * a_squared_minus_c_squared;
-        let c_squared_squared_c_squared = c_squared_squared * c_squared;
-        let sum_of_c_squared_a_squared_squared = (three
-            * a_squared_a_squared_minus_c_squared)
-            .mul_add(
-                c_squared,
-                a_squared_squared.mul_add(-a_squared, c_squared_squared_c_squared),
-            );
-        let sum_of_q12_q13_q22_q23 = q12_q13
-            .mul_add(
-                sum_of_c_squared_a_squared_squared,
-                three * q22_q23 * product_of_b_squared_minus_c_squared_2,
-            );
-        let product_of_sum_of_q12_q13_q22_q23 = q11_squared_plus_q12_squared
-            * sum_of_q12_q13_q22_q23;
-        let product_of_q22_squared_2 = q22_squared
-            * product_of_a_squared_minus_c_squared_3;
-        let q11_q21 = q11 * q21;
-        let q12_q22 = q12 * q22;
-        let q11_q21_plus_q12_q22 = q11_q21 + q12_q22;
-        let q23_q11_q21_plus_q12_q22 = q23 * q11_q21_plus_q12_q22;
-        let q21_squared_plus_q22_squared = q21_squared + q22_squared;
-        let b_squared_b_squared_minus_c_squared = b_squared * b_squared_minus_c_squared;
-        let sum_of_c_squared_b_squared_squared = (three
-            * b_squared_b_squared_minus_c_squared)
-            .mul_add(
-                c_squared,
-                b_squared_squared.mul_add(-b_squared, c_squared_squared_c_squared),
-            );
-        let two_q11_squared_plus_q12_squared = two.mul_add(q11_squared, q12_squared);
-        let product_of = product_of_b_squared_minus_c_squared_2
-            * two_q11_squared_plus_q12_squared;
-        let sum_of_q11_q21_q23_c_squared_q11_q32 = q11
-            * (q12 * three)
-                .mul_add(
-                    sum_of_a_squared_c_squared
-                        .mul_add(
-                            q12_q13
-                                .mul_add(
-                                    a_squared_minus_b_squared,
-                                    q22_q23_b_squared_minus_c_squared,
-                                ),
-                            -product_of_sum_of_q12_q13_q22_q23,
-                        ),
-                    (nine * product_of_q22_squared_2)
-                        .mul_add(
-                            -q23_q11_q21_plus_q12_q22,
-                            q21
-                                * (product_of_q32 * six)
-                                    .mul_add(
-                                        one - q21_squared_plus_two_q22_squared,
-                                        q11
-                                            * (q23
-                                                * (three
-                                                    * c_squared
-                                                        .mul_add(
-                                                            b_squared
-                                                                .mul_add(
-                                                                    two_a_squared_minus_three_c_squared,
-                                                                    c_squared_squared,
-                                                                ),
-                                                            product_of_a_squared,
-                                                        ) - six * product_of_b_squared)
-                                                - three * q11_q32 * product_of_b_squared_minus_c_squared_2),
-                                    ),
-                        ),
-                )
-            - q22
-                * q22
-                    .mul_add(
-                        q21_q23
-                            .mul_add(
-                                (six * a_squared)
-                                    .mul_add(
-                                        sum_of_b_squared_c_squared,
-                                        three
-                                            * b_squared_minus_c_squared
-                                                .mul_add(
-                                                    sum_of_b_squared_squared,
-                                                    q21_squared_plus_q22_squared
-                                                        * sum_of_c_squared_b_squared_squared,
-                                                ),
-                                    ),
-                                six * q12_q22 * product_of_q32,
-                            ),
-                        three * q12_q32 * product_of,
-                    );
-        let sum_of_q11_squared_plus_q12_squared = one - q11_squared_plus_q12_squared;
-        let product_of_q11_squared_2 = q11_squared
-            * product_of_a_squared_minus_c_squared_3;
-        let sum_of_q21_squared_plus_q22_squared = one - q21_squared_plus_q22_squared;
-        let nine_c_squared = nine * c_squared;
-        let sum_of_q21_squared = q21_squared
-            .mul_add(
-                sum_of_c_squared_b_squared_squared,
-                three * product_of_q11_squared_2,
-            );
-        let product_of_sum_of_q21_squared = sum_of_q21_squared
-            * q21_squared_plus_two_q22_squared;
-        let sum_of_product_of_sum_of_q21_squared = (q22_squared * q22_squared)
-            .mul_add(sum_of_c_squared_b_squared_squared, product_of_sum_of_q21_squared);
-        let sum_of_a_squared_squared = a_squared_squared - c_squared_squared;
-        let product_of_2 = sum_of_b_squared_c_squared * q21_squared_plus_q22_squared;
-        let sum_of_q12_squared_q11_squared = q12_squared
-            .mul_add(two_q11_squared_plus_q12_squared, q11_squared * q11_squared);
-        let a_squared_b_squared = a_squared * b_squared;
-        let c_squared_a_squared_minus_c_squared = c_squared * a_squared_minus_c_squared;
-        let q11_q33 = q11 * q33;
-        let product_of_q21_squared = q21_squared
-            * product_of_a_squared_minus_c_squared_3;
-        let sum_of_c_squared_q22_q11_q33 = (c_squared * q22)
-            .mul_add(
-                two.mul_add(a_squared_b_squared, -c_squared_a_squared_minus_c_squared),
-                q11_q33 * product_of_q21_squared,
-            );
-        let sum_of_product_of_b_squared = c_squared
-            .mul_add(
-                (two * c_squared)
-                    .mul_add(
-                        a_squared_plus_b_squared,
-                        three.mul_add(-a_squared_b_squared, -c_squared_squared),
-                    ),
-                product_of_b_squared + product_of_a_squared,
-            );
-        let product_of_3 = sum_of_c_squared_a_squared_squared
-            * sum_of_q12_squared_q11_squared;
-        let product_of_q11_squared_3 = q11_squared
-            * product_of_b_squared_minus_c_squared_2;
-        let value_of_b_squared = a_squared_minus_c_squared
-            .mul_add(
-                sum_of_q11_squared_plus_q12_squared,
-                b_squared_minus_c_squared
-                    .mul_add(-q21_squared_plus_q22_squared, b_squared),
-            )
-            .sqrt();
-        let inverse_value_of_b_squared_squared = one
-            / (value_of_b_squared * value_of_b_squared);
-        let one_minus_q22_squared = one - q22_squared;
-        let sum_of_q12_q12_sum_of_q22_q23_q13 = four
-            .mul_add(
-                sum_of_q11_q12_q13_product_of_q21,
-                q22
-                    .mul_add(
-                        -(q23 * sum_of_b_squared_c_squared)
-                            .mul_add(one_minus_q22_squared, seven * product_of_q11_q32),
-                        q12
-                            * (q13 * a_squared_minus_c_squared)
-                                .mul_add(a_squared_minus_b_squared, q12_sum_of_q22_q23),
-                    ),
-            );
-        let q11_q22 = q11 * q22;
-        let sum_of_q12_q21_q22_q33_q11_q22 = (q11_sum_of_a_squared_c_squared * q12)
-            .mul_add(
-                sum_of_q11_squared_plus_q12_squared,
-                (product_of_a_squared_minus_c_squared * q11_q21_plus_q12_q22)
-                    .mul_add(
-                        two.mul_add(q11_q22, -q33),
-                        q21_q22 * sum_of_b_squared_c_squared
-                            * sum_of_q21_squared_plus_q22_squared,
-                    ),
-            );
-        let product_of_h6_q11_q12_q21_q22 = h6
-            * b_squared_a_squared_minus_c_squared
-                .mul_add(
-                    -q11_q12,
-                    a_squared_b_squared_minus_c_squared
-                        .mul_add(-q21_q22, four * sum_of_q12_q21_q22_q33_q11_q22),
-                );
-        let four_b_squared_minus_c_squared = four.mul_add(b_squared, -c_squared);
-        let product_of_a_squared_minus_c_squared_4 = a_squared_minus_c_squared
-            * sum_of_a_squared_squared;
-        let q11_q21_q31 = q11_q21 * q31;
-        let sum_of_one_minus_q22_squared = one_minus_q22_squared - q12_squared;
-        let sum_of_q11_q22_q23_a_squared_q12_q13 = q11
-            .mul_add(
-                q11
-                    .mul_add(
-                        three
-                            .mul_add(
-                                q12_q13
-                                    .mul_add(
-                                        product_of_a_squared_minus_c_squared_4,
-                                        product_of_sum_of_q12_q13_q22_q23
-                                            - q22_q23
-                                                * (a_squared
-                                                    * c_squared
-                                                        .mul_add(
-                                                            four_b_squared_minus_c_squared,
-                                                            a_squared_b_squared_minus_c_squared,
-                                                        ) - c_squared_squared * five_b_squared_minus_two_c_squared),
-                                    ),
-                                b_squared
-                                    .mul_add(
-                                        six
-                                            .mul_add(
-                                                q12_q13_sum_of_a_squared_c_squared,
-                                                nine * b_squared_a_squared_minus_c_squared * q22_q23,
-                                            ),
-                                        six * q11_q21_q31 * product_of_b_squared_minus_c_squared_2,
-                                    ),
-                            ),
-                        (three * product_of_q21_squared * q21)
-                            .mul_add(
-                                q31,
-                                -q22 * q32
-                                    * (product_of_a_squared_minus_c_squared_3
-                                        * (twelve * one_minus_q22_squared - number_15 * q21_squared)
-                                        - six * product_of),
-                            ),
-                    ),
-                q22_q23 * three
-                    * (q21_squared_plus_q22_squared * sum_of_q21_squared
-                        - sum_of_b_squared_c_squared
-                            * (a_squared_minus_c_squared * sum_of_one_minus_q22_squared
-                                - q21_squared * a_squared_minus_b_squared)),
-            );
-        let q11_q11_q21_plus_q12_q22 = q11 * q11_q21_plus_q12_q22;
-        let q12_q33 = q12 * q33;
-        let product_of_q12_squared = q12_squared
-            * product_of_b_squared_minus_c_squared_2;
-        let sum_of_product_of_3_q22_squared = (three * q22_squared)
-            .mul_add(product_of, product_of_3);
-        let sum_of_product_of_q11_squared_3 = product_of_q11_squared_3
-            .mul_add(q11_q21, q12_q22 * product_of_q22_squared_2);
-        let product_of_h4_h5_h6_q22_b_squared = h5
-            .mul_add(
-                -sum_of_q11_q21_q23_c_squared_q11_q32,
-                h6
-                    .mul_add(
-                        (six * q33)
-                            .mul_add(
-                                sum_of_product_of_q11_squared_3,
-                                three
-                                    .mul_add(
-                                        q21
-                                            .mul_add(
-                                                sum_of_c_squared_q22_q11_q33,
-                                                q22
-                                                    .mul_add(
-                                                        a_squared_a_squared_minus_c_squared
-                                                            .mul_add(
-                                                                c_squared
-                                                                    .mul_add(
-                                                                        q11_q11_q21_plus_q12_q22,
-                                                                        q12_q33 * b_squared_minus_c_squared,
-                                                                    ),
-                                                                b_squared
-                                                                    .mul_add(
-                                                                        b_squared
-                                                                            .mul_add(
-                                                                                -q21
-                                                                                    .mul_add(
-                                                                                        a_squared - b_squared_minus_c_squared,
-                                                                                        q11_q11_q21_plus_q12_q22 * a_squared_minus_c_squared,
-                                                                                    ),
-                                                                                c_squared_squared
-                                                                                    .mul_add(
-                                                                                        -q21,
-                                                                                        q11_sum_of_a_squared_c_squared * q11_q21_plus_q12_q22,
-                                                                                    ),
-                                                                            ),
-                                                                        q21
-                                                                            .mul_add(
-                                                                                -product_of_2
-                                                                                    .mul_add(
-                                                                                        a_squared_minus_two_b_squared,
-                                                                                        sum_of_product_of_sum_of_q21_squared,
-                                                                                    ),
-                                                                                product_of_q12_squared * q12_q33,
-                                                                            ),
-                                                                    ),
-                                                            ),
-                                                        q11
-                                                            * q12
-                                                                .mul_add(
-                                                                    sum_of_a_squared_c_squared
-                                                                        .mul_add(
-                                                                            q11_squared_plus_q12_squared
-                                                                                .mul_add(two_a_squared_minus_b_squared, b_squared),
-                                                                            -sum_of_product_of_3_q22_squared
-                                                                                + product_of_a_squared_minus_c_squared_4,
-                                                                        ),
-                                                                    b_squared * product_of_q21 * q33,
-                                                                ),
-                                                    ),
-                                            ),
-                                        -q11_q22
-                                            * (nine * sum_of_product_of_q11_squared_3
-                                                - q33 * number_18
-                                                    * q11_q12
-                                                        .mul_add(
-                                                            product_of_b_squared_minus_c_squared_2,
-                                                            q21_q22 * product_of_a_squared_minus_c_squared_3,
-                                                        )),
-                                    ),
-                            ),
-                        h4 * sum_of_q11_q22_q23_a_squared_q12_q13,
-                    ),
-            ) * inverse_value_of_b_squared_squared;
-        let sum_of_sum_of_a_squared_c_squared = sum_of_a_squared_c_squared
-            .mul_add(
-                -q11_squared_minus_q12_squared,
-                sum_of_b_squared_c_squared
-                    .mul_add(
-                        q22_squared.mul_add(one_minus_q22_squared, -q21_squared),
-                        sum_of_q21_squared_q11_squared_q11
-                            - product_of_q12_squared_q22_squared,
-                    ),
-            );
-        let product_of_4 = sum_of_a_squared_c_squared * q11_squared_plus_q12_squared;
-        let q32_q11_q21_plus_q12_q22 = q32 * q11_q21_plus_q12_q22;
-        let product_of_b_squared_two_b_squared = b_squared
-            * (two_b_squared - five_c_squared);
+                three,
+                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(three, product_of_h6 * three),
+            ) * inverse_value_of_squared;
+        let product_of_product_of_product_of_h6 = sum_of_a_squared_q12_q13_q23_q33
+            * product_of_product_of_h6;
+        let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_product_of_product_of_h6_2 = sum_of_a_squared_q11_q13_q23_q33
+            * product_of_product_of_h6;
+        let h5_sum_of_a_squared_q11_q13_q23_q33 = h5 * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin = speed_spin
+            * (h4_sum_of_a_squared_q12_q13_q23_q33
+                - h5_sum_of_a_squared_q11_q13_q23_q33);
+        let product_of_sum_of_product_of_h6 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_product_of_h6;
+        let speed_spin_sum_of_product_of_h6 = speed_spin * sum_of_product_of_h6;
         SVector::from([
             -speed_tilt_x
                 .mul_add(
-                    h5_sum_of_q12_q13
+                    h5_sum_of_a_squared_q12_q13_q23_q33
                         .mul_add(
                             two,
-                            h6
-                                .mul_add(
-                                    -b_squared_minus_c_squared
-                                        .mul_add(
-                                            q21_squared_plus_two_q22_squared,
-                                            a_squared_minus_c_squared
-                                                .mul_add(
-                                                    two.mul_add(q12_squared, q11_squared),
-                                                    sum_of_two_c_squared,
-                                                ),
-                                        ),
-                                    h4_sum_of,
-                                ),
+                            h6.mul_add(sum_of, h4_sum_of_a_squared_q11_q13_q23_q33),
                         ),
                     speed_tilt_y
                         .mul_add(
-                            h4.mul_add(-sum_of_q12_q13, h6_sum_of_q11_q12_q21_q22),
-                            speed_spin
+                            h6_sum_of_a_squared_q11_q12_q22_q32
+                                - h4_sum_of_a_squared_q12_q13_q23_q33,
+                            (speed_tilt_x * sum_of)
                                 .mul_add(
-                                    -h4
+                                    sum_of_product_of_h6,
+                                    sum_of_a_squared_q12_q13_q23_q33
                                         .mul_add(
-                                            sum_of_a_squared_minus_c_squared,
-                                            (h5 * two).mul_add(sum_of_q11_q12_q21_q22, h6 * sum_of),
-                                        ),
-                                    speed_tilt_x
-                                        .mul_add(
-                                            h4
+                                            speed_tilt_x
                                                 .mul_add(
-                                                    sum_of_a_squared_minus_b_squared,
                                                     h5
                                                         .mul_add(
-                                                            -two
+                                                            two
                                                                 .mul_add(
-                                                                    sum_of_q11_q12_q13_product_of_q21,
-                                                                    q22
-                                                                        .mul_add(
-                                                                            q23
-                                                                                .mul_add(
-                                                                                    b_squared
-                                                                                        .mul_add(
-                                                                                            ten.mul_add(-c_squared, two_b_squared),
-                                                                                            eight
-                                                                                                .mul_add(
-                                                                                                    c_squared_squared,
-                                                                                                    five
-                                                                                                        * (a_squared_b_squared_minus_c_squared
-                                                                                                            + product_of_q22_squared),
-                                                                                                ),
-                                                                                        ),
-                                                                                    product_of_q11_q32,
-                                                                                ),
-                                                                            q12
-                                                                                * five
-                                                                                    .mul_add(
-                                                                                        q12_sum_of_q22_q23,
-                                                                                        q13 * sum_of_three_c_squared_squared,
-                                                                                    ),
-                                                                        ),
+                                                                    -sum_of_a_squared_q12_q12_q22_q32,
+                                                                    sum_of_a_squared_q13_b_squared_q23,
                                                                 ),
-                                                            h6
+                                                            h6_sum_of_a_squared_q12_q13_q23_q33
                                                                 .mul_add(
-                                                                    five
-                                                                        .mul_add(
-                                                                            sum_of_product_of_q22_squared,
-                                                                            two
-                                                                                .mul_add(
-                                                                                    q12_squared
-                                                                                        .mul_add(
-                                                                                            sum_of_c_squared_squared_a_squared,
-                                                                                            q22_squared * sum_of_b_squared_squared_c_squared,
-                                                                                        ),
-                                                                                    q11_squared
-                                                                                        .mul_add(
-                                                                                            product_of_a_squared_minus_c_squared_2,
-                                                                                            q21_squared
-                                                                                                .mul_add(
-                                                                                                    -product_of_b_squared_minus_c_squared,
-                                                                                                    sum_of_q21_squared_q11_squared_q11
-                                                                                                        - sum_of_a_squared_q22_squared_q11,
-                                                                                                ),
-                                                                                        ),
-                                                                                ),
-                                                                        ),
+                                                                    -three,
+                                                                    product_of_product_of_product_of_h6 - product_of_2,
+                                                                ),
+                                                        ),
+                                                    speed_tilt_y
+                                                        .mul_add(
+                                                            h6_sum_of_a_squared_q11_q13_q23_q33
+                                                                .mul_add(
+                                                                    two,
                                                                     h4
                                                                         .mul_add(
-                                                                            sum_of_q11_q21_q23_c_squared_q11_q32,
-                                                                            h5
-                                                                                .mul_add(
-                                                                                    (three * q12_squared * sum_of_q12_q13_q22_q23)
-                                                                                        .mul_add(
-                                                                                            sum_of_q11_squared_plus_q12_squared,
-                                                                                            q22
-                                                                                                * q23
-                                                                                                    .mul_add(
-                                                                                                        nine
-                                                                                                            .mul_add(
-                                                                                                                product_of_q11_squared_2,
-                                                                                                                q22_squared
-                                                                                                                    * (three * sum_of_c_squared_b_squared_squared
-                                                                                                                        * sum_of_q21_squared_plus_q22_squared
-                                                                                                                        - nine * product_of_a_squared_minus_c_squared_3
-                                                                                                                            * q11_squared_plus_q12_squared),
-                                                                                                            ),
-                                                                                                        nine * q11_q32 * product_of_a_squared_minus_c_squared_3
-                                                                                                            * sum_of_q21_squared_plus_q22_squared,
-                                                                                                    ),
-                                                                                        ),
-                                                                                    h6
-                                                                                        * q22
-                                                                                            .mul_add(
-                                                                                                six
-                                                                                                    .mul_add(
-                                                                                                        -sum_of_c_squared_q22_q11_q33,
-                                                                                                        q11_q33
-                                                                                                            .mul_add(
-                                                                                                                -six
-                                                                                                                    .mul_add(
-                                                                                                                        sum_of_product_of_b_squared,
-                                                                                                                        twelve * product_of_b_squared_minus_c_squared_2
-                                                                                                                            * q11_squared_plus_q12_squared,
-                                                                                                                    ),
-                                                                                                                q22
-                                                                                                                    * b_squared
-                                                                                                                        .mul_add(
-                                                                                                                            nine
-                                                                                                                                .mul_add(
-                                                                                                                                    c_squared_squared,
-                                                                                                                                    b_squared
-                                                                                                                                        * q21_squared_plus_q22_squared
-                                                                                                                                            .mul_add(
-                                                                                                                                                six.mul_add(b_squared, -nine_c_squared),
-                                                                                                                                                three * two_a_squared_minus_b_squared,
-                                                                                                                                            ),
-                                                                                                                                ),
-                                                                                                                            three
-                                                                                                                                .mul_add(
-                                                                                                                                    c_squared_squared_c_squared
-                                                                                                                                        .mul_add(
-                                                                                                                                            q21_squared_plus_q22_squared,
-                                                                                                                                            (q11_squared * b_squared_minus_c_squared)
-                                                                                                                                                .mul_add(
-                                                                                                                                                    sum_of_a_squared_squared,
-                                                                                                                                                    sum_of_product_of_sum_of_q21_squared,
-                                                                                                                                                ),
-                                                                                                                                        ),
-                                                                                                                                    (six * a_squared)
-                                                                                                                                        .mul_add(
-                                                                                                                                            product_of_2,
-                                                                                                                                            (nine * product_of_b_squared_minus_c_squared_2)
-                                                                                                                                                .mul_add(
-                                                                                                                                                    sum_of_q12_squared_q11_squared,
-                                                                                                                                                    a_squared_minus_c_squared
-                                                                                                                                                        * (q12_squared
-                                                                                                                                                            * six
-                                                                                                                                                                .mul_add(
-                                                                                                                                                                    a_squared_b_squared_minus_c_squared,
-                                                                                                                                                                    nine * product_of_q22_squared,
-                                                                                                                                                                ) - number_24 * q11 * q22_q33 * sum_of_b_squared_c_squared),
-                                                                                                                                                ),
-                                                                                                                                        ),
-                                                                                                                                ),
-                                                                                                                        ),
-                                                                                                            ),
-                                                                                                    ),
-                                                                                                (twelve * a_squared * c_squared_squared * q12_squared)
-                                                                                                    .mul_add(
-                                                                                                        q12_squared,
-                                                                                                        three
-                                                                                                            * (q12_squared
-                                                                                                                * a_squared
-                                                                                                                    .mul_add(
-                                                                                                                        product_of_a_squared_two_a_squared
-                                                                                                                            .mul_add(q12_squared, sum_of_a_squared_c_squared),
-                                                                                                                        c_squared_squared_c_squared
-                                                                                                                            .mul_add(
-                                                                                                                                -q12_squared,
-                                                                                                                                product_of_q11_squared
-                                                                                                                                    .mul_add(-two_a_squared_minus_b_squared, product_of_3),
-                                                                                                                            ),
-                                                                                                                    )
-                                                                                                                - product_of_q11_squared_3
-                                                                                                                    * (one - q11_squared - q21_squared)),
-                                                                                                    ),
-                                                                                            ),
-                                                                                ),
-                                                                        ) * inverse_value_of_b_squared_squared,
-                                                                ),
-                                                        ),
-                                                ),
-                                            speed_tilt_y
-                                                .mul_add(
-                                                    h4
-                                                        .mul_add(
-                                                            sum_of_q12_q12_sum_of_q22_q23_q13,
-                                                            h5
-                                                                .mul_add(
-                                                                    -three
-                                                                        .mul_add(
-                                                                            sum_of_q22_q12_q32_q21_q23_q11_q12,
-                                                                            b_squared_a_squared_minus_c_squared
-                                                                                .mul_add(
-                                                                                    q11_q13,
-                                                                                    a_squared_b_squared_minus_c_squared * q21_q23,
-                                                                                ),
+                                                                            -sum_of_3,
+                                                                            h5_sum_of_a_squared_q11_q12_q22_q32
+                                                                                - product_of_product_of_product_of_h6_2,
                                                                         ),
-                                                                    product_of_h6_q11_q12_q21_q22
-                                                                        + product_of_h4_h5_h6_q22_b_squared,
                                                                 ),
-                                                        ),
-                                                    speed_spin
-                                                        * h4
-                                                            .mul_add(
-                                                                sum_of_sum_of_a_squared_c_squared,
-                                                                (h5 * two)
-                                                                    .mul_add(
-                                                                        -sum_of_q12_q21_q22_q33_q11_q22,
-                                                                        h6
-                                                                            * q21_q23
-                                                                                .mul_add(
-                                                                                    b_squared_b_squared_minus_c_squared + product_of_2,
-                                                                                    q32_q11_q21_plus_q12_q22
-                                                                                        .mul_add(
-                                                                                            -product_of_a_squared_minus_c_squared,
-                                                                                            q11
-                                                                                                * (q13
-                                                                                                    * (a_squared_a_squared_minus_c_squared + product_of_4)
-                                                                                                    - two * q23_q11_q21_plus_q12_q22
-                                                                                                        * product_of_a_squared_minus_c_squared),
-                                                                                        ),
-                                                                                ),
-                                                                    ),
-                                                            ),
-                                                ),
-                                        ) * inverse_value_of_b_squared_squared,
-                                ),
-                        ),
-                ) / value_of_b_squared,
-            speed_tilt_x
-                .mul_add(
-                    h5.mul_add(sum_of, -h6_sum_of_q11_q12_q21_q22),
-                    speed_tilt_y
-                        .mul_add(
-                            h6
-                                .mul_add(
-                                    a_squared_minus_c_squared
-                                        .mul_add(
-                                            two_q11_squared_plus_q12_squared,
-                                            b_squared_minus_c_squared
-                                                .mul_add(
-                                                    two.mul_add(q21_squared, q22_squared),
-                                                    sum_of_two_c_squared,
-                                                ),
-                                        ),
-                                    h4_sum_of.mul_add(-two, -h5_sum_of_q12_q13),
-                                ),
-                            speed_tilt_x
-                                .mul_add(
-                                    h4
-                                        .mul_add(
-                                            b_squared_a_squared_minus_c_squared
-                                                .mul_add(
-                                                    -q12_q13,
-                                                    (q22 * b_squared_minus_c_squared)
-                                                        .mul_add(
-                                                            -a_squared
-                                                                .mul_add(q23, six * q11_q32 * a_squared_minus_c_squared),
-                                                            three * sum_of_q11_q12_q13_product_of_q21,
+                                                            product_of_speed_spin,
                                                         ),
                                                 ),
-                                            h5
+                                            speed_spin_sum_of_product_of_h6
                                                 .mul_add(
-                                                    -sum_of_a_squared_minus_b_squared,
-                                                    product_of_h6_q11_q12_q21_q22
-                                                        + product_of_h4_h5_h6_q22_b_squared,
-                                                ),
-                                        ),
-                                    speed_spin
-                                        .mul_add(
-                                            (h4 * two)
-                                                .mul_add(
-                                                    -sum_of_q12_q21_q22_q33_q11_q22,
-                                                    h5
-                                                        .mul_add(
-                                                            -sum_of_sum_of_a_squared_c_squared,
-                                                            h6
-                                                                * q11_squared_plus_q12_squared
-                                                                    .mul_add(
-                                                                        sum_of_q22_q23,
-                                                                        q22
-                                                                            .mul_add(
-                                                                                -q23
-                                                                                    .mul_add(
-                                                                                        b_squared
-                                                                                            .mul_add(
-                                                                                                sum_of_two_c_squared,
-                                                                                                c_squared_a_squared_minus_c_squared - product_of_2,
-                                                                                            ),
-                                                                                        product_of_q11_q32,
-                                                                                    ),
-                                                                                a_squared_minus_c_squared
-                                                                                    * (a_squared * q12_q13
-                                                                                        - q11_q21_q31 * b_squared_minus_c_squared),
-                                                                            ),
-                                                                    ),
-                                                        ),
-                                                ),
-                                            speed_tilt_y
-                                                * h4
-                                                    .mul_add(
-                                                        five
+                                                    -sum_of_a_squared_q11_q13_q23_q33,
+                                                    speed_tilt_y
+                                                        * sum_of_a_squared_q11_q13_q23_q33
                                                             .mul_add(
-                                                                -sum_of_q11_product_of_q11_squared,
-                                                                q21_q23
+                                                                h5
                                                                     .mul_add(
-                                                                        -(three_c_squared_squared
-                                                                            + product_of_b_squared_two_b_squared),
-                                                                        q11_q13
-                                                                            .mul_add(
-                                                                                -sum_of_three_c_squared_squared,
-                                                                                two * sum_of_q22_q12_q32_q21_q23_q11_q12,
-                                                                            ),
+                                                                        sum_of_a_squared_q12_q12_q22_q32,
+                                                                        h4_sum_of_a_squared_q11_q12_q22_q32
+                                                                            + h6_sum_of_a_squared_q12_q13_q23_q33,
                                                                     ),
+                                                                product_of_sum_of_product_of_h6,
                                                             ),
-                                                        h5
-                                                            .mul_add(
-                                                                -sum_of_q12_q12_sum_of_q22_q23_q13,
-                                                                h6
-                                                                    .mul_add(
-                                                                        five
-                                                                            .mul_add(
-                                                                                sum_of_q21_squared_q11_squared_q11,
-                                                                                two
-                                                                                    .mul_add(
-                                                                                        q11_squared
-                                                                                            .mul_add(
-                                                                                                sum_of_c_squared_squared_a_squared,
-                                                                                                q21_squared * sum_of_b_squared_squared_c_squared,
-                                                                                            ),
-                                                                                        q12_squared
-                                                                                            .mul_add(
-                                                                                                product_of_a_squared_minus_c_squared_2,
-                                                                                                q22_squared
-                                                                                                    .mul_add(
-                                                                                                        -product_of_b_squared_minus_c_squared,
-                                                                                                        sum_of_product_of_q22_squared
-                                                                                                            - sum_of_a_squared_q22_squared_q11,
-                                                                                                    ),
-                                                                                            ),
-                                                                                    ),
-                                                                            ),
-                                                                        h4
-                                                                            .mul_add(
-                                                                                (three * q21_q23 * sum_of_q21_squared)
-                                                                                    .mul_add(
-                                                                                        sum_of_q21_squared_plus_q22_squared,
-                                                                                        q11
-                                                                                            * (nine * q21 * product_of_q32)
-                                                                                                .mul_add(
-                                                                                                    sum_of_q21_squared_plus_q22_squared,
-                                                                                                    q11
-                                                                                                        * (q11
-                                                                                                            * (three * q13 * sum_of_c_squared_a_squared_squared
-                                                                                                                * sum_of_q11_squared_plus_q12_squared
-                                                                                                                - nine * q23_q11_q21_plus_q12_q22
-                                                                                                                    * product_of_b_squared_minus_c_squared_2)
-                                                                                                            - nine * q32_q11_q21_plus_q12_q22
-                                                                                                                * product_of_b_squared_minus_c_squared_2),
-                                                                                                ),
-                                                                                    ),
-                                                                                h5
-                                                                                    .mul_add(
-                                                                                        -sum_of_q11_q22_q23_a_squared_q12_q13,
-                                                                                        -h6
-                                                                                            * (q11
-                                                                                                * q11
-                                                                                                    .mul_add(
-                                                                                                        a_squared_c_squared
-                                                                                                            .mul_add(
-                                                                                                                twelve.mul_add(b_squared, -nine_c_squared),
-                                                                                                                three
-                                                                                                                    .mul_add(
-                                                                                                                        a_squared_squared
-                                                                                                                            .mul_add(
-                                                                                                                                q11_squared_plus_q12_squared
-                                                                                                                                    .mul_add(
-                                                                                                                                        -two_a_squared_minus_three_c_squared,
-                                                                                                                                        a_squared_minus_two_b_squared,
-                                                                                                                                    ),
-                                                                                                                                (q22_squared * a_squared_minus_c_squared)
-                                                                                                                                    .mul_add(
-                                                                                                                                        -sum_of_b_squared_squared,
-                                                                                                                                        c_squared_squared_c_squared
-                                                                                                                                            .mul_add(
-                                                                                                                                                -q11_squared_plus_q12_squared,
-                                                                                                                                                -sum_of_product_of_3_q22_squared,
-                                                                                                                                            ),
-                                                                                                                                    ),
-                                                                                                                            ),
-                                                                                                                        (six * b_squared)
-                                                                                                                            .mul_add(
-                                                                                                                                -product_of_4,
-                                                                                                                                -b_squared_minus_c_squared
-                                                                                                                                    * (six
-                                                                                                                                        * b_squared_a_squared_minus_c_squared
-                                                                                                                                            .mul_add(q21_squared, c_squared_squared)
-                                                                                                                                        - q11_sum_of_a_squared_c_squared
-                                                                                                                                            * (number_24 * q22_q33 - nine * q11 * q21_squared)),
-                                                                                                                            ),
-                                                                                                                    ),
-                                                                                                            ),
-                                                                                                        q22_q33
-                                                                                                            * six
-                                                                                                                .mul_add(
-                                                                                                                    sum_of_product_of_b_squared + product_of_q12_squared,
-                                                                                                                    twelve * product_of_a_squared_minus_c_squared_3
-                                                                                                                        * q21_squared_plus_q22_squared,
-                                                                                                                ),
-                                                                                                    )
-                                                                                                - three
-                                                                                                    * q21_squared
-                                                                                                        .mul_add(
-                                                                                                            b_squared
-                                                                                                                .mul_add(
-                                                                                                                    product_of_b_squared_two_b_squared
-                                                                                                                        .mul_add(q21_squared, sum_of_b_squared_c_squared),
-                                                                                                                    (c_squared_squared * q21_squared)
-                                                                                                                        .mul_add(
-                                                                                                                            four_b_squared_minus_c_squared,
-                                                                                                                            product_of_q22_squared
-                                                                                                                                .mul_add(
-                                                                                                                                    a_squared_minus_two_b_squared,
-                                                                                                                                    product_of_sum_of_q21_squared,
-                                                                                                                                ),
-                                                                                                                        ),
-                                                                                                                ),
-                                                                                                            q22_squared
-                                                                                                                * (q22_squared * sum_of_q21_squared
-                                                                                                                    - product_of_a_squared_minus_c_squared_3
-                                                                                                                        * sum_of_one_minus_q22_squared),
-                                                                                                        )),
-                                                                                    ),
-                                                                            ) * inverse_value_of_b_squared_squared,
-                                                                    ),
-                                                            ),
-                                                    ),
+                                                ),
                                         ),
                                 )
                                 .mul_add(
-                                    -inverse_value_of_b_squared_squared,
+                                    -inverse_value_of_squared,
                                     speed_spin
-                                        * (h4 * two)
+                                        * h4
                                             .mul_add(
-                                                sum_of_q11_q12_q21_q22,
-                                                h5
-                                                    .mul_add(
-                                                        -sum_of_a_squared_minus_c_squared,
-                                                        h6 * sum_of_q12_q13,
-                                                    ),
+                                                sum_of_2,
+                                                -product_of - h6_sum_of_a_squared_q11_q13_q23_q33,
                                             ),
                                 ),
                         ),
-                ) / value_of_b_squared,
+                ) / value_of,
+            speed_tilt_x
+                .mul_add(
+                    h5_sum_of_a_squared_q11_q13_q23_q33
+                        - h6_sum_of_a_squared_q11_q12_q22_q32,
+                    speed_tilt_y
+                        .mul_add(
+                            -h4_sum_of_a_squared_q11_q13_q23_q33
+                                .mul_add(
+                                    two,
+                                    h6.mul_add(sum_of_3, h5_sum_of_a_squared_q12_q13_q23_q33),
+                                ),
+                            speed_spin
+                                .mul_add(
+                                    h5
+                                        .mul_add(
+                                            sum_of_2,
+                                            product_of_2 + h6_sum_of_a_squared_q12_q13_q23_q33,
+                                        ),
+                                    speed_tilt_x
+                                        .mul_add(
+                                            sum_of_a_squared_q12_q13_q23_q33
+                                                .mul_add(
+                                                    h4
+                                                        .mul_add(
+                                                            sum_of_a_squared_q11_q11_q21_q31,
+                                                            h5_sum_of_a_squared_q11_q12_q22_q32
+                                                                + h6_sum_of_a_squared_q11_q13_q23_q33,
+                                                        ),
+                                                    product_of_sum_of_product_of_h6,
+                                                ),
+                                            sum_of_a_squared_q11_q13_q23_q33
+                                                .mul_add(
+                                                    speed_tilt_x
+                                                        .mul_add(
+                                                            h5
+                                                                .mul_add(
+                                                                    -sum_of,
+                                                                    h6_sum_of_a_squared_q12_q13_q23_q33
+                                                                        .mul_add(
+                                                                            two,
+                                                                            h4_sum_of_a_squared_q11_q12_q22_q32
+                                                                                - product_of_product_of_product_of_h6,
+                                                                        ),
+                                                                ),
+                                                            speed_tilt_y
+                                                                .mul_add(
+                                                                    h4
+                                                                        .mul_add(
+                                                                            two
+                                                                                .mul_add(
+                                                                                    -sum_of_a_squared_q11_q11_q21_q31,
+                                                                                    sum_of_a_squared_q13_b_squared_q23,
+                                                                                ),
+                                                                            h6_sum_of_a_squared_q11_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    -three,
+                                                                                    -product_of + product_of_product_of_product_of_h6_2,
+                                                                                ),
+                                                                        ),
+                                                                    -product_of_speed_spin,
+                                                                ),
+                                                        ),
+                                                    speed_spin_sum_of_product_of_h6
+                                                        .mul_add(
+                                                            -sum_of_a_squared_q12_q13_q23_q33,
+                                                            speed_tilt_y * sum_of_3 * sum_of_product_of_h6,
+                                                        ),
+                                                ),
+                                        ) * inverse_value_of_squared,
+                                ),
+                        ),
+                ) / value_of,
             zero,
         ])
     }

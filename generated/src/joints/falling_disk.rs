@@ -251,7 +251,7 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
-    /// 5 slices of 6×5. Operations: 62 additions, 98 multiplications (34 of each fused), 2 divisions, 1 function call.
+    /// 5 slices of 6×5. Operations: 10 additions, 29 multiplications (2 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 19 `H`.
     fn twist_map_child_gradient<T: Scalar>(
@@ -264,148 +264,60 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         let zero = T::zero();
         let one = T::one();
         let two = T::from_f64(2.0);
-        let three = T::from_f64(3.0);
-        let r_q11_squared = r_q11 * r_q11;
-        let r_q12_squared = r_q12 * r_q12;
-        let r_q11_squared_plus_r_q12_squared = r_q11_squared + r_q12_squared;
-        let r_q21_squared = r_q21 * r_q21;
-        let r_q22_squared = r_q22 * r_q22;
-        let r_q21_squared_plus_r_q22_squared = r_q21_squared + r_q22_squared;
-        let value_of = (two - r_q11_squared_plus_r_q12_squared
-            - r_q21_squared_plus_r_q22_squared)
-            .sqrt();
-        let radius_inverse_value_of = radius / value_of;
-        let r_q11_squared_plus_r_q21_squared = r_q11_squared + r_q21_squared;
-        let product_of_r_q31 = r_q31 * r_q11_squared_plus_r_q21_squared;
-        let r_q21_r_q22 = r_q21 * r_q22;
-        let r_q11_r_q12_plus_r_q21_r_q22 = r_q11.mul_add(r_q12, r_q21_r_q22);
-        let r_q32_r_q11_r_q12_plus_r_q21_r_q22 = r_q32 * r_q11_r_q12_plus_r_q21_r_q22;
-        let product_of = two * r_q32_r_q11_r_q12_plus_r_q21_r_q22;
-        let sum_of = one - r_q11_squared_plus_r_q12_squared;
-        let r_q12_r_q22 = r_q12 * r_q22;
-        let r_q11_r_q21_plus_r_q12_r_q22 = r_q11.mul_add(r_q21, r_q12_r_q22);
-        let r_q22_r_q11_r_q21_plus_r_q12_r_q22 = r_q22 * r_q11_r_q21_plus_r_q12_r_q22;
-        let sum_of_r_q11_r_q12_r_q21_r_q22 = r_q11
-            .mul_add(
-                r_q12
-                    .mul_add(
-                        r_q11_squared_plus_r_q12_squared,
-                        two * r_q22_r_q11_r_q21_plus_r_q12_r_q22,
-                    ),
-                r_q21_r_q22 * r_q21_squared_plus_r_q22_squared,
-            );
-        let inverse_value_of_squared = one / (value_of * value_of);
-        let product_of_r_q23_r_q12_sum_of_r_q32 = r_q23
-            .mul_add(
-                r_q12.mul_add(sum_of, -r_q22_r_q11_r_q21_plus_r_q12_r_q22),
-                r_q32 * (r_q11_r_q12_plus_r_q21_r_q22 - sum_of_r_q11_r_q12_r_q21_r_q22),
-            ) * inverse_value_of_squared;
-        let product_of_radius_inverse_value_of = radius_inverse_value_of
-            * (product_of_r_q31 + product_of - product_of_r_q23_r_q12_sum_of_r_q32);
-        let sum_of_2 = one - r_q11_squared_plus_r_q21_squared;
-        let r_q12_squared_plus_r_q22_squared = r_q12_squared + r_q22_squared;
-        let sum_of_3 = one - r_q12_squared_plus_r_q22_squared;
-        let r_q23_sum_of_3 = r_q23 * sum_of_3;
-        let two_r_q11_squared_plus_r_q21_squared = two
-            .mul_add(r_q11_squared, r_q21_squared);
-        let sum_of_r_q11_squared = r_q21_squared_plus_r_q22_squared
-            .mul_add(
-                two_r_q11_squared_plus_r_q21_squared,
-                r_q11_squared * r_q11_squared_plus_r_q12_squared,
-            );
-        let product_of_r_q11_r_q32_r_q21_squared = (r_q11
-            * (three * r_q11).mul_add(r_q32, two * r_q23_sum_of_3)
-            - r_q32 * (sum_of_r_q11_squared - r_q21_squared)) * inverse_value_of_squared;
-        let sum_of_sum_of_3_r_q12_squared = three
-            .mul_add(
-                sum_of_3,
-                r_q11_squared_plus_r_q12_squared
-                    .mul_add(
-                        -two.mul_add(r_q22_squared, r_q12_squared),
-                        r_q22_squared
-                            .mul_add(
-                                -r_q21_squared_plus_r_q22_squared,
-                                r_q12_squared_plus_r_q22_squared,
-                            ),
-                    ) * inverse_value_of_squared,
-            );
-        let r_q11_inverse_value_of_squared = r_q11 * inverse_value_of_squared;
-        let sum_of_sum_of = r_q21_squared_plus_r_q22_squared - sum_of;
-        let product_of_r_q22_sum_of_sum_of = two * r_q11_inverse_value_of_squared * r_q22
-            * sum_of_sum_of;
-        let r_q33_r_q11_r_q12_plus_r_q21_r_q22 = r_q33 * r_q11_r_q12_plus_r_q21_r_q22;
-        let product_of_radius_inverse_value_of_2 = radius_inverse_value_of
-            * r_q32
-                .mul_add(
-                    two.mul_add(-sum_of_2, r_q12_squared_plus_r_q22_squared),
-                    -product_of_r_q11_r_q32_r_q21_squared,
-                );
-        let product_of_inverse_value_of_squared = r_q11_squared_plus_r_q21_squared
-            * (three - inverse_value_of_squared);
-        let product_of_radius_inverse_value_of_3 = radius_inverse_value_of * r_q33
-            * (r_q12_squared_plus_r_q22_squared - r_q11_squared_plus_r_q21_squared);
-        let product_of_radius_inverse_value_of_4 = two * radius_inverse_value_of
-            * r_q33_r_q11_r_q12_plus_r_q21_r_q22;
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let product_of_radius = radius / root_one_minus_r_q33_squared;
+        let product_of_radius_r_q31 = product_of_radius * r_q31;
+        let r_q32_squared = r_q32 * r_q32;
+        let quotient_of_r_q33_squared = r_q33_squared
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let one_plus_quotient_of_r_q33_squared = one + quotient_of_r_q33_squared;
+        let product_of_r_q32_squared = r_q32_squared
+            * one_plus_quotient_of_r_q33_squared;
+        let product_of_product_of_radius_r_q31 = product_of_radius_r_q31
+            * (product_of_r_q32_squared - r_q33_squared);
+        let product_of_radius_r_q31_r_q32 = product_of_radius_r_q31 * r_q32;
+        let product_of_radius_r_q32 = product_of_radius * r_q32;
+        let two_r_q33_squared = two * r_q33_squared;
+        let product_of_radius_r_q33 = product_of_radius * r_q33;
+        let two_plus_quotient_of_r_q33_squared = two + quotient_of_r_q33_squared;
+        let product_of_radius_r_q31_r_q32_r_q33 = product_of_radius_r_q31_r_q32 * r_q33;
+        let product_of = product_of_radius_r_q31_r_q32_r_q33
+            * two_plus_quotient_of_r_q33_squared;
+        let r_q31_squared = r_q31 * r_q31;
+        let product_of_r_q31_squared = r_q31_squared
+            * one_plus_quotient_of_r_q33_squared;
+        let product_of_product_of_radius_r_q32 = product_of_radius_r_q32
+            * (product_of_r_q31_squared - r_q33_squared);
+        let product_of_product_of_radius_r_q33 = product_of_radius_r_q33
+            * (r_q31_squared - r_q32_squared);
         [
             from_rows([
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [
-                    product_of_radius_inverse_value_of,
-                    radius_inverse_value_of
-                        * r_q32.mul_add(sum_of_2, product_of_r_q11_r_q32_r_q21_squared),
+                    -product_of_product_of_radius_r_q31,
+                    product_of_radius_r_q31_r_q32 * r_q31
+                        * one_plus_quotient_of_r_q33_squared,
                     zero,
                     zero,
                     zero,
                 ],
                 [
-                    radius_inverse_value_of
-                        * (r_q32
-                            * two
-                                .mul_add(
-                                    r_q11_squared
-                                        .mul_add(
-                                            -inverse_value_of_squared,
-                                            r_q11_squared_plus_r_q21_squared,
-                                        ),
-                                    -sum_of_sum_of_3_r_q12_squared,
-                                ) - two * r_q11_inverse_value_of_squared * r_q23_sum_of_3),
-                    -product_of_radius_inverse_value_of,
+                    product_of_radius_r_q32
+                        * (two_r_q33_squared - product_of_r_q32_squared),
+                    product_of_product_of_radius_r_q31,
                     zero,
                     r_q13,
                     r_q23,
                 ],
                 [
-                    radius_inverse_value_of
-                        * r_q33
-                            .mul_add(
-                                r_q11_squared_plus_r_q21_squared
-                                    - sum_of_sum_of_3_r_q12_squared,
-                                -product_of_r_q22_sum_of_sum_of,
-                            ),
-                    -radius_inverse_value_of
-                        * two
-                            .mul_add(
-                                r_q33_r_q11_r_q12_plus_r_q21_r_q22,
-                                r_q33
-                                    .mul_add(
-                                        sum_of_r_q11_r_q12_r_q21_r_q22,
-                                        r_q11
-                                            .mul_add(
-                                                -r_q21
-                                                    .mul_add(
-                                                        r_q11_squared_plus_r_q21_squared,
-                                                        two * r_q22 * r_q11_r_q12_plus_r_q21_r_q22,
-                                                    ),
-                                                r_q12_r_q22
-                                                    .mul_add(
-                                                        -r_q12_squared_plus_r_q22_squared,
-                                                        r_q11_r_q21_plus_r_q12_r_q22,
-                                                    ),
-                                            ),
-                                    ) * inverse_value_of_squared,
-                            ),
+                    product_of_radius_r_q33
+                        * r_q32_squared
+                            .mul_add(-two_plus_quotient_of_r_q33_squared, r_q33_squared),
+                    product_of,
                     zero,
                     -r_q12,
                     -r_q22,
@@ -416,71 +328,25 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [
-                    -product_of_radius_inverse_value_of_2,
-                    radius_inverse_value_of
-                        * r_q31
-                            .mul_add(
-                                product_of_inverse_value_of_squared - one,
-                                product_of
-                                    + (r_q11
-                                        * r_q23
-                                            .mul_add(
-                                                r_q11_r_q12_plus_r_q21_r_q22,
-                                                r_q11_squared * r_q11.mul_add(r_q31, r_q12 * r_q32),
-                                            )
-                                        - r_q21
-                                            * (r_q22 * r_q32
-                                                * (one - two_r_q11_squared_plus_r_q21_squared)
-                                                - r_q21 * r_q31 * two_r_q11_squared_plus_r_q21_squared))
-                                        * inverse_value_of_squared,
-                            ),
+                    product_of_product_of_radius_r_q32,
+                    product_of_radius_r_q31
+                        * (two_r_q33_squared - product_of_r_q31_squared),
                     zero,
                     -r_q13,
                     -r_q23,
                 ],
                 [
-                    radius_inverse_value_of
-                        * (product_of_r_q23_r_q12_sum_of_r_q32
-                            - r_q32_r_q11_r_q12_plus_r_q21_r_q22),
-                    product_of_radius_inverse_value_of_2,
+                    product_of_radius_r_q31 * product_of_r_q32_squared,
+                    -product_of_product_of_radius_r_q32,
                     zero,
                     zero,
                     zero,
                 ],
                 [
-                    -radius_inverse_value_of
-                        * two
-                            .mul_add(
-                                r_q33_r_q11_r_q12_plus_r_q21_r_q22,
-                                r_q33
-                                    .mul_add(
-                                        sum_of_r_q11_r_q12_r_q21_r_q22,
-                                        r_q11
-                                            .mul_add(
-                                                -r_q21
-                                                    .mul_add(
-                                                        r_q11_squared_plus_r_q21_squared,
-                                                        two * r_q22 * r_q11_r_q12_plus_r_q21_r_q22,
-                                                    ),
-                                                r_q12_r_q22
-                                                    .mul_add(
-                                                        -r_q12_squared_plus_r_q22_squared,
-                                                        r_q11_r_q21_plus_r_q12_r_q22,
-                                                    ),
-                                            ),
-                                    ) * inverse_value_of_squared,
-                            ),
-                    -radius_inverse_value_of
-                        * r_q33
-                            .mul_add(
-                                sum_of_r_q11_squared
-                                    .mul_add(
-                                        -inverse_value_of_squared,
-                                        three - r_q12_squared_plus_r_q22_squared
-                                            - product_of_inverse_value_of_squared,
-                                    ),
-                                product_of_r_q22_sum_of_sum_of,
-                            ),
+                    product_of,
+                    product_of_radius_r_q33
+                        * r_q31_squared
+                            .mul_add(-two_plus_quotient_of_r_q33_squared, r_q33_squared),
                     zero,
                     r_q11,
                     r_q21,
@@ -491,23 +357,22 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
                 [zero, zero, zero, zero, zero],
                 [zero, zero, zero, zero, zero],
                 [
-                    -product_of_radius_inverse_value_of_3,
-                    product_of_radius_inverse_value_of_4,
+                    -product_of_product_of_radius_r_q33,
+                    -two * product_of_radius_r_q31_r_q32_r_q33,
                     zero,
                     r_q12,
                     r_q22,
                 ],
                 [
-                    product_of_radius_inverse_value_of_4,
-                    product_of_radius_inverse_value_of_3,
+                    -two * product_of_radius_r_q31_r_q32_r_q33,
+                    product_of_product_of_radius_r_q33,
                     zero,
                     -r_q11,
                     -r_q21,
                 ],
                 [
-                    -radius_inverse_value_of
-                        * (product_of_r_q31 + r_q32_r_q11_r_q12_plus_r_q21_r_q22),
-                    -radius_inverse_value_of * r_q32 * sum_of_sum_of,
+                    -product_of_radius_r_q31 * r_q33_squared,
+                    -product_of_radius_r_q32 * r_q33_squared,
                     zero,
                     zero,
                     zero,
@@ -618,59 +483,54 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
 
     /// A(Q) with Aᵀ v = 0 (Definition 2).
     ///
-    /// 5×2. Operations: 15 additions, 27 multiplications (6 of each fused), 1 division, 1 function call.
+    /// 5×2. Operations: 6 additions, 19 multiplications (6 of each fused), 1 division, 1 function call.
     ///
     /// From line 15 `let`, line 17 `let`, line 18 `let`, line 20 `S_bar`.
     fn constraint<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 5, 2> {
         let radius = T::from_f64(self.radius);
-        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, _, _, r_q33, _, _]: [T; 11] = (*q)
-            .into();
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
         let zero = T::zero();
         let one = T::one();
-        let two = T::from_f64(2.0);
-        let r_q11_squared_plus_r_q12_squared = r_q11.mul_add(r_q11, r_q12 * r_q12);
-        let r_q21_squared_plus_r_q22_squared = r_q21.mul_add(r_q21, r_q22 * r_q22);
-        let value_of = (two - r_q11_squared_plus_r_q12_squared
-            - r_q21_squared_plus_r_q22_squared)
-            .sqrt();
-        let inverse_value_of = one / value_of;
-        let product_of_inverse_value_of = (one - r_q21_squared_plus_r_q22_squared)
-            * inverse_value_of;
-        let product_of_r_q11_r_q21_r_q12_r_q22 = r_q11.mul_add(r_q21, r_q12 * r_q22)
-            * inverse_value_of;
-        let sum_of_value_of_inverse_value_of = r_q11_squared_plus_r_q12_squared
-            .mul_add(inverse_value_of, value_of);
-        let sum_of_product_of_inverse_value_of = sum_of_value_of_inverse_value_of
-            - product_of_inverse_value_of;
-        let r_q33_inverse_value_of = r_q33 * inverse_value_of;
+        // line 20 `S_bar`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = r_q33.mul_add(-r_q33, one).sqrt();
+        let product_of_r_q33 = r_q33 / root_one_minus_r_q33_squared;
+        let r_q23_product_of_r_q33 = r_q23 * product_of_r_q33;
+        let r_q13_product_of_r_q33 = r_q13 * product_of_r_q33;
+        let product_of_radius_product_of_r_q33 = radius
+            * product_of_r_q33.mul_add(r_q33, root_one_minus_r_q33_squared);
         from_rows([
             [
                 -radius
                     * r_q21
                         .mul_add(
-                            value_of - product_of_inverse_value_of,
-                            r_q11 * product_of_r_q11_r_q21_r_q12_r_q22,
+                            root_one_minus_r_q33_squared,
+                            r_q23_product_of_r_q33 * r_q31,
                         ),
                 radius
-                    * (r_q11 * sum_of_product_of_inverse_value_of
-                        - r_q22 * r_q33_inverse_value_of),
-            ],
-            [
-                radius
-                    * (r_q11 * r_q33_inverse_value_of
-                        - r_q22 * sum_of_product_of_inverse_value_of),
-                radius
-                    * (r_q22 * product_of_r_q11_r_q21_r_q12_r_q22
-                        - r_q12 * (inverse_value_of - sum_of_value_of_inverse_value_of)),
-            ],
-            [
-                -radius * r_q23 * sum_of_product_of_inverse_value_of,
-                radius
-                    * r_q13
+                    * r_q11
                         .mul_add(
-                            sum_of_value_of_inverse_value_of,
-                            r_q23 * product_of_r_q11_r_q21_r_q12_r_q22,
+                            root_one_minus_r_q33_squared,
+                            r_q13_product_of_r_q33 * r_q31,
                         ),
+            ],
+            [
+                -radius
+                    * r_q22
+                        .mul_add(
+                            root_one_minus_r_q33_squared,
+                            r_q23_product_of_r_q33 * r_q32,
+                        ),
+                radius
+                    * r_q12
+                        .mul_add(
+                            root_one_minus_r_q33_squared,
+                            r_q13_product_of_r_q33 * r_q32,
+                        ),
+            ],
+            [
+                -product_of_radius_product_of_r_q33 * r_q23,
+                product_of_radius_product_of_r_q33 * r_q13,
             ],
             [one, zero],
             [zero, one],
@@ -734,7 +594,7 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
 
     /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     ///
-    /// 5 slices of 5×3. Operations: 90 additions, 148 multiplications (56 of each fused), 3 divisions, 1 function call.
+    /// 5 slices of 5×3. Operations: 24 additions, 56 multiplications (18 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 12 `basis`, line 15 `let`, line 17 `let`, line 18 `let`, line 20 `S_bar`.
     fn speed_basis_gradient<T: Scalar>(
@@ -746,295 +606,130 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         ]: [T; 11] = (*q).into();
         let zero = T::zero();
         let one = T::one();
-        let two = T::from_f64(2.0);
-        let three = T::from_f64(3.0);
-        let five = T::from_f64(5.0);
-        let r_q21_squared = r_q21 * r_q21;
-        let r_q22_squared = r_q22 * r_q22;
-        let r_q21_squared_plus_r_q22_squared = r_q21_squared + r_q22_squared;
-        let r_q11_squared = r_q11 * r_q11;
-        let r_q12_squared = r_q12 * r_q12;
-        let value_of_r_q11_squared_r_q12_squared = (two
-            - r_q21_squared_plus_r_q22_squared - r_q11_squared - r_q12_squared)
-            .sqrt();
-        let quotient_of = one / value_of_r_q11_squared_r_q12_squared;
-        let radius_quotient_of = radius * quotient_of;
-        let r_q11_r_q31_plus_r_q12_r_q32 = r_q11.mul_add(r_q31, r_q12 * r_q32);
-        let r_q11_r_q23 = r_q11 * r_q23;
-        let product_of = value_of_r_q11_squared_r_q12_squared
-            * value_of_r_q11_squared_r_q12_squared;
-        let inverse_product_of = one / product_of;
-        let r_q11_squared_inverse_product_of = r_q11_squared * inverse_product_of;
-        let sum_of = one + r_q11_squared_inverse_product_of;
-        let one_minus_r_q12_squared = one - r_q12_squared;
-        let product_of_one_minus_r_q12_squared = one_minus_r_q12_squared
-            * inverse_product_of;
-        let sum_of_sum_of = sum_of - product_of_one_minus_r_q12_squared;
-        let r_q12_sum_of_sum_of = r_q12 * sum_of_sum_of;
-        let r_q22_inverse_product_of = r_q22 * inverse_product_of;
-        let r_q12_r_q22 = r_q12 * r_q22;
-        let sum_of_2 = two.mul_add(r_q11_squared_inverse_product_of, one);
-        let r_q11_inverse_product_of = r_q11 * inverse_product_of;
-        let sum_of_r_q23_sum_of_2_r_q32 = r_q23
-            .mul_add(sum_of_2, two * r_q11_inverse_product_of * r_q32);
-        let r_q21_r_q31 = r_q21 * r_q31;
-        let sum_of_r_q22_r_q21_r_q31 = r_q22
+        let r_q33_squared = r_q33 * r_q33;
+        // line 20 `S_bar`: root_one_minus_r_q33_squared, inverse_root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let product_of_radius = radius * inverse_root_one_minus_r_q33_squared;
+        let r_q21_r_q33 = r_q21 * r_q33;
+        let r_q21_r_q33_r_q32 = r_q21_r_q33 * r_q32;
+        let r_q22_r_q33 = r_q22 * r_q33;
+        let sum_of_r_q33_squared = one
+            + r_q33_squared
+                / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let r_q32_sum_of_r_q33_squared = r_q32 * sum_of_r_q33_squared;
+        let r_q23_r_q32_sum_of_r_q33_squared = r_q23 * r_q32_sum_of_r_q33_squared;
+        let sum_of_r_q22_r_q33 = r_q22_r_q33 + r_q23_r_q32_sum_of_r_q33_squared;
+        let radius_r_q23 = radius * r_q23;
+        let sum_of_root_one_minus_r_q33_squared = r_q32_sum_of_r_q33_squared
+            .mul_add(r_q32, -r_q33_squared)
             .mul_add(
-                sum_of_r_q23_sum_of_2_r_q32,
-                r_q11_inverse_product_of * r_q21_r_q31,
+                -inverse_root_one_minus_r_q33_squared,
+                root_one_minus_r_q33_squared,
             );
-        let sum_of_r_q11_r_q23_r_q12_r_q22_r_q32 = r_q11_r_q23
-            .mul_add(
-                r_q12_sum_of_sum_of,
-                r_q22_inverse_product_of
-                    .mul_add(
-                        r_q12_r_q22
-                            .mul_add(
-                                two.mul_add(r_q11_r_q23, r_q32),
-                                r_q21 * r_q23 * r_q21_squared_plus_r_q22_squared,
-                            ),
-                        r_q21 * sum_of_r_q22_r_q21_r_q31,
-                    ),
-            );
-        let sum_of_r_q11_squared_quotient_of = r_q11_squared
-            .mul_add(quotient_of, value_of_r_q11_squared_r_q12_squared);
-        let sum_of_3 = two + r_q11_squared_inverse_product_of;
-        let sum_of_r_q12_squared_sum_of_3 = (r_q12_squared
-            * (sum_of_3 - product_of_one_minus_r_q12_squared))
-            .mul_add(quotient_of, sum_of_r_q11_squared_quotient_of);
-        let two_sum_of = two * sum_of;
-        let sum_of_4 = one - r_q21_squared_plus_r_q22_squared;
-        let sum_of_4_minus_two_r_q12_squared = two.mul_add(-r_q12_squared, sum_of_4);
-        let quotient_of_r_q11_r_q32_sum_of_4 = two * r_q11 * r_q32 * sum_of_4
-            / (product_of * value_of_r_q11_squared_r_q12_squared);
-        let sum_of_sum_of_r_q22_squared = r_q22_squared
-            .mul_add(inverse_product_of, sum_of);
-        let two_sum_of_sum_of_r_q22_squared = two * sum_of_sum_of_r_q22_squared;
-        let r_q21_squared_inverse_product_of = r_q21_squared * inverse_product_of;
-        let sum_of_5 = two_sum_of_sum_of_r_q22_squared
-            + r_q21_squared_inverse_product_of;
-        let sum_of_r_q21_squared_sum_of_5 = (r_q21_squared * sum_of_5)
-            .mul_add(quotient_of, value_of_r_q11_squared_r_q12_squared);
+        let r_q22_root_one_minus_r_q33_squared = r_q22 * root_one_minus_r_q33_squared;
+        let product_of_r_q33 = r_q33 * inverse_root_one_minus_r_q33_squared;
         let r_q11_r_q33 = r_q11 * r_q33;
-        let r_q11_squared_sum_of_3 = r_q11_squared * sum_of_3;
-        let r_q22_squared_sum_of_2 = r_q22_squared * sum_of_2;
-        let sum_of_r_q11_squared_sum_of_3_r_q22 = (r_q22_squared
-            * r_q22_inverse_product_of)
-            .mul_add(r_q22, two.mul_add(r_q22_squared_sum_of_2, r_q11_squared_sum_of_3));
-        let sum_of_r_q12_squared = (two * r_q12_squared)
-            .mul_add(sum_of_sum_of_r_q22_squared, sum_of_r_q11_squared_sum_of_3_r_q22);
-        let sum_of_sum_of_r_q21_squared_sum_of_5 = (two
-            + (five * r_q11_r_q33 * r_q22 - r_q12_squared * r_q12_squared)
-                * inverse_product_of - sum_of_r_q12_squared + inverse_product_of)
-            .mul_add(-quotient_of, sum_of_r_q21_squared_sum_of_5);
-        let r_q11_r_q33_quotient_of = r_q11_r_q33 * quotient_of;
-        let r_q12_r_q13 = r_q12 * r_q13;
-        let sum_of_one_minus_r_q12_squared = r_q21_squared_plus_r_q22_squared
-            - one_minus_r_q12_squared;
-        let sum_of_r_q11_r_q12_r_q13_sum_of = (r_q11 * r_q12_r_q13)
+        let r_q11_r_q33_r_q32 = r_q11_r_q33 * r_q32;
+        let r_q12_r_q33 = r_q12 * r_q33;
+        let r_q13_r_q32_sum_of_r_q33_squared = r_q13 * r_q32_sum_of_r_q33_squared;
+        let sum_of_r_q12_r_q33 = r_q12_r_q33 + r_q13_r_q32_sum_of_r_q33_squared;
+        let radius_r_q13 = radius * r_q13;
+        let r_q12_root_one_minus_r_q33_squared = r_q12 * root_one_minus_r_q33_squared;
+        let r_q31_sum_of_r_q33_squared = r_q31 * sum_of_r_q33_squared;
+        let sum_of_root_one_minus_r_q33_squared_2 = r_q31_sum_of_r_q33_squared
+            .mul_add(r_q31, -r_q33_squared)
             .mul_add(
-                sum_of,
-                (r_q22_inverse_product_of * r_q32)
-                    .mul_add(
-                        sum_of_one_minus_r_q12_squared,
-                        -r_q11_inverse_product_of
-                            * (r_q22 * r_q23 * sum_of_4_minus_two_r_q12_squared
-                                - r_q12_squared * r_q12_r_q13),
-                    ),
+                -inverse_root_one_minus_r_q33_squared,
+                root_one_minus_r_q33_squared,
             );
-        let r_q11_r_q21 = r_q11 * r_q21;
-        let r_q11_r_q21_plus_r_q12_r_q22 = r_q11_r_q21 + r_q12_r_q22;
-        let product_of_r_q22_inverse_product_of = r_q22_inverse_product_of
-            * r_q11_r_q21_plus_r_q12_r_q22;
-        let sum_of_sum_of_3_r_q11_r_q33 = (three * r_q11_r_q33)
-            .mul_add(r_q22_inverse_product_of, sum_of_3);
-        let r_q33_sum_of_sum_of_r_q22_squared = r_q33 * sum_of_sum_of_r_q22_squared;
-        let r_q11_r_q22 = r_q11 * r_q22;
-        let sum_of_4_inverse_product_of = sum_of_4 * inverse_product_of;
-        let sum_of_two_sum_of = two_sum_of - sum_of_4_inverse_product_of;
-        let sum_of_r_q11_squared_sum_of_3 = r_q11_squared_sum_of_3
-            .mul_add(quotient_of, value_of_r_q11_squared_r_q12_squared);
-        let r_q22_quotient_of = r_q22 * quotient_of;
-        let r_q22_quotient_of_r_q33 = r_q22_quotient_of * r_q33;
-        let sum_of_quotient_of = sum_of_one_minus_r_q12_squared
-            .mul_add(quotient_of, sum_of_r_q11_squared_quotient_of);
+        let r_q21_root_one_minus_r_q33_squared = r_q21 * root_one_minus_r_q33_squared;
+        let r_q11_root_one_minus_r_q33_squared = r_q11 * root_one_minus_r_q33_squared;
+        let r_q23_product_of_r_q33 = r_q23 * product_of_r_q33;
+        let r_q13_product_of_r_q33 = r_q13 * product_of_r_q33;
         [
             from_rows([
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [zero, zero, zero],
                 [
-                    radius_quotient_of
-                        * (sum_of_r_q11_r_q23_r_q12_r_q22_r_q32
-                            - r_q11_r_q31_plus_r_q12_r_q32),
-                    radius
-                        * r_q23
-                            .mul_add(
-                                r_q22_squared
-                                    .mul_add(
-                                        sum_of_4_minus_two_r_q12_squared
-                                            .mul_add(inverse_product_of, -two_sum_of),
-                                        two_sum_of - r_q21_squared,
-                                    )
-                                    .mul_add(-quotient_of, sum_of_r_q12_squared_sum_of_3),
-                                -quotient_of_r_q11_r_q32_sum_of_4,
-                            ),
-                    radius
-                        * (r_q11_r_q33_quotient_of
-                            * (sum_of_sum_of + r_q21_squared_inverse_product_of)
-                            - r_q22 * sum_of_sum_of_r_q21_squared_sum_of_5),
-                ],
-                [
-                    -radius_quotient_of
-                        * r_q21_r_q31
-                            .mul_add(
-                                sum_of,
-                                r_q22
-                                    .mul_add(
-                                        (two * r_q32).mul_add(sum_of, r_q11_r_q23 * sum_of_2),
-                                        sum_of_r_q11_r_q12_r_q13_sum_of,
-                                    ),
-                            ),
-                    radius
-                        * ((r_q21 * r_q32
-                            - r_q23
-                                * r_q22
-                                    .mul_add(
-                                        two
-                                            .mul_add(
-                                                r_q12_sum_of_sum_of,
-                                                product_of_r_q22_inverse_product_of,
-                                            ),
-                                        r_q11_r_q21,
-                                    )) * quotient_of - r_q13 * sum_of_r_q12_squared_sum_of_3),
-                    radius
-                        * r_q12
-                            .mul_add(
-                                value_of_r_q11_squared_r_q12_squared,
-                                r_q12
-                                    .mul_add(
-                                        r_q12_squared
-                                            .mul_add(
-                                                -product_of_one_minus_r_q12_squared,
-                                                sum_of_r_q12_squared - sum_of_sum_of_3_r_q11_r_q33,
-                                            ),
-                                        r_q21
-                                            .mul_add(
-                                                r_q11_r_q22
-                                                    .mul_add(sum_of_5, -r_q33_sum_of_sum_of_r_q22_squared),
-                                                -product_of_r_q22_inverse_product_of,
-                                            ),
-                                    ) * quotient_of,
-                            ),
-                ],
-            ]),
-            from_rows([
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [
-                    radius
-                        * r_q23
-                            .mul_add(
-                                r_q12_squared
-                                    .mul_add(
-                                        -sum_of,
-                                        r_q21_squared
-                                            .mul_add(
-                                                -sum_of_two_sum_of,
-                                                three
-                                                    .mul_add(
-                                                        r_q11_squared_inverse_product_of,
-                                                        two - r_q22_squared_sum_of_2,
-                                                    ),
-                                            ),
-                                    )
-                                    .mul_add(quotient_of, -sum_of_r_q11_squared_sum_of_3),
-                                quotient_of_r_q11_r_q32_sum_of_4,
-                            ),
-                    -radius_quotient_of
-                        * (r_q11_r_q31_plus_r_q12_r_q32
-                            + sum_of_r_q11_r_q23_r_q12_r_q22_r_q32),
-                    radius
-                        * r_q21
-                            .mul_add(
-                                sum_of_r_q21_squared_sum_of_5,
-                                (r_q21
-                                    * r_q21_squared_plus_r_q22_squared
-                                        .mul_add(
-                                            -inverse_product_of,
-                                            sum_of_r_q11_squared_sum_of_3_r_q22
-                                                - sum_of_sum_of_3_r_q11_r_q33,
-                                        )
-                                    - r_q12
-                                        * r_q11_r_q22
-                                            .mul_add(
-                                                product_of_one_minus_r_q12_squared
-                                                    - two_sum_of_sum_of_r_q22_squared,
-                                                r_q33_sum_of_sum_of_r_q22_squared,
-                                            )) * quotient_of,
-                            ),
-                ],
-                [
-                    radius
-                        * r_q13
-                            .mul_add(
-                                sum_of_r_q11_squared_sum_of_3,
-                                r_q12_r_q22
-                                    .mul_add(
-                                        sum_of_r_q23_sum_of_2_r_q32,
-                                        (r_q13 * sum_of)
-                                            .mul_add(
-                                                -one_minus_r_q12_squared,
-                                                r_q21
-                                                    * r_q32
-                                                        .mul_add(
-                                                            sum_of_2 - sum_of_4_inverse_product_of,
-                                                            r_q11_r_q23 * sum_of_two_sum_of,
-                                                        ),
-                                            ),
-                                    ) * quotient_of,
-                            ),
-                    radius_quotient_of
-                        * r_q11
-                            .mul_add(
-                                sum_of_r_q22_r_q21_r_q31,
-                                sum_of_r_q11_r_q12_r_q13_sum_of - r_q21_r_q31,
-                            ),
-                    radius
-                        * (r_q22_quotient_of_r_q33
-                            * sum_of_one_minus_r_q12_squared
-                                .mul_add(inverse_product_of, one)
-                            - r_q11 * sum_of_sum_of_r_q21_squared_sum_of_5),
-                ],
-            ]),
-            from_rows([
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [
-                    radius * r_q22.mul_add(sum_of_quotient_of, -r_q11_r_q33_quotient_of),
+                    product_of_radius
+                        * r_q31.mul_add(-sum_of_r_q22_r_q33, r_q21_r_q33_r_q32),
+                    radius_r_q23 * sum_of_root_one_minus_r_q33_squared,
                     -radius
-                        * r_q21
+                        * product_of_r_q33
                             .mul_add(
-                                sum_of_4
-                                    .mul_add(
-                                        -quotient_of,
-                                        value_of_r_q11_squared_r_q12_squared,
-                                    ),
-                                r_q11 * r_q11_r_q21_plus_r_q12_r_q22 * quotient_of,
+                                sum_of_r_q22_r_q33,
+                                r_q22_root_one_minus_r_q33_squared,
                             ),
+                ],
+                [
+                    product_of_radius
+                        * r_q31.mul_add(sum_of_r_q12_r_q33, -r_q11_r_q33_r_q32),
+                    -radius_r_q13 * sum_of_root_one_minus_r_q33_squared,
+                    radius
+                        * product_of_r_q33
+                            .mul_add(
+                                sum_of_r_q12_r_q33,
+                                r_q12_root_one_minus_r_q33_squared,
+                            ),
+                ],
+            ]),
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [
+                    -radius_r_q23 * sum_of_root_one_minus_r_q33_squared_2,
+                    product_of_radius
+                        * r_q31
+                            .mul_add(
+                                r_q23_r_q32_sum_of_r_q33_squared - r_q22_r_q33,
+                                r_q21_r_q33_r_q32,
+                            ),
+                    radius
+                        * product_of_r_q33
+                            .mul_add(
+                                r_q23.mul_add(r_q31_sum_of_r_q33_squared, r_q21_r_q33),
+                                r_q21_root_one_minus_r_q33_squared,
+                            ),
+                ],
+                [
+                    radius_r_q13 * sum_of_root_one_minus_r_q33_squared_2,
+                    product_of_radius
+                        * r_q31
+                            .mul_add(
+                                r_q12_r_q33 - r_q13_r_q32_sum_of_r_q33_squared,
+                                -r_q11_r_q33_r_q32,
+                            ),
+                    -radius
+                        * product_of_r_q33
+                            .mul_add(
+                                r_q13.mul_add(r_q31_sum_of_r_q33_squared, r_q11_r_q33),
+                                r_q11_root_one_minus_r_q33_squared,
+                            ),
+                ],
+            ]),
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [
+                    radius
+                        * r_q23_product_of_r_q33
+                            .mul_add(r_q32, r_q22_root_one_minus_r_q33_squared),
+                    -radius
+                        * r_q23_product_of_r_q33
+                            .mul_add(r_q31, r_q21_root_one_minus_r_q33_squared),
                     zero,
                 ],
                 [
                     -radius
-                        * r_q12
-                            .mul_add(
-                                one_minus_r_q12_squared
-                                    .mul_add(-quotient_of, sum_of_r_q11_squared_quotient_of),
-                                r_q22_quotient_of * r_q11_r_q21_plus_r_q12_r_q22,
-                            ),
-                    radius * r_q11.mul_add(sum_of_quotient_of, -r_q22_quotient_of_r_q33),
+                        * r_q13_product_of_r_q33
+                            .mul_add(r_q32, r_q12_root_one_minus_r_q33_squared),
+                    radius
+                        * r_q13_product_of_r_q33
+                            .mul_add(r_q31, r_q11_root_one_minus_r_q33_squared),
                     zero,
                 ],
             ]),
@@ -1352,7 +1047,7 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 230 additions, 329 multiplications (154 of each fused), 3 divisions, 2 function calls.
+    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 53 additions, 112 multiplications (36 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
     fn bias_acceleration<T: Scalar>(
@@ -1367,698 +1062,202 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         let zero = T::zero();
         let one = T::one();
         let two = T::from_f64(2.0);
-        let three = T::from_f64(3.0);
         let four = T::from_f64(4.0);
-        let five = T::from_f64(5.0);
-        let six = T::from_f64(6.0);
-        let speed_wx_radius = speed_wx * radius;
-        let r_q11_r_q12 = r_q11 * r_q12;
-        let r_q11_r_q23 = r_q11 * r_q23;
-        let r_q13_r_q21 = r_q13 * r_q21;
-        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11_r_q23 - r_q13_r_q21;
-        let speed_wy_radius = speed_wy * radius;
-        let r_q12_squared = r_q12 * r_q12;
-        let r_q22_squared = r_q22 * r_q22;
-        let r_q12_squared_plus_r_q22_squared = r_q12_squared + r_q22_squared;
-        let r_q11_squared = r_q11 * r_q11;
-        let r_q21_squared = r_q21 * r_q21;
-        let sum_of_r_q11_squared_r_q21_squared = three
-            .mul_add(r_q11_squared, r_q21_squared);
-        let r_q11_squared_minus_r_q12_squared = r_q11_squared - r_q12_squared;
-        let r_q22_r_q23 = r_q22 * r_q23;
-        let r_q11_r_q22 = r_q11 * r_q22;
-        let r_q11_r_q22_minus_r_q12_r_q21 = r_q12.mul_add(-r_q21, r_q11_r_q22);
-        let product_of_r_q22_r_q23 = r_q22_r_q23 * r_q11_r_q22_minus_r_q12_r_q21;
-        let speed_wz_radius = speed_wz * radius;
-        let r_q11_squared_plus_r_q12_squared = r_q11_squared + r_q12_squared;
-        let one_minus_r_q22_squared = one - r_q22_squared;
-        let sum_of_one_minus_r_q22_squared = r_q11_squared_plus_r_q12_squared
-            - one_minus_r_q22_squared;
-        let sum_of_one_minus_r_q22_squared_2 = one_minus_r_q22_squared - r_q12_squared;
-        let sum_of = one - r_q11_squared_plus_r_q12_squared;
-        let r_q22_r_q32 = r_q22 * r_q32;
-        let r_q12_r_q32 = r_q12 * r_q32;
-        let r_q21_r_q22 = r_q21 * r_q22;
-        let r_q23_plus_r_q11_r_q32 = r_q11.mul_add(r_q32, r_q23);
-        let two_r_q22_squared = two * r_q22_squared;
-        let sum_of_two_r_q22_squared = r_q11_squared_plus_r_q12_squared
-            + two_r_q22_squared;
-        let r_q11_squared_squared = r_q11_squared * r_q11_squared;
-        let sum_of_r_q11_squared_squared = r_q12_squared
-            .mul_add(-r_q12_squared, r_q11_squared_squared);
-        let r_q21_r_q32 = r_q21 * r_q32;
-        let two_r_q11_squared = two * r_q11_squared;
-        let two_r_q11_squared_plus_r_q21_squared = two_r_q11_squared + r_q21_squared;
-        let sum_of_one_minus_r_q22_squared_3 = two_r_q11_squared_plus_r_q21_squared
-            - one_minus_r_q22_squared;
-        let product_of_r_q21_r_q32 = r_q21_r_q32 * sum_of_one_minus_r_q22_squared_3;
-        let two_r_q12_squared_plus_r_q22_squared = two
-            .mul_add(r_q12_squared, r_q22_squared);
-        let r_q11_r_q33 = r_q11 * r_q33;
-        let one_plus_five_r_q11_r_q33_r_q22 = (five * r_q11_r_q33).mul_add(r_q22, one);
-        let sum_of_r_q22_r_q11_r_q33_sum_of = r_q22 * one_plus_five_r_q11_r_q33_r_q22
-            - r_q11_r_q33 * sum_of;
-        let product_of_r_q12 = r_q12 * r_q11_squared_plus_r_q12_squared;
-        let r_q22_r_q33 = r_q22 * r_q33;
-        let three_r_q11_r_q12_plus_r_q21_r_q22 = three.mul_add(r_q11_r_q12, r_q21_r_q22);
-        let r_q11_r_q21 = r_q11 * r_q21;
-        let sum_of_product_of_r_q12_r_q22_r_q33 = r_q22_r_q33
-            .mul_add(
-                three_r_q11_r_q12_plus_r_q21_r_q22,
-                r_q22.mul_add(r_q12.mul_add(r_q22, r_q11_r_q21), product_of_r_q12),
-            );
-        let sum_of_r_q11_squared_squared_2 = r_q22_squared
-            .mul_add(r_q22_squared, r_q11_squared_squared);
-        let two_r_q11_squared_plus_r_q12_squared = two_r_q11_squared + r_q12_squared;
-        let sum_of_r_q12_squared = two_r_q11_squared_plus_r_q12_squared
-            .mul_add(r_q12_squared + two_r_q22_squared, sum_of_r_q11_squared_squared_2);
-        let two_minus_r_q22_squared = two - r_q22_squared;
-        let sum_of_r_q21_squared = r_q11_squared_plus_r_q12_squared + r_q21_squared;
-        let value_of_two_minus_r_q22_squared = (two_minus_r_q22_squared
-            - sum_of_r_q21_squared)
-            .sqrt();
-        let quotient_of = one
-            / (value_of_two_minus_r_q22_squared * value_of_two_minus_r_q22_squared);
-        let r_q11_squared_plus_r_q21_squared = r_q11_squared + r_q21_squared;
-        let two_r_q11_squared_plus_r_q21_squared_2 = two
-            * r_q11_squared_plus_r_q21_squared;
-        let two_r_q21_r_q22_r_q32 = two * r_q21_r_q22 * r_q32;
-        let radius_quotient_of = radius * quotient_of;
-        let sum_of_r_q21_squared_2 = r_q21_squared
-            .mul_add(
-                -two_r_q11_squared_plus_r_q21_squared,
-                r_q11_squared_plus_r_q21_squared,
-            );
-        let r_q11_r_q31_plus_r_q12_r_q32 = r_q11.mul_add(r_q31, r_q12_r_q32);
-        let r_q12_r_q23 = r_q12 * r_q23;
-        let r_q12_r_q32_plus_two_r_q11_r_q23 = r_q12 * two.mul_add(r_q11_r_q23, r_q32);
-        let sum_of_two_minus_r_q22_squared = two_r_q11_squared_plus_r_q21_squared_2
-            - two_minus_r_q22_squared;
-        let sum_of_r_q33 = r_q33 + r_q11_r_q22_minus_r_q12_r_q21;
-        let r_q21_r_q22_r_q33 = r_q21_r_q22 * r_q33;
-        let sum_of_one_minus_r_q22_squared_4 = one_minus_r_q22_squared
-            - r_q11_squared_plus_r_q21_squared;
-        let product_of_r_q12_r_q11_r_q22_r_q33 = r_q12
-            * (r_q11 * two_r_q11_squared_plus_r_q12_squared
-                - r_q22 * two.mul_add(-r_q11_r_q22, r_q33));
-        let quotient_of_2 = one / value_of_two_minus_r_q22_squared;
+        let r_q33_squared = r_q33 * r_q33;
         // line 19 `H`: root_one_minus_r_q33_squared
-        let root_one_minus_r_q33_squared = r_q33.mul_add(-r_q33, one).sqrt();
-        let r_q13_r_q22 = r_q13 * r_q22;
-        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12_r_q23 - r_q13_r_q22;
-        let product_of_speed_wx_radius = root_one_minus_r_q33_squared
-            * speed_wx_radius
-                .mul_add(
-                    r_q11_r_q23_minus_r_q13_r_q21,
-                    speed_wy_radius * r_q12_r_q23_minus_r_q13_r_q22,
-                );
-        let product_of_speed_wx_radius_2 = root_one_minus_r_q33_squared
-            * (speed_wx_radius * r_q11_r_q22_minus_r_q12_r_q21
-                - speed_wz_radius * r_q12_r_q23_minus_r_q13_r_q22);
-        let speed_wx_radius_r_q31 = speed_wx_radius * r_q31;
-        let r_q33_r_q12_r_q23_minus_r_q13_r_q22 = r_q33 * r_q12_r_q23_minus_r_q13_r_q22;
-        let product_of_speed_wx_radius_r_q31 = speed_wx_radius_r_q31
-            * r_q33_r_q12_r_q23_minus_r_q13_r_q22;
-        let speed_wz_radius_r_q33 = speed_wz_radius * r_q33;
-        let product_of_speed_wz_radius_r_q33 = speed_wz_radius_r_q33
-            * r_q33_r_q12_r_q23_minus_r_q13_r_q22;
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let speed_wy_radius = speed_wy * radius;
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let speed_wz_radius = speed_wz * radius;
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let product_of_speed_wy_radius = speed_wy_radius * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_speed_wz_radius = speed_wz_radius * r_q12_r_q23_minus_r_q13_r_q22;
+        let speed_wx_radius = speed_wx * radius;
+        let r_q32_r_q11_r_q23_minus_r_q13_r_q21 = r_q32 * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_r_q31 = r_q31.mul_add(r_q31, -r_q32_r_q11_r_q23_minus_r_q13_r_q21);
+        let product_of_r_q33 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let radius_r_q33 = radius * r_q33;
+        let speed_wz_radius_r_q33 = speed_wz * radius_r_q33;
+        let sum_of_r_q31_2 = two.mul_add(r_q31, -r_q12_r_q23_minus_r_q13_r_q22);
+        let radius_r_q33_r_q33 = radius_r_q33 * r_q33;
+        let radius_r_q33_r_q33_r_q32 = radius_r_q33_r_q33 * r_q32;
+        let speed_wx_radius_r_q33_r_q33_r_q32 = speed_wx * radius_r_q33_r_q33_r_q32;
+        let radius_r_q33_r_q33_r_q31 = radius_r_q33_r_q33 * r_q31;
+        let speed_wy_radius_r_q33_r_q33_r_q31 = speed_wy * radius_r_q33_r_q33_r_q31;
+        let speed_wz_radius_r_q33_r_q33 = speed_wz * radius_r_q33_r_q33;
+        let speed_wz_radius_r_q33_r_q33_r_q33 = speed_wz_radius_r_q33_r_q33 * r_q33;
+        let quotient_of = one
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let r_q33_r_q11_r_q22_minus_r_q12_r_q21 = r_q33 * r_q11_r_q22_minus_r_q12_r_q21;
+        let r_q33_quotient_of = r_q33 * quotient_of;
         // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
         let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
-        let sum_of_r_q11_r_q12 = r_q11_r_q12
-            .mul_add(r_q12_r_q23_minus_r_q13_r_q22, -product_of_r_q22_r_q23);
-        let r_q11_r_q12_plus_r_q21_r_q22 = r_q11_r_q12 + r_q21_r_q22;
-        let r_q31_r_q11_r_q12_plus_r_q21_r_q22 = r_q31 * r_q11_r_q12_plus_r_q21_r_q22;
-        let product_of_r_q31 = r_q31 * r_q11_squared_plus_r_q21_squared;
-        let r_q21_r_q23 = r_q21 * r_q23;
-        let r_q11_r_q12_r_q33 = r_q11_r_q12 * r_q33;
-        let sum_of_r_q22_squared = two_r_q11_squared_plus_r_q21_squared + r_q22_squared;
-        let sum_of_r_q11_r_q21_r_q31_r_q22_r_q23 = r_q11_r_q21
-            .mul_add(r_q31, r_q22_r_q23 * sum_of_r_q22_squared);
-        let sum_of_r_q11_r_q22_minus_r_q12_r_q21 = r_q11_r_q22_minus_r_q12_r_q21
-            * sum_of_r_q11_r_q21_r_q31_r_q22_r_q23
-            - r_q11_r_q12
-                * r_q12_r_q23_minus_r_q13_r_q22
-                    .mul_add(r_q11_squared_plus_r_q12_squared, two_r_q21_r_q22_r_q32);
-        let r_q11_r_q12_plus_three_r_q21_r_q22 = three.mul_add(r_q21_r_q22, r_q11_r_q12);
-        let sum_of_two_minus_r_q22_squared_2 = three
-            .mul_add(-r_q12_squared, two_minus_r_q22_squared);
-        let one_minus_sum_of_two_r_q22_squared = one - sum_of_two_r_q22_squared;
-        let sum_of_r_q11_r_q33_r_q22_squared = (two * r_q22_squared)
+        let sum_of_speed_wy_radius = speed_wy_radius
             .mul_add(
-                -r_q22,
-                r_q22.mul_add(-two_r_q11_squared_plus_r_q21_squared, r_q11_r_q33),
+                r_q11_r_q22_minus_r_q12_r_q21,
+                speed_wz_radius * r_q11_r_q23_minus_r_q13_r_q21,
             );
-        let product_of_r_q21_squared = two_r_q11_squared_plus_r_q21_squared
-            * (r_q21_squared + two_r_q22_squared);
-        let product_of_r_q11_squared = r_q11_squared * r_q11_squared_plus_r_q12_squared;
-        let sum_of_r_q21_r_q11_r_q33_r_q22 = r_q21
-            .mul_add(
-                r_q11_squared_plus_r_q21_squared,
-                r_q11_r_q33
-                    .mul_add(
-                        r_q11_r_q12_plus_three_r_q21_r_q22,
-                        r_q22 * r_q11_r_q12_plus_r_q21_r_q22,
-                    ),
-            );
-        let sum_of_one_minus_r_q22_squared_5 = one_minus_r_q22_squared - r_q21_squared;
-        let sum_of_r_q11_r_q22_r_q33 = r_q11 * one_plus_five_r_q11_r_q33_r_q22
-            - r_q22_r_q33 * sum_of_one_minus_r_q22_squared_5;
-        let sum_of_product_of_r_q21_squared = sum_of_r_q11_squared_squared_2
-            + product_of_r_q21_squared;
-        let r_q33_r_q11_r_q23_minus_r_q13_r_q21 = r_q33 * r_q11_r_q23_minus_r_q13_r_q21;
-        let product_of_r_q32 = r_q32 * r_q33_r_q11_r_q23_minus_r_q13_r_q21;
-        let sum_of_r_q13_r_q21_r_q23_r_q31 = r_q13
-            .mul_add(r_q11_r_q31_plus_r_q12_r_q32, r_q21_r_q23 * r_q31);
-        let sum_of_r_q32 = two.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21);
-        let sum_of_r_q11_r_q12_r_q23_r_q13_r_q22 = r_q11
-            .mul_add(
-                r_q12_r_q23
-                    .mul_add(r_q13, two * r_q22_r_q32 * r_q11_r_q23_minus_r_q13_r_q21),
-                r_q11_r_q23_minus_r_q13_r_q21
-                    .mul_add(
-                        sum_of_r_q11_r_q21_r_q31_r_q22_r_q23,
-                        -r_q22
-                            * (r_q23
-                                * r_q32
-                                    .mul_add(sum_of_one_minus_r_q22_squared_5, r_q11_r_q23)
-                                - r_q12_r_q32_plus_two_r_q11_r_q23
-                                    * r_q12_r_q23_minus_r_q13_r_q22),
-                    ),
-            );
-        let sum_of_2 = r_q11_squared_plus_r_q12_squared
-            - sum_of_one_minus_r_q22_squared_5;
-        let sum_of_3 = one - r_q11_squared_plus_r_q21_squared;
-        let root_one_minus_r_q33_squared_radius = root_one_minus_r_q33_squared * radius;
-        let product_of_radius = radius * inverse_root_one_minus_r_q33_squared;
+        let r_q31_r_q12_r_q23_minus_r_q13_r_q22 = r_q31 * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q32 = r_q32.mul_add(r_q32, r_q31_r_q12_r_q23_minus_r_q13_r_q22);
+        let sum_of_r_q32_2 = two.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21);
+        let r_q32_r_q12_r_q23_minus_r_q13_r_q22 = r_q32 * r_q12_r_q23_minus_r_q13_r_q22;
+        let speed_wy_radius_r_q33 = speed_wy * radius_r_q33;
+        let r_q32_speed_wx = r_q32 * speed_wx;
         SVector::from([
             zero,
             zero,
             zero,
-            speed_wy
+            root_one_minus_r_q33_squared
                 .mul_add(
-                    product_of_speed_wx_radius,
-                    speed_wz
+                    product_of_speed_wy_radius
                         .mul_add(
-                            (speed_wy_radius * r_q32)
+                            speed_wy,
+                            product_of_speed_wz_radius
                                 .mul_add(
-                                    r_q33_r_q12_r_q23_minus_r_q13_r_q22,
-                                    product_of_speed_wx_radius_r_q31
-                                        + product_of_speed_wz_radius_r_q33,
-                                )
-                                .mul_add(
-                                    inverse_root_one_minus_r_q33_squared,
-                                    -product_of_speed_wx_radius_2,
+                                    speed_wz,
+                                    speed_wx
+                                        * (speed_wy_radius * r_q11_r_q23_minus_r_q13_r_q21
+                                            - speed_wz_radius * r_q11_r_q22_minus_r_q12_r_q21),
                                 ),
-                            (speed_wx
-                                * (speed_wx_radius * r_q11_r_q12)
+                        ),
+                    (speed_wy
+                        * speed_wx_radius
+                            .mul_add(
+                                r_q32
                                     .mul_add(
-                                        r_q32 + r_q11_r_q23_minus_r_q13_r_q21,
-                                        speed_wz_radius
+                                        sum_of_r_q31,
+                                        r_q33_squared * r_q11_r_q23_minus_r_q13_r_q21,
+                                    ),
+                                (speed_wy_radius * r_q31)
+                                    .mul_add(
+                                        product_of_r_q33 - sum_of_r_q31,
+                                        (speed_wz_radius_r_q33 * r_q32)
                                             .mul_add(
-                                                -r_q33
+                                                -sum_of_r_q31_2,
+                                                speed_wx_radius_r_q33_r_q33_r_q32
                                                     .mul_add(
-                                                        r_q12_squared_plus_r_q22_squared - r_q11_squared,
-                                                        r_q11_r_q22_minus_r_q12_r_q21
-                                                            * sum_of_one_minus_r_q22_squared,
-                                                    ),
-                                                speed_wy_radius
-                                                    .mul_add(
-                                                        r_q21
+                                                        sum_of_r_q31,
+                                                        speed_wy_radius_r_q33_r_q33_r_q31
                                                             .mul_add(
-                                                                r_q12
-                                                                    .mul_add(
-                                                                        -r_q12.mul_add(r_q13, two * r_q22 * r_q23_plus_r_q11_r_q32),
-                                                                        product_of_r_q21_r_q32,
-                                                                    ),
-                                                                product_of_r_q22_r_q23
-                                                                    .mul_add(
-                                                                        -two_r_q12_squared_plus_r_q22_squared,
-                                                                        r_q11
-                                                                            .mul_add(
-                                                                                -r_q23
-                                                                                    .mul_add(
-                                                                                        five.mul_add(-r_q12_squared_plus_r_q22_squared, four),
-                                                                                        r_q11
-                                                                                            * r_q32
-                                                                                                .mul_add(
-                                                                                                    two.mul_add(-sum_of_two_r_q22_squared, six),
-                                                                                                    r_q11_r_q23_minus_r_q13_r_q21,
-                                                                                                ),
-                                                                                    ),
-                                                                                r_q11_r_q23_minus_r_q13_r_q21 * sum_of_r_q11_squared_squared,
-                                                                            ),
-                                                                    ),
+                                                                -sum_of_r_q31,
+                                                                speed_wz_radius_r_q33_r_q33_r_q33 * r_q31
+                                                                    * r_q11_r_q23_minus_r_q13_r_q21,
                                                             ),
-                                                        speed_wz_radius
-                                                            .mul_add(
-                                                                r_q21
-                                                                    .mul_add(
-                                                                        sum_of_product_of_r_q12_r_q22_r_q33,
-                                                                        r_q11
-                                                                            .mul_add(
-                                                                                -sum_of_r_q22_r_q11_r_q33_sum_of,
-                                                                                r_q11_r_q22_minus_r_q12_r_q21 * sum_of_r_q12_squared,
-                                                                            ),
-                                                                    ),
-                                                                speed_wx_radius
-                                                                    * (r_q12
-                                                                        * r_q23
-                                                                            .mul_add(
-                                                                                sum_of_one_minus_r_q22_squared_2,
-                                                                                r_q11
-                                                                                    .mul_add(
-                                                                                        r_q11_r_q23_minus_r_q13_r_q21
-                                                                                            .mul_add(
-                                                                                                -r_q11_squared_plus_r_q12_squared,
-                                                                                                r_q22
-                                                                                                    .mul_add(
-                                                                                                        -three
-                                                                                                            .mul_add(
-                                                                                                                r_q22_r_q32,
-                                                                                                                two * r_q23 * r_q11_r_q22_minus_r_q12_r_q21,
-                                                                                                            ),
-                                                                                                        r_q32 * sum_of,
-                                                                                                    ),
-                                                                                            ),
-                                                                                        r_q12_r_q32 * r_q21_r_q22,
-                                                                                    ),
-                                                                            ) - two * r_q11 * r_q21_r_q22 * r_q23_plus_r_q11_r_q32),
-                                                            ),
-                                                    )
-                                                    .mul_add(
-                                                        -quotient_of,
-                                                        speed_wy_radius
-                                                            * r_q32
-                                                                .mul_add(
-                                                                    three - r_q12_squared_plus_r_q22_squared
-                                                                        - sum_of_r_q11_squared_r_q21_squared,
-                                                                    r_q11_r_q23_minus_r_q13_r_q21
-                                                                        .mul_add(
-                                                                            -r_q11_squared_minus_r_q12_squared,
-                                                                            -r_q13_r_q21 + product_of_r_q22_r_q23,
-                                                                        ),
-                                                                ),
-                                                    ),
+                                                    ) * quotient_of,
                                             ),
-                                    )
-                                - speed_wy
-                                    * (speed_wy
-                                        * radius
-                                            .mul_add(
-                                                r_q31
-                                                    .mul_add(
-                                                        one - two_r_q11_squared_plus_r_q21_squared_2,
-                                                        r_q11_r_q12
-                                                            .mul_add(
-                                                                r_q11_r_q23_minus_r_q13_r_q21 - r_q32,
-                                                                -two_r_q21_r_q22_r_q32,
-                                                            ),
-                                                    ),
-                                                radius_quotient_of
-                                                    * r_q31
-                                                        .mul_add(
-                                                            sum_of_r_q21_squared_2,
-                                                            -r_q11
-                                                                * (r_q11
-                                                                    * r_q11
-                                                                        .mul_add(r_q11_r_q31_plus_r_q12_r_q32, two * r_q12_r_q23)
-                                                                    - product_of_r_q12 * r_q11_r_q23_minus_r_q13_r_q21)
-                                                                + r_q22
-                                                                    * (r_q12_r_q32_plus_two_r_q11_r_q23
-                                                                        * r_q11_r_q22_minus_r_q12_r_q21
-                                                                        - r_q21_r_q32 * sum_of_two_minus_r_q22_squared),
-                                                        ),
-                                            )
-                                        - speed_wz
-                                            * radius
-                                                .mul_add(
-                                                    r_q11_r_q12.mul_add(sum_of_r_q33, two * r_q21_r_q22_r_q33),
-                                                    radius_quotient_of
-                                                        * product_of_r_q12_r_q11_r_q22_r_q33
-                                                            .mul_add(
-                                                                r_q11_r_q22_minus_r_q12_r_q21,
-                                                                r_q21_r_q22_r_q33
-                                                                    .mul_add(
-                                                                        sum_of_one_minus_r_q22_squared_3,
-                                                                        r_q11
-                                                                            * (r_q21 * sum_of_one_minus_r_q22_squared_4
-                                                                                - r_q11_r_q12 * (r_q22 + r_q11_r_q33)),
-                                                                    ),
-                                                            ),
-                                                ))) * quotient_of_2,
-                        ),
-                ),
-            -speed_wx
-                .mul_add(
-                    speed_wx_radius
-                        .mul_add(
-                            r_q32
-                                .mul_add(
-                                    two.mul_add(-sum_of_r_q21_squared, three - r_q22_squared),
-                                    -sum_of_r_q11_r_q12 + r_q31_r_q11_r_q12_plus_r_q21_r_q22,
-                                ),
-                            speed_wy_radius
-                                .mul_add(
-                                    r_q32
-                                        .mul_add(
-                                            three_r_q11_r_q12_plus_r_q21_r_q22,
-                                            r_q12_r_q23_minus_r_q13_r_q22
-                                                .mul_add(
-                                                    r_q11_squared_minus_r_q12_squared,
-                                                    r_q21_r_q23
-                                                        .mul_add(
-                                                            -r_q11_r_q22_minus_r_q12_r_q21,
-                                                            r_q13_r_q22 + product_of_r_q31,
-                                                        ),
-                                                ),
-                                        ),
-                                    speed_wz_radius
-                                        .mul_add(
-                                            -two.mul_add(r_q11_r_q12_r_q33, r_q21_r_q22 * sum_of_r_q33),
-                                            speed_wx_radius
-                                                .mul_add(
-                                                    r_q11_r_q23
-                                                        .mul_add(
-                                                            three.mul_add(-r_q22_squared, two - r_q12_squared),
-                                                            r_q32
-                                                                .mul_add(
-                                                                    r_q12_squared
-                                                                        .mul_add(
-                                                                            -sum_of_two_r_q22_squared,
-                                                                            two_r_q11_squared_plus_r_q12_squared,
-                                                                        ),
-                                                                    sum_of_r_q11_r_q22_minus_r_q12_r_q21,
-                                                                ),
-                                                        ),
-                                                    speed_wy_radius
-                                                        .mul_add(
-                                                            r_q12_r_q23_minus_r_q13_r_q22
-                                                                .mul_add(
-                                                                    sum_of_r_q11_squared_squared,
-                                                                    r_q23
-                                                                        .mul_add(
-                                                                            r_q12
-                                                                                .mul_add(
-                                                                                    -(sum_of_two_minus_r_q22_squared_2 + r_q21_squared),
-                                                                                    (r_q21 * r_q11_r_q22_minus_r_q12_r_q21)
-                                                                                        .mul_add(
-                                                                                            -two_r_q11_squared_plus_r_q21_squared,
-                                                                                            r_q11 * r_q11_r_q12_plus_three_r_q21_r_q22,
-                                                                                        ),
-                                                                                ),
-                                                                            r_q22
-                                                                                .mul_add(
-                                                                                    r_q13
-                                                                                        .mul_add(
-                                                                                            r_q11_squared_minus_r_q12_squared,
-                                                                                            product_of_r_q21_r_q32,
-                                                                                        ),
-                                                                                    two * r_q11_r_q12 * r_q32 * sum_of_one_minus_r_q22_squared,
-                                                                                ),
-                                                                        ),
-                                                                ),
-                                                            speed_wz_radius
-                                                                * r_q12
-                                                                    .mul_add(
-                                                                        r_q22
-                                                                            .mul_add(
-                                                                                sum_of_one_minus_r_q22_squared,
-                                                                                r_q11_r_q33 * one_minus_sum_of_two_r_q22_squared,
-                                                                            ),
-                                                                        r_q21
-                                                                            * r_q11_r_q22_minus_r_q12_r_q21
-                                                                                .mul_add(
-                                                                                    sum_of_r_q11_r_q33_r_q22_squared,
-                                                                                    r_q22_squared * (r_q11 + r_q22_r_q33),
-                                                                                ),
-                                                                    ),
-                                                        ),
-                                                ) * quotient_of,
-                                        ),
-                                ),
-                        ),
-                    speed_wy
-                        * (speed_wy
-                            * (radius
-                                * r_q32
+                                    ),
+                            )
+                        - speed_wz
+                            * (speed_wx
+                                * radius_r_q33
                                     .mul_add(
-                                        -sum_of_two_minus_r_q22_squared,
-                                        sum_of_r_q11_r_q12 + r_q31_r_q11_r_q12_plus_r_q21_r_q22,
+                                        r_q32_r_q11_r_q23_minus_r_q13_r_q21
+                                            + r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                        radius_r_q33_r_q33_r_q32 * r_q33_quotient_of
+                                            * r_q11_r_q23_minus_r_q13_r_q21,
                                     )
-                                - radius_quotient_of
-                                    * r_q32
-                                        .mul_add(
-                                            r_q22_squared
-                                                .mul_add(
-                                                    -one_minus_r_q22_squared,
-                                                    product_of_r_q21_squared + product_of_r_q11_squared
-                                                        - sum_of_r_q11_squared_r_q21_squared,
-                                                ),
-                                            r_q11_r_q23
-                                                .mul_add(
-                                                    -sum_of_two_minus_r_q22_squared_2,
-                                                    sum_of_r_q11_r_q22_minus_r_q12_r_q21,
-                                                ),
-                                        ))
-                            - speed_wz
-                                * (radius
-                                    * r_q11_r_q22_minus_r_q12_r_q21
-                                        .mul_add(
-                                            one_minus_r_q22_squared,
-                                            r_q11_squared_plus_r_q21_squared
-                                                .mul_add(-sum_of_r_q33, r_q22_squared * r_q33),
-                                        )
-                                    - radius_quotient_of
-                                        * r_q12
-                                            .mul_add(
-                                                sum_of_r_q21_r_q11_r_q33_r_q22,
-                                                r_q22
-                                                    .mul_add(
-                                                        -sum_of_r_q11_r_q22_r_q33,
-                                                        r_q11_r_q22_minus_r_q12_r_q21
-                                                            * sum_of_product_of_r_q21_squared,
-                                                    ),
-                                            ))),
-                )
+                                - speed_wz_radius_r_q33_r_q33
+                                    * r_q12_r_q23_minus_r_q13_r_q22))
+                        * inverse_root_one_minus_r_q33_squared,
+                ),
+            -root_one_minus_r_q33_squared
                 .mul_add(
-                    quotient_of_2,
                     speed_wx
                         .mul_add(
-                            product_of_speed_wx_radius,
-                            speed_wz
-                                * speed_wx_radius_r_q31
-                                    .mul_add(
-                                        r_q33_r_q11_r_q23_minus_r_q13_r_q21,
-                                        speed_wy_radius
-                                            .mul_add(
-                                                product_of_r_q32,
-                                                speed_wz_radius_r_q33 * r_q33_r_q11_r_q23_minus_r_q13_r_q21,
-                                            ),
-                                    )
-                                    .mul_add(
-                                        inverse_root_one_minus_r_q33_squared,
-                                        root_one_minus_r_q33_squared
-                                            * speed_wy_radius
-                                                .mul_add(
-                                                    r_q11_r_q22_minus_r_q12_r_q21,
-                                                    speed_wz_radius * r_q11_r_q23_minus_r_q13_r_q21,
-                                                ),
-                                    ),
+                            speed_wx_radius
+                                .mul_add(
+                                    r_q11_r_q23_minus_r_q13_r_q21,
+                                    product_of_speed_wy_radius,
+                                ),
+                            speed_wz * sum_of_speed_wy_radius,
                         ),
-                ),
-            -speed_wx
-                .mul_add(
-                    speed_wx_radius
-                        .mul_add(
-                            r_q33
-                                .mul_add(
-                                    three
-                                        .mul_add(
-                                            sum_of_one_minus_r_q22_squared_2,
-                                            -r_q11_squared_plus_r_q21_squared,
-                                        ),
-                                    r_q22_r_q23
-                                        .mul_add(sum_of_r_q32, sum_of_r_q13_r_q21_r_q23_r_q31),
-                                ),
-                            speed_wy_radius
-                                .mul_add(
-                                    r_q23
-                                        .mul_add(
-                                            r_q21
-                                                .mul_add(
-                                                    -sum_of_r_q32,
-                                                    r_q22.mul_add(r_q12_r_q23_minus_r_q13_r_q22, r_q13),
-                                                ),
-                                            four * r_q33 * r_q11_r_q12_plus_r_q21_r_q22,
-                                        ),
-                                    speed_wz_radius
-                                        .mul_add(
-                                            r_q32
-                                                .mul_add(
-                                                    r_q11_r_q12_plus_r_q21_r_q22,
-                                                    r_q12_r_q23_minus_r_q13_r_q22
-                                                        .mul_add(
-                                                            -sum_of_one_minus_r_q22_squared,
-                                                            product_of_r_q31
-                                                                - r_q21
-                                                                    * (r_q22 * r_q11_r_q23_minus_r_q13_r_q21 - r_q23 * r_q33),
-                                                        ),
-                                                ),
-                                            speed_wx_radius
-                                                .mul_add(
-                                                    (r_q12_squared * r_q33)
-                                                        .mul_add(
-                                                            one_minus_sum_of_two_r_q22_squared,
-                                                            sum_of_r_q11_r_q12_r_q23_r_q13_r_q22
-                                                                + r_q22
-                                                                    * (two * r_q11 * sum_of_2
-                                                                        - r_q22_r_q33 * sum_of_one_minus_r_q22_squared_3),
-                                                        ),
-                                                    speed_wz_radius
-                                                        .mul_add(
-                                                            r_q23
-                                                                .mul_add(
-                                                                    sum_of_product_of_r_q12_r_q22_r_q33,
-                                                                    r_q12_r_q23_minus_r_q13_r_q22
-                                                                        .mul_add(
-                                                                            -sum_of_r_q12_squared,
-                                                                            r_q13
-                                                                                .mul_add(
-                                                                                    -sum_of_r_q22_r_q11_r_q33_sum_of,
-                                                                                    r_q21 * r_q11_r_q23_minus_r_q13_r_q21
-                                                                                        * sum_of_r_q11_r_q33_r_q22_squared,
-                                                                                ),
-                                                                        ),
-                                                                ),
-                                                            speed_wy_radius
-                                                                * r_q21
-                                                                    .mul_add(
-                                                                        (two * r_q11)
-                                                                            .mul_add(
-                                                                                sum_of_3,
-                                                                                r_q23
-                                                                                    * (r_q11_r_q23_minus_r_q13_r_q21
-                                                                                        * (one - two_r_q11_squared_plus_r_q21_squared)
-                                                                                        - r_q32 * sum_of_one_minus_r_q22_squared_3),
-                                                                            ),
-                                                                        r_q22
-                                                                            .mul_add(
-                                                                                two
-                                                                                    .mul_add(
-                                                                                        r_q12
-                                                                                            .mul_add(
-                                                                                                r_q23
-                                                                                                    .mul_add(
-                                                                                                        -r_q23_plus_r_q11_r_q32,
-                                                                                                        one_minus_r_q22_squared
-                                                                                                            - two_r_q11_squared_plus_r_q12_squared,
-                                                                                                    ),
-                                                                                                r_q21 * r_q33 * sum_of_r_q22_squared,
-                                                                                            ),
-                                                                                        (r_q23 * r_q12_r_q23_minus_r_q13_r_q22)
-                                                                                            .mul_add(
-                                                                                                two_r_q12_squared_plus_r_q22_squared,
-                                                                                                -r_q22 * (four * r_q11_r_q21 - r_q13 * r_q23),
-                                                                                            ),
-                                                                                    ),
-                                                                                two * r_q11_r_q12_r_q33 * sum_of_two_r_q22_squared,
-                                                                            ),
-                                                                    ),
-                                                        ),
-                                                ) * quotient_of,
-                                        ),
-                                ),
-                        )
-                        .mul_add(
-                            quotient_of_2,
-                            (product_of_speed_wx_radius_r_q31
-                                - speed_wy_radius * r_q33
-                                    * (r_q31 * r_q11_r_q23_minus_r_q13_r_q21
-                                        - r_q32 * r_q12_r_q23_minus_r_q13_r_q22)
-                                + product_of_speed_wz_radius_r_q33)
-                                .mul_add(
-                                    inverse_root_one_minus_r_q33_squared,
-                                    -product_of_speed_wx_radius_2,
-                                ),
-                        ),
-                    speed_wy
-                        * speed_wy
+                    (speed_wx
+                        * (speed_wx_radius * r_q32)
                             .mul_add(
-                                root_one_minus_r_q33_squared_radius
+                                sum_of_r_q32 - product_of_r_q33,
+                                (speed_wz_radius_r_q33 * r_q31)
                                     .mul_add(
-                                        -r_q11_r_q22_minus_r_q12_r_q21,
-                                        product_of_radius
+                                        sum_of_r_q32_2,
+                                        speed_wx_radius_r_q33_r_q33_r_q32
                                             .mul_add(
-                                                -product_of_r_q32,
-                                                (radius
-                                                    * r_q33
-                                                        .mul_add(
-                                                            three.mul_add(sum_of_3, -r_q12_squared_plus_r_q22_squared),
-                                                            r_q22_r_q23
-                                                                .mul_add(
-                                                                    -r_q11_r_q23_minus_r_q13_r_q21,
-                                                                    sum_of_r_q13_r_q21_r_q23_r_q31,
-                                                                ),
-                                                        )
-                                                    - radius_quotient_of
-                                                        * r_q33
-                                                            .mul_add(
-                                                                r_q22_squared
-                                                                    .mul_add(
-                                                                        two_r_q11_squared_plus_r_q21_squared,
-                                                                        product_of_r_q11_squared - sum_of_r_q21_squared_2,
-                                                                    ),
-                                                                (two * r_q11_r_q22)
-                                                                    .mul_add(-sum_of_2, sum_of_r_q11_r_q12_r_q23_r_q13_r_q22),
-                                                            )) * quotient_of_2,
+                                                sum_of_r_q32,
+                                                speed_wy_radius_r_q33_r_q33_r_q31
+                                                    .mul_add(
+                                                        -sum_of_r_q32,
+                                                        speed_wz_radius_r_q33_r_q33_r_q33
+                                                            * r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                                    ),
+                                            )
+                                            .mul_add(
+                                                quotient_of,
+                                                -speed_wy_radius
+                                                    * (r_q31 * sum_of_r_q32
+                                                        - r_q33_squared * r_q12_r_q23_minus_r_q13_r_q22),
                                             ),
                                     ),
-                                speed_wz
-                                    * root_one_minus_r_q33_squared_radius
-                                        .mul_add(
-                                            -r_q11_r_q23_minus_r_q13_r_q21,
-                                            (product_of_radius * r_q33_r_q11_r_q23_minus_r_q13_r_q21)
-                                                .mul_add(
-                                                    -r_q33,
-                                                    radius
-                                                        .mul_add(
-                                                            r_q32
-                                                                .mul_add(
-                                                                    sum_of_2,
-                                                                    r_q11_r_q23_minus_r_q13_r_q21
-                                                                        .mul_add(
-                                                                            -sum_of_one_minus_r_q22_squared_4,
-                                                                            r_q12
-                                                                                * r_q11
-                                                                                    .mul_add(r_q12_r_q23_minus_r_q13_r_q22, r_q13 * r_q33),
-                                                                        ),
-                                                                ),
-                                                            radius_quotient_of
-                                                                * r_q13
-                                                                    .mul_add(
-                                                                        sum_of_r_q21_r_q11_r_q33_r_q22,
-                                                                        r_q23
-                                                                            .mul_add(
-                                                                                -sum_of_r_q11_r_q22_r_q33,
-                                                                                r_q11_r_q23_minus_r_q13_r_q21
-                                                                                    .mul_add(
-                                                                                        sum_of_product_of_r_q21_squared,
-                                                                                        product_of_r_q12_r_q11_r_q22_r_q33
-                                                                                            * r_q12_r_q23_minus_r_q13_r_q22,
-                                                                                    ),
-                                                                            ),
-                                                                    ),
-                                                        ) * quotient_of_2,
-                                                ),
-                                        ),
-                            ),
+                            )
+                        - speed_wz
+                            * (speed_wy
+                                * radius_r_q33
+                                    .mul_add(
+                                        r_q31_r_q12_r_q23_minus_r_q13_r_q22
+                                            - r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                        radius_r_q33_r_q33_r_q31 * r_q33_quotient_of
+                                            * r_q12_r_q23_minus_r_q13_r_q22,
+                                    )
+                                - speed_wz_radius_r_q33_r_q33
+                                    * r_q11_r_q23_minus_r_q13_r_q21))
+                        * inverse_root_one_minus_r_q33_squared,
                 ),
+            root_one_minus_r_q33_squared
+                * speed_wx
+                    .mul_add(
+                        speed_wx_radius
+                            .mul_add(
+                                r_q11_r_q22_minus_r_q12_r_q21,
+                                -product_of_speed_wz_radius,
+                            ),
+                        speed_wy * sum_of_speed_wy_radius,
+                    )
+                - (speed_wy_radius_r_q33 * speed_wy)
+                    .mul_add(
+                        r_q31.mul_add(sum_of_r_q31_2, -r_q33_squared),
+                        radius_r_q33_r_q33
+                            .mul_add(
+                                r_q31
+                                    .mul_add(
+                                        speed_wx
+                                            .mul_add(
+                                                speed_wz,
+                                                r_q33_quotient_of * speed_wy
+                                                    * (r_q31 * speed_wy - two * r_q32_speed_wx),
+                                            ),
+                                        r_q32
+                                            * speed_wy
+                                                .mul_add(
+                                                    speed_wz,
+                                                    r_q32_speed_wx * r_q33_quotient_of * speed_wx,
+                                                ),
+                                    ),
+                                speed_wx
+                                    * (speed_wx * radius_r_q33
+                                        * r_q32.mul_add(sum_of_r_q32_2, -r_q33_squared)
+                                        - speed_wy_radius_r_q33
+                                            * r_q31
+                                                .mul_add(
+                                                    four.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21),
+                                                    -r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                                )),
+                            ),
+                    ) * inverse_root_one_minus_r_q33_squared,
         ])
     }
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     ///
-    /// 3-vector. Operations: 295 additions, 385 multiplications (177 of each fused), 3 divisions, 2 function calls.
+    /// 3-vector. Operations: 56 additions, 111 multiplications (41 of each fused), 2 divisions, 1 function call.
     ///
     /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
     fn bias_momentum<T: Scalar>(
@@ -2074,831 +1273,205 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         let (h4, h5, h6) = (h[3], h[4], h[5]);
         let one = T::one();
         let two = T::from_f64(2.0);
-        let three = T::from_f64(3.0);
-        let five = T::from_f64(5.0);
-        let h4_radius = h4 * radius;
-        let r_q11_r_q12 = r_q11 * r_q12;
-        let r_q11_r_q23 = r_q11 * r_q23;
-        let r_q13_r_q21 = r_q13 * r_q21;
-        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11_r_q23 - r_q13_r_q21;
-        let sum_of_r_q32 = r_q32 + r_q11_r_q23_minus_r_q13_r_q21;
-        let h5_radius = h5 * radius;
-        let r_q11_squared = r_q11 * r_q11;
-        let r_q12_squared = r_q12 * r_q12;
-        let r_q11_squared_plus_r_q12_squared = r_q11_squared + r_q12_squared;
-        let two_r_q11_squared_plus_r_q12_squared = two
-            * r_q11_squared_plus_r_q12_squared;
-        let r_q22_squared = r_q22 * r_q22;
-        let sum_of_r_q22_squared = two_r_q11_squared_plus_r_q12_squared + r_q22_squared;
-        let r_q21_squared = r_q21 * r_q21;
-        let r_q12_r_q23 = r_q12 * r_q23;
-        let r_q13_r_q22 = r_q13 * r_q22;
-        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12_r_q23 - r_q13_r_q22;
-        let product_of_r_q11_r_q12 = r_q11_r_q12 * r_q12_r_q23_minus_r_q13_r_q22;
-        let r_q22_r_q23 = r_q22 * r_q23;
-        let r_q11_r_q22 = r_q11 * r_q22;
-        let r_q12_r_q21 = r_q12 * r_q21;
-        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11_r_q22 - r_q12_r_q21;
-        let product_of_r_q22_r_q23 = r_q22_r_q23 * r_q11_r_q22_minus_r_q12_r_q21;
-        let sum_of_product_of_r_q11_r_q12 = product_of_r_q11_r_q12
-            - product_of_r_q22_r_q23;
-        let r_q21_r_q22 = r_q21 * r_q22;
-        let r_q11_r_q12_plus_r_q21_r_q22 = r_q11_r_q12 + r_q21_r_q22;
-        let r_q31_r_q11_r_q12_plus_r_q21_r_q22 = r_q31 * r_q11_r_q12_plus_r_q21_r_q22;
-        let h6_radius = h6 * radius;
-        let r_q12_squared_plus_r_q22_squared = r_q12_squared + r_q22_squared;
-        let r_q11_squared_plus_r_q21_squared = r_q11_squared + r_q21_squared;
-        let r_q12_r_q32 = r_q12 * r_q32;
-        let r_q11_r_q31_plus_r_q12_r_q32 = r_q11.mul_add(r_q31, r_q12_r_q32);
-        let r_q21_r_q23 = r_q21 * r_q23;
-        let sum_of_r_q13_r_q21_r_q23_r_q31 = r_q13
-            .mul_add(r_q11_r_q31_plus_r_q12_r_q32, r_q21_r_q23 * r_q31);
-        let r_q23_plus_r_q12_r_q32_r_q21_r_q22 = r_q12_r_q32.mul_add(r_q21_r_q22, r_q23);
-        let sum_of_r_q12_r_q11_r_q21_r_q22 = r_q12
-            .mul_add(r_q12_squared_plus_r_q22_squared, two * r_q11 * r_q21_r_q22);
-        let product_of = r_q11_r_q23_minus_r_q13_r_q21
-            * r_q11_squared_plus_r_q12_squared;
-        let sum_of_product_of = two.mul_add(product_of_r_q22_r_q23, product_of);
-        let sum_of = one - r_q11_squared_plus_r_q12_squared;
-        let three_r_q22_squared = three * r_q22_squared;
-        let r_q11_r_q32 = r_q11 * r_q32;
-        let r_q12_r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q12_r_q23_minus_r_q13_r_q22;
-        let two_r_q11_squared = two * r_q11_squared;
-        let two_r_q11_squared_plus_r_q12_squared_2 = two_r_q11_squared + r_q12_squared;
-        let product_of_r_q12 = r_q12 * r_q11_squared_plus_r_q12_squared;
-        let r_q11_r_q21 = r_q11 * r_q21;
-        let r_q12_r_q22 = r_q12 * r_q22;
-        let r_q11_r_q21_plus_r_q12_r_q22 = r_q11_r_q21 + r_q12_r_q22;
-        let r_q22_r_q11_r_q21_plus_r_q12_r_q22 = r_q22 * r_q11_r_q21_plus_r_q12_r_q22;
-        let sum_of_product_of_r_q12 = two
-            .mul_add(r_q22_r_q11_r_q21_plus_r_q12_r_q22, product_of_r_q12);
-        let r_q21_squared_plus_r_q22_squared = r_q21_squared + r_q22_squared;
-        let sum_of_r_q11_r_q21_r_q31_r_q22_r_q23 = r_q11_r_q21
-            .mul_add(r_q31, r_q22_r_q23 * r_q21_squared_plus_r_q22_squared);
-        let product_of_r_q11_squared_r_q22_r_q23 = r_q11_r_q22_minus_r_q12_r_q21
-            * (two * r_q11_squared)
-                .mul_add(r_q22_r_q23, sum_of_r_q11_r_q21_r_q31_r_q22_r_q23);
-        let r_q11_r_q13 = r_q11 * r_q13;
-        let r_q32_r_q12_r_q23_minus_r_q13_r_q22 = r_q32 * r_q12_r_q23_minus_r_q13_r_q22;
-        let r_q32_plus_r_q11_r_q23 = r_q32 + r_q11_r_q23;
-        let sum_of_2 = one - r_q21_squared_plus_r_q22_squared;
-        let r_q32_sum_of_2 = r_q32 * sum_of_2;
-        let r_q11_r_q23_plus_r_q32_sum_of_2 = r_q11_r_q23 + r_q32_sum_of_2;
-        let sum_of_r_q12_r_q11_r_q13_r_q23_r_q22 = r_q12
-            .mul_add(
-                r_q11_r_q13.mul_add(r_q23, r_q22 * r_q32_r_q12_r_q23_minus_r_q13_r_q22),
-                r_q11_r_q23_minus_r_q13_r_q21
-                    .mul_add(
-                        sum_of_r_q11_r_q21_r_q31_r_q22_r_q23,
-                        r_q22
-                            * (two * r_q11
-                                * r_q11_r_q23_minus_r_q13_r_q21
-                                    .mul_add(
-                                        r_q32_plus_r_q11_r_q23,
-                                        r_q12_r_q12_r_q23_minus_r_q13_r_q22 * r_q23,
-                                    ) - r_q23 * r_q11_r_q23_plus_r_q32_sum_of_2),
-                    ),
-            );
-        let sum_of_sum_of_2 = r_q11_squared_plus_r_q12_squared - sum_of_2;
-        let r_q22_r_q33 = r_q22 * r_q33;
-        let r_q33_sum_of = r_q33 * sum_of;
-        let value_of = (two - r_q11_squared_plus_r_q12_squared
-            - r_q21_squared_plus_r_q22_squared)
-            .sqrt();
-        let inverse_value_of_squared = one / (value_of * value_of);
-        let two_r_q12_r_q23 = two * r_q12_r_q23;
-        let two_r_q12_r_q23_minus_r_q13_r_q22 = two_r_q12_r_q23 - r_q13_r_q22;
-        let product_of_r_q21_r_q23 = r_q21_r_q23 * r_q11_r_q22_minus_r_q12_r_q21;
-        let two_product_of_r_q21_r_q23 = two * product_of_r_q21_r_q23;
-        let r_q22_r_q12_r_q23_minus_r_q13_r_q22 = r_q22 * r_q12_r_q23_minus_r_q13_r_q22;
-        let sum_of_r_q13 = r_q13 + r_q22_r_q12_r_q23_minus_r_q13_r_q22;
-        let product_of_r_q33 = two * r_q33 * r_q11_r_q12_plus_r_q21_r_q22;
-        let two_r_q22_squared = two * r_q22_squared;
-        let r_q21_squared_plus_two_r_q22_squared = r_q21_squared + two_r_q22_squared;
-        let two_r_q11_squared_plus_r_q21_squared = two_r_q11_squared + r_q21_squared;
-        let r_q21_r_q11_r_q22_minus_r_q12_r_q21 = r_q21 * r_q11_r_q22_minus_r_q12_r_q21;
-        let product_of_2 = r_q12_r_q23_minus_r_q13_r_q22
-            * r_q11_squared_plus_r_q12_squared;
-        let sum_of_r_q11_r_q21_plus_r_q12_r_q22 = r_q22
-            .mul_add(
-                r_q22
-                    .mul_add(
-                        -two.mul_add(r_q11_r_q21, r_q12_r_q22),
-                        r_q12
-                            .mul_add(
-                                -two_r_q11_squared_plus_r_q12_squared_2,
-                                r_q21 * r_q33 * r_q21_squared_plus_r_q22_squared,
-                            ),
-                    ),
-                r_q11_r_q21_plus_r_q12_r_q22
-                    - r_q11
-                        * (r_q21 * r_q11_squared_plus_r_q21_squared
-                            - r_q33 * sum_of_product_of_r_q12),
-            );
-        let r_q21_r_q11_r_q23_minus_r_q13_r_q21 = r_q21 * r_q11_r_q23_minus_r_q13_r_q21;
-        let sum_of_3 = r_q21_r_q11_r_q23_minus_r_q13_r_q21
-            + r_q22_r_q12_r_q23_minus_r_q13_r_q22;
-        let product_of_sum_of_r_q22_squared = r_q11_r_q22_minus_r_q12_r_q21
-            * (sum_of - r_q22_squared);
-        let r_q11_r_q12_r_q33 = r_q11_r_q12 * r_q33;
-        let sum_of_r_q33 = two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
-        let r_q22_sum_of_3 = r_q22 * sum_of_3;
-        let sum_of_r_q22_sum_of_3_sum_of = r_q12_r_q23_minus_r_q13_r_q22
-            .mul_add(-sum_of, r_q22_sum_of_3);
-        let product_of_r_q31 = r_q31 * r_q11_squared_plus_r_q21_squared;
-        let inverse_value_of = one / value_of;
-        let product_of_h5_radius = h5_radius * r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q33_squared = r_q33 * r_q33;
         // line 19 `H`: root_one_minus_r_q33_squared
-        let root_one_minus_r_q33_squared = r_q33.mul_add(-r_q33, one).sqrt();
-        let radius_r_q11_r_q22_minus_r_q12_r_q21 = radius
-            * r_q11_r_q22_minus_r_q12_r_q21;
-        let product_of_3 = root_one_minus_r_q33_squared
-            * radius_r_q11_r_q22_minus_r_q12_r_q21;
-        let radius_r_q12_r_q23_minus_r_q13_r_q22 = radius
-            * r_q12_r_q23_minus_r_q13_r_q22;
-        let product_of_r_q33_2 = r_q33 / root_one_minus_r_q33_squared;
-        let r_q31_product_of_r_q33_2 = r_q31 * product_of_r_q33_2;
-        let product_of_r_q31_product_of_r_q33_2 = radius_r_q12_r_q23_minus_r_q13_r_q22
-            * r_q31_product_of_r_q33_2;
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
         let radius_r_q11_r_q23_minus_r_q13_r_q21 = radius
             * r_q11_r_q23_minus_r_q13_r_q21;
-        let product_of_value_of = value_of * radius_r_q11_r_q23_minus_r_q13_r_q21;
-        let product_of_4 = root_one_minus_r_q33_squared
-            * radius_r_q11_r_q23_minus_r_q13_r_q21;
-        let product_of_value_of_2 = value_of * r_q12_r_q23_minus_r_q13_r_q22;
-        let product_of_value_of_3 = value_of * radius_r_q11_r_q22_minus_r_q12_r_q21;
-        let product_of_value_of_4 = value_of * r_q11_r_q23_minus_r_q13_r_q21;
-        let product_of_value_of_5 = value_of * radius_r_q12_r_q23_minus_r_q13_r_q22;
-        let product_of_5 = root_one_minus_r_q33_squared
-            * radius_r_q12_r_q23_minus_r_q13_r_q22;
-        let product_of_product_of_r_q33_2 = r_q32_r_q12_r_q23_minus_r_q13_r_q22
-            * product_of_r_q33_2;
-        let r_q22_r_q11_r_q22_minus_r_q12_r_q21 = r_q22 * r_q11_r_q22_minus_r_q12_r_q21;
-        let sum_of_r_q32_2 = r_q32 - r_q11_r_q23_minus_r_q13_r_q21;
-        let sum_of_product_of_r_q31_r_q21_r_q22 = r_q21_r_q22
-            .mul_add(r_q32, product_of_r_q31);
-        let sum_of_r_q11_r_q32 = r_q11_r_q32 - r_q12_r_q12_r_q23_minus_r_q13_r_q22;
-        let sum_of_r_q11_squared = r_q11_squared
-            .mul_add(
-                -r_q11_squared_plus_r_q12_squared,
-                r_q11_squared_plus_r_q21_squared,
-            );
-        let product_of_sum_of_r_q11_r_q32 = r_q11_squared_plus_r_q12_squared
-            * sum_of_r_q11_r_q32;
-        let three_r_q11_r_q12_plus_r_q21_r_q22 = three.mul_add(r_q11_r_q12, r_q21_r_q22);
-        let sum_of_4 = one - r_q11_squared_plus_r_q21_squared;
-        let product_of_r_q32_sum_of_4 = r_q32 * two.mul_add(sum_of_4, -r_q22_squared);
-        let product_of_6 = two_r_q11_squared_plus_r_q21_squared
-            * r_q21_squared_plus_two_r_q22_squared;
-        let r_q22_squared_squared = r_q22_squared * r_q22_squared;
-        let r_q21_r_q22_r_q33 = r_q21_r_q22 * r_q33;
-        let sum_of_2_minus_r_q11_squared = sum_of_2 - r_q11_squared;
-        let product_of_7 = r_q11_r_q22_minus_r_q12_r_q21 * sum_of_2_minus_r_q11_squared;
-        let sum_of_r_q11_r_q23_minus_r_q13_r_q21 = r_q11_r_q23_minus_r_q13_r_q21
-            .mul_add(sum_of_2_minus_r_q11_squared, -product_of_r_q11_r_q12);
-        let product_of_r_q32_product_of_r_q33_2 = radius_r_q11_r_q23_minus_r_q13_r_q21
-            * r_q32 * product_of_r_q33_2;
-        let sum_of_r_q33_2 = two.mul_add(-r_q11_r_q22_minus_r_q12_r_q21, r_q33);
-        let r_q21_r_q22_sum_of_r_q33_2 = r_q21_r_q22 * sum_of_r_q33_2;
-        let r_q11_r_q22_r_q33 = r_q11_r_q22 * r_q33;
-        let one_plus_five_r_q11_r_q22_r_q33 = five.mul_add(r_q11_r_q22_r_q33, one);
-        let sum_of_r_q22_r_q11_r_q33_sum_of = r_q22 * one_plus_five_r_q11_r_q22_r_q33
-            - r_q11 * r_q33_sum_of;
-        let sum_of_product_of_r_q12_r_q22_r_q33 = r_q22_r_q33
-            .mul_add(
-                three_r_q11_r_q12_plus_r_q21_r_q22,
-                product_of_r_q12 + r_q22_r_q11_r_q21_plus_r_q12_r_q22,
-            );
-        let sum_of_r_q11_squared_2 = r_q11_squared
-            .mul_add(r_q11_squared, r_q22_squared_squared);
-        let sum_of_sum_of_r_q11_squared_2 = two_r_q11_squared_plus_r_q12_squared_2
-            .mul_add(r_q12_squared + two_r_q22_squared, sum_of_r_q11_squared_2);
-        let sum_of_r_q11_r_q33_r_q22 = r_q11 * r_q33
-            - r_q22 * two_r_q11_squared_plus_r_q21_squared;
-        let sum_of_r_q11_r_q21_plus_r_q12_r_q22_2 = r_q11_r_q21_plus_r_q12_r_q22
-            + r_q11_r_q12_r_q33;
-        let sum_of_r_q11_r_q22_r_q33_r_q11_r_q22 = r_q11
-            * two_r_q11_squared_plus_r_q12_squared_2
-            - r_q22 * two.mul_add(-r_q11_r_q22, r_q33);
-        let sum_of_r_q11_r_q21_r_q11_r_q22_r_q33 = r_q11
-            .mul_add(
-                sum_of_r_q11_r_q21_plus_r_q12_r_q22_2,
-                r_q21
-                    * three.mul_add(r_q11_r_q22_r_q33, r_q21_squared_plus_r_q22_squared),
-            );
-        let sum_of_r_q11_r_q22_r_q33_sum_of_2 = r_q11 * one_plus_five_r_q11_r_q22_r_q33
-            - r_q22_r_q33 * sum_of_2;
-        let sum_of_sum_of_r_q11_squared_2_2 = sum_of_r_q11_squared_2 + product_of_6;
-        let product_of_r_q33_2_r_q33 = product_of_r_q33_2 * r_q33;
-        let product_of_product_of_r_q33_2_r_q33 = radius_r_q12_r_q23_minus_r_q13_r_q22
-            * product_of_r_q33_2_r_q33;
-        let product_of_product_of_r_q33_2_r_q33_2 = radius_r_q11_r_q23_minus_r_q13_r_q21
-            * product_of_r_q33_2_r_q33;
+        let product_of_h5 = h5 * radius_r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        let radius_r_q11_r_q22_minus_r_q12_r_q21 = radius
+            * r_q11_r_q22_minus_r_q12_r_q21;
+        let product_of_h6 = h6 * radius_r_q11_r_q22_minus_r_q12_r_q21;
+        let speed_wy_h5 = speed_wy * h5;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let radius_r_q12_r_q23_minus_r_q13_r_q22 = radius
+            * r_q12_r_q23_minus_r_q13_r_q22;
+        let speed_wz_h6 = speed_wz * h6;
+        let r_q31_r_q12_r_q23_minus_r_q13_r_q22 = r_q31 * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q32 = r_q32.mul_add(r_q32, r_q31_r_q12_r_q23_minus_r_q13_r_q22);
+        let product_of_r_q33 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let radius_r_q33 = radius * r_q33;
+        let radius_r_q33_r_q33 = radius_r_q33 * r_q33;
+        let quotient_of = one
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let radius_r_q33_r_q33_quotient_of = radius_r_q33_r_q33 * quotient_of;
+        let radius_r_q33_r_q33_quotient_of_r_q32 = radius_r_q33_r_q33_quotient_of
+            * r_q32;
+        let radius_r_q33_r_q33_quotient_of_r_q31 = radius_r_q33_r_q33_quotient_of
+            * r_q31;
+        let sum_of_r_q32_2 = two.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21);
+        let r_q31_sum_of_r_q32_2 = r_q31 * sum_of_r_q32_2;
+        let r_q32_r_q12_r_q23_minus_r_q13_r_q22 = r_q32 * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_speed_wz_radius_r_q33 = speed_wz * radius_r_q33
+            * (r_q31_sum_of_r_q32_2 - r_q32_r_q12_r_q23_minus_r_q13_r_q22);
+        let speed_wx_radius_r_q33 = speed_wx * radius_r_q33;
+        let speed_wy_radius_r_q33 = speed_wy * radius_r_q33;
+        let product_of_r_q33_r_q31_speed_wy = r_q33
+            * (r_q31 * speed_wy - r_q32 * speed_wx) * quotient_of;
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let speed_wx_h4 = speed_wx * h4;
+        let product_of_h4 = h4 * radius_r_q12_r_q23_minus_r_q13_r_q22;
+        let r_q32_r_q11_r_q23_minus_r_q13_r_q21 = r_q32 * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_r_q31 = r_q31.mul_add(r_q31, -r_q32_r_q11_r_q23_minus_r_q13_r_q21);
+        let sum_of_r_q31_2 = two.mul_add(r_q31, -r_q12_r_q23_minus_r_q13_r_q22);
+        let r_q33_r_q11_r_q22_minus_r_q12_r_q21 = r_q33 * r_q11_r_q22_minus_r_q12_r_q21;
+        let r_q33_r_q11_r_q23_minus_r_q13_r_q21 = r_q33 * r_q11_r_q23_minus_r_q13_r_q21;
+        let speed_wz_radius_r_q33_r_q33 = speed_wz * radius_r_q33_r_q33;
+        let r_q33_r_q12_r_q23_minus_r_q13_r_q22 = r_q33 * r_q12_r_q23_minus_r_q13_r_q22;
         SVector::from([
-            speed_wx
+            -root_one_minus_r_q33_squared
                 .mul_add(
-                    h5_radius
-                        .mul_add(
-                            r_q32
-                                .mul_add(
-                                    two.mul_add(r_q21_squared, sum_of_r_q22_squared - three),
-                                    sum_of_product_of_r_q11_r_q12
-                                        - r_q31_r_q11_r_q12_plus_r_q21_r_q22,
-                                ),
-                            h6_radius
-                                .mul_add(
-                                    -r_q33
-                                        .mul_add(
-                                            three
-                                                .mul_add(
-                                                    one - r_q12_squared_plus_r_q22_squared,
-                                                    -r_q11_squared_plus_r_q21_squared,
-                                                ),
-                                            r_q22_r_q23
-                                                .mul_add(
-                                                    two.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21),
-                                                    sum_of_r_q13_r_q21_r_q23_r_q31,
-                                                ),
-                                        ),
-                                    h4_radius
-                                        .mul_add(
-                                            r_q23
-                                                .mul_add(
-                                                    -sum_of_r_q12_r_q11_r_q21_r_q22,
-                                                    r_q11
-                                                        .mul_add(
-                                                            -r_q12
-                                                                .mul_add(
-                                                                    r_q32
-                                                                        .mul_add(three_r_q22_squared - sum_of, sum_of_product_of),
-                                                                    two * r_q11_r_q32 * r_q21_r_q22,
-                                                                ),
-                                                            r_q12 * r_q23_plus_r_q12_r_q32_r_q21_r_q22,
-                                                        ),
-                                                ),
-                                            h5_radius
-                                                .mul_add(
-                                                    r_q32
-                                                        .mul_add(
-                                                            r_q12
-                                                                .mul_add(
-                                                                    -sum_of_product_of_r_q12,
-                                                                    two_r_q11_squared_plus_r_q12_squared_2,
-                                                                ),
-                                                            r_q11
-                                                                * (r_q23 * (two - r_q12_squared - three_r_q22_squared)
-                                                                    - r_q12_r_q12_r_q23_minus_r_q13_r_q22
-                                                                        * r_q11_squared_plus_r_q12_squared)
-                                                                + product_of_r_q11_squared_r_q22_r_q23,
-                                                        ),
-                                                    h6_radius
-                                                        * r_q12_squared
-                                                            .mul_add(
-                                                                r_q33_sum_of,
-                                                                sum_of_r_q12_r_q11_r_q13_r_q23_r_q22
-                                                                    + r_q22
-                                                                        * (two * r_q11 * sum_of_sum_of_2
-                                                                            - r_q22_r_q33
-                                                                                * (two_r_q11_squared_plus_r_q12_squared - sum_of_2)),
-                                                            ),
-                                                ),
-                                        )
-                                        .mul_add(
-                                            -inverse_value_of_squared,
-                                            h4_radius * r_q11_r_q12 * sum_of_r_q32,
-                                        ),
-                                ),
-                        ),
-                    speed_wz
-                        .mul_add(
-                            h6_radius
-                                .mul_add(
-                                    -r_q32
-                                        .mul_add(
-                                            r_q11_r_q12_plus_r_q21_r_q22,
-                                            r_q11_r_q13
-                                                .mul_add(
-                                                    r_q33,
-                                                    sum_of_r_q22_sum_of_3_sum_of + product_of_r_q31,
-                                                ),
-                                        ),
-                                    h4_radius
-                                        .mul_add(
-                                            -r_q33
-                                                .mul_add(
-                                                    r_q12_squared_plus_r_q22_squared - r_q21_squared,
-                                                    product_of_sum_of_r_q22_squared,
-                                                ),
-                                            h5_radius
-                                                * r_q21_r_q22.mul_add(sum_of_r_q33, r_q11_r_q12_r_q33),
-                                        ),
-                                ),
-                            speed_wy
-                                * h4_radius
-                                    .mul_add(
-                                        two
-                                            .mul_add(
-                                                r_q32_plus_r_q11_r_q23,
-                                                r_q32
-                                                    .mul_add(
-                                                        -r_q21_squared_plus_r_q22_squared,
-                                                        two_r_q11_squared_plus_r_q12_squared_2
-                                                            .mul_add(
-                                                                -sum_of_r_q32,
-                                                                -r_q13_r_q21 - product_of_r_q22_r_q23,
-                                                            ),
-                                                    ),
-                                            ),
-                                        h5_radius
-                                            .mul_add(
-                                                r_q12_r_q23_minus_r_q13_r_q22
-                                                    .mul_add(
-                                                        -two_r_q11_squared_plus_r_q12_squared_2,
-                                                        r_q11_r_q12
-                                                            .mul_add(
-                                                                -r_q32,
-                                                                two_r_q12_r_q23_minus_r_q13_r_q22
-                                                                    + two_product_of_r_q21_r_q23,
-                                                            ),
-                                                    ),
-                                                h6_radius
-                                                    .mul_add(
-                                                        r_q23
-                                                            .mul_add(
-                                                                r_q21
-                                                                    .mul_add(
-                                                                        two.mul_add(r_q11_r_q23_minus_r_q13_r_q21, r_q32),
-                                                                        sum_of_r_q13,
-                                                                    ),
-                                                                -product_of_r_q33,
-                                                            ),
-                                                        (h4_radius * r_q11)
-                                                            .mul_add(
-                                                                two
-                                                                    .mul_add(
-                                                                        r_q23
-                                                                            .mul_add(
-                                                                                -r_q12_squared_plus_r_q22_squared,
-                                                                                r_q23_plus_r_q12_r_q32_r_q21_r_q22,
-                                                                            ),
-                                                                        r_q11
-                                                                            * r_q32
-                                                                                .mul_add(
-                                                                                    two
-                                                                                        .mul_add(
-                                                                                            -r_q21_squared_plus_two_r_q22_squared,
-                                                                                            five - r_q11_squared_plus_r_q12_squared,
-                                                                                        ),
-                                                                                    three.mul_add(r_q11_r_q23, -sum_of_product_of - r_q13_r_q21),
-                                                                                ),
-                                                                    ),
-                                                                h6_radius
-                                                                    .mul_add(
-                                                                        (r_q11 * r_q32_plus_r_q11_r_q23 * two)
-                                                                            .mul_add(
-                                                                                r_q13 + sum_of_3,
-                                                                                (r_q21_r_q23 * sum_of_2)
-                                                                                    .mul_add(
-                                                                                        -sum_of_r_q32,
-                                                                                        -sum_of_r_q11_r_q21_plus_r_q12_r_q22,
-                                                                                    ),
-                                                                            ),
-                                                                        h5_radius
-                                                                            * r_q23
-                                                                                .mul_add(
-                                                                                    r_q12
-                                                                                        .mul_add(
-                                                                                            one + two_r_q11_squared_plus_r_q21_squared,
-                                                                                            r_q21_r_q11_r_q22_minus_r_q12_r_q21
-                                                                                                .mul_add(
-                                                                                                    r_q21_squared_plus_r_q22_squared,
-                                                                                                    -sum_of_r_q12_r_q11_r_q21_r_q22,
-                                                                                                ),
-                                                                                        ),
-                                                                                    r_q11
-                                                                                        * (r_q12_r_q32
-                                                                                            * two
-                                                                                                .mul_add(
-                                                                                                    -r_q21_squared_plus_r_q22_squared,
-                                                                                                    three - r_q11_squared_plus_r_q12_squared,
-                                                                                                )
-                                                                                            - r_q11
-                                                                                                * (r_q13_r_q22 + product_of_2 - two_product_of_r_q21_r_q23)),
-                                                                                ),
-                                                                    ),
-                                                            ) * inverse_value_of_squared,
-                                                    ),
-                                            ),
-                                    ),
-                        ),
-                )
-                .mul_add(
-                    inverse_value_of,
-                    speed_wy
-                        .mul_add(
-                            h4
-                                .mul_add(
-                                    product_of_4 - product_of_value_of,
-                                    h5_radius
-                                        .mul_add(
-                                            -product_of_value_of_2,
-                                            h6_radius * r_q31_product_of_r_q33_2
-                                                * r_q11_r_q23_minus_r_q13_r_q21,
-                                        ),
-                                ),
-                            speed_wz
-                                .mul_add(
-                                    product_of_h5_radius
-                                        .mul_add(
-                                            -r_q31_product_of_r_q33_2,
-                                            h6_radius
-                                                .mul_add(
-                                                    -product_of_value_of_2,
-                                                    h4
-                                                        * (product_of_value_of_3 - product_of_3
-                                                            + product_of_r_q31_product_of_r_q33_2),
-                                                ),
-                                        ),
-                                    -speed_wx
-                                        * (product_of_h5_radius * root_one_minus_r_q33_squared
-                                            - h6 * (product_of_3 - product_of_r_q31_product_of_r_q33_2)),
-                                ),
-                        ),
-                ),
-            speed_wx
-                .mul_add(
-                    h4_radius
-                        .mul_add(
-                            product_of_value_of_4,
-                            h6_radius
-                                .mul_add(
-                                    -product_of_product_of_r_q33_2,
-                                    h5 * (product_of_value_of_5 - product_of_5),
-                                ),
-                        ),
                     speed_wx
                         .mul_add(
-                            h4_radius
+                            product_of_h5 - product_of_h6,
+                            speed_wy_h5
                                 .mul_add(
-                                    r_q11_squared
-                                        .mul_add(
-                                            -sum_of_r_q32_2,
-                                            r_q32
-                                                - two
-                                                    * (r_q23 * (r_q11 - r_q22_r_q11_r_q22_minus_r_q12_r_q21)
-                                                        - r_q12_squared * r_q11_r_q23_minus_r_q13_r_q21),
-                                        ),
-                                    h5_radius
-                                        .mul_add(
-                                            r_q11_squared
-                                                .mul_add(
-                                                    r_q12_r_q23_minus_r_q13_r_q22,
-                                                    (r_q12 * two)
-                                                        .mul_add(
-                                                            -(r_q23 + sum_of_r_q11_r_q32),
-                                                            -product_of_r_q21_r_q23
-                                                                - sum_of_product_of_r_q31_r_q21_r_q22,
-                                                        ),
-                                                ),
-                                            h6_radius
-                                                .mul_add(
-                                                    -(r_q23 * (two * sum_of_r_q13 - r_q21 * sum_of_r_q32_2)
-                                                        + product_of_r_q33),
-                                                    h4_radius
-                                                        .mul_add(
-                                                            r_q23
-                                                                .mul_add(
-                                                                    r_q22
-                                                                        .mul_add(
-                                                                            two
-                                                                                .mul_add(
-                                                                                    r_q12_r_q21,
-                                                                                    r_q11_r_q22_minus_r_q12_r_q21 * sum_of_r_q22_squared,
-                                                                                ),
-                                                                            r_q11
-                                                                                * (two * (one - r_q11_squared)
-                                                                                    - three * r_q12_squared_plus_r_q22_squared),
-                                                                        ),
-                                                                    r_q32
-                                                                        .mul_add(
-                                                                            r_q21_squared
-                                                                                .mul_add(
-                                                                                    -r_q21_squared_plus_r_q22_squared,
-                                                                                    sum_of_r_q11_squared,
-                                                                                ),
-                                                                            r_q12_squared * (r_q13_r_q21 + product_of),
-                                                                        ),
-                                                                ),
-                                                            h6_radius
-                                                                .mul_add(
-                                                                    r_q22_r_q23
-                                                                        .mul_add(
-                                                                            two
-                                                                                .mul_add(
-                                                                                    -product_of_2,
-                                                                                    two_r_q12_r_q23_minus_r_q13_r_q22 - r_q22_sum_of_3,
-                                                                                ),
-                                                                            (two * r_q11_r_q13)
-                                                                                .mul_add(
-                                                                                    -r_q11_r_q23_plus_r_q32_sum_of_2,
-                                                                                    -sum_of_r_q11_r_q21_plus_r_q12_r_q22,
-                                                                                ),
-                                                                        ),
-                                                                    h5_radius
-                                                                        * r_q12
-                                                                            .mul_add(
-                                                                                r_q12
-                                                                                    .mul_add(
-                                                                                        -two_r_q12_r_q23_minus_r_q13_r_q22,
-                                                                                        r_q23 - r_q11_r_q32 - product_of_sum_of_r_q11_r_q32,
-                                                                                    ),
-                                                                                r_q11_r_q23
-                                                                                    .mul_add(
-                                                                                        -three_r_q11_r_q12_plus_r_q21_r_q22,
-                                                                                        -r_q21
-                                                                                            * (two * r_q11_r_q32 * r_q11_r_q22_minus_r_q12_r_q21
-                                                                                                - r_q22 * (r_q32_sum_of_2 - product_of_r_q22_r_q23)),
-                                                                                    ),
-                                                                            ),
-                                                                ),
-                                                        ) * inverse_value_of_squared,
-                                                ),
-                                        ),
-                                ),
-                            speed_wy
-                                .mul_add(
-                                    -h4_radius
-                                        .mul_add(
-                                            two
-                                                .mul_add(
-                                                    -sum_of_product_of_r_q31_r_q21_r_q22,
-                                                    r_q11_r_q12.mul_add(-sum_of_r_q32_2, r_q31),
-                                                ),
-                                            h5_radius
-                                                .mul_add(
-                                                    sum_of_product_of_r_q11_r_q12
-                                                        + r_q31_r_q11_r_q12_plus_r_q21_r_q22
-                                                        + product_of_r_q32_sum_of_4,
-                                                    h6_radius
-                                                        .mul_add(
-                                                            r_q33
-                                                                .mul_add(
-                                                                    three.mul_add(sum_of_4, -r_q12_squared_plus_r_q22_squared),
-                                                                    r_q22_r_q23
-                                                                        .mul_add(
-                                                                            -r_q11_r_q23_minus_r_q13_r_q21,
-                                                                            sum_of_r_q13_r_q21_r_q23_r_q31,
-                                                                        ),
-                                                                ),
-                                                            h4_radius
-                                                                .mul_add(
-                                                                    r_q12_r_q32
-                                                                        .mul_add(
-                                                                            r_q22_r_q11_r_q22_minus_r_q12_r_q21,
-                                                                            product_of_r_q31
-                                                                                + r_q11
-                                                                                    * (r_q12 * sum_of_product_of
-                                                                                        - r_q11
-                                                                                            * r_q11
-                                                                                                .mul_add(r_q11_r_q31_plus_r_q12_r_q32, two_r_q12_r_q23))
-                                                                                - r_q21
-                                                                                    * (r_q21 * r_q31 * two_r_q11_squared_plus_r_q21_squared
-                                                                                        - r_q22 * product_of_r_q32_sum_of_4),
-                                                                        ),
-                                                                    h6_radius
-                                                                        .mul_add(
-                                                                            r_q33
-                                                                                .mul_add(
-                                                                                    r_q21_squared_plus_r_q22_squared
-                                                                                        .mul_add(
-                                                                                            -two_r_q11_squared_plus_r_q21_squared,
-                                                                                            sum_of_r_q11_squared,
-                                                                                        ),
-                                                                                    (two * r_q11_r_q22)
-                                                                                        .mul_add(
-                                                                                            sum_of_sum_of_2,
-                                                                                            -sum_of_r_q12_r_q11_r_q13_r_q23_r_q22,
-                                                                                        ),
-                                                                                ),
-                                                                            h5_radius
-                                                                                * r_q11
-                                                                                    .mul_add(
-                                                                                        two
-                                                                                            .mul_add(
-                                                                                                r_q23_plus_r_q12_r_q32_r_q21_r_q22,
-                                                                                                three
-                                                                                                    .mul_add(
-                                                                                                        r_q11_r_q32,
-                                                                                                        r_q23
-                                                                                                            .mul_add(
-                                                                                                                -three.mul_add(r_q12_squared, r_q22_squared),
-                                                                                                                -product_of_sum_of_r_q11_r_q32,
-                                                                                                            ),
-                                                                                                    ),
-                                                                                            ),
-                                                                                        r_q32
-                                                                                            .mul_add(
-                                                                                                r_q21_squared_plus_r_q22_squared - product_of_6
-                                                                                                    - r_q22_squared_squared,
-                                                                                                -product_of_r_q11_squared_r_q22_r_q23,
-                                                                                            ),
-                                                                                    ),
-                                                                        ),
-                                                                ) * inverse_value_of_squared,
-                                                        ),
-                                                ),
-                                        ),
-                                    speed_wz
-                                        * h5_radius
-                                            .mul_add(
-                                                -r_q33
-                                                    .mul_add(
-                                                        r_q11_squared_plus_r_q21_squared - r_q12_squared,
-                                                        product_of_7,
-                                                    ),
-                                                h6_radius
-                                                    .mul_add(
-                                                        -r_q32
-                                                            .mul_add(
-                                                                sum_of_sum_of_2,
-                                                                r_q22_r_q23
-                                                                    .mul_add(r_q33, sum_of_r_q11_r_q23_minus_r_q13_r_q21),
-                                                            ),
-                                                        h4_radius
-                                                            * r_q11_r_q12.mul_add(sum_of_r_q33, r_q21_r_q22_r_q33),
-                                                    ),
-                                            ),
-                                ),
-                        )
-                        .mul_add(
-                            inverse_value_of,
-                            speed_wy
-                                .mul_add(
-                                    (h4_radius * root_one_minus_r_q33_squared)
-                                        .mul_add(
-                                            r_q12_r_q23_minus_r_q13_r_q22,
-                                            h6 * (product_of_3 + product_of_r_q32_product_of_r_q33_2),
-                                        ),
-                                    speed_wz
-                                        * h4_radius
-                                            .mul_add(
-                                                product_of_product_of_r_q33_2,
-                                                h5
-                                                    .mul_add(
-                                                        product_of_value_of_3 - product_of_3
-                                                            - product_of_r_q32_product_of_r_q33_2,
-                                                        h6_radius * product_of_value_of_4,
-                                                    ),
-                                            ),
+                                    radius_r_q12_r_q23_minus_r_q13_r_q22,
+                                    speed_wz_h6 * radius_r_q12_r_q23_minus_r_q13_r_q22,
                                 ),
                         ),
+                    h5
+                        .mul_add(
+                            speed_wx
+                                .mul_add(
+                                    (radius * r_q32)
+                                        .mul_add(
+                                            sum_of_r_q32 - product_of_r_q33,
+                                            radius_r_q33_r_q33_quotient_of_r_q32 * sum_of_r_q32,
+                                        ),
+                                    speed_wy
+                                        .mul_add(
+                                            -radius_r_q33_r_q33_quotient_of_r_q31
+                                                .mul_add(
+                                                    sum_of_r_q32,
+                                                    radius
+                                                        * (r_q31 * sum_of_r_q32
+                                                            - r_q33_squared * r_q12_r_q23_minus_r_q13_r_q22),
+                                                ),
+                                            product_of_speed_wz_radius_r_q33,
+                                        ),
+                                ),
+                            h6
+                                * speed_wx_radius_r_q33
+                                    .mul_add(
+                                        r_q32.mul_add(sum_of_r_q32_2, -r_q33_squared),
+                                        speed_wy_radius_r_q33
+                                            .mul_add(
+                                                -r_q31_sum_of_r_q32_2,
+                                                radius_r_q33_r_q33
+                                                    * (r_q31 * speed_wz
+                                                        - r_q32 * product_of_r_q33_r_q31_speed_wy),
+                                            ),
+                                    ),
+                        ) * inverse_root_one_minus_r_q33_squared,
                 ),
-            value_of
+            root_one_minus_r_q33_squared
                 .mul_add(
-                    -(speed_wx * h4_radius)
+                    speed_wx_h4
                         .mul_add(
-                            r_q11_r_q22_minus_r_q12_r_q21,
-                            speed_wy * h5_radius * r_q11_r_q22_minus_r_q12_r_q21,
+                            radius_r_q11_r_q23_minus_r_q13_r_q21,
+                            speed_wy
+                                .mul_add(
+                                    product_of_h4 + product_of_h6,
+                                    speed_wz_h6 * radius_r_q11_r_q23_minus_r_q13_r_q21,
+                                ),
                         ),
-                    (speed_wx
-                        * h4_radius
-                            .mul_add(
-                                two
+                    h4
+                        .mul_add(
+                            speed_wx
+                                .mul_add(
+                                    radius
+                                        .mul_add(
+                                            r_q32
+                                                .mul_add(
+                                                    sum_of_r_q31,
+                                                    r_q33_squared * r_q11_r_q23_minus_r_q13_r_q21,
+                                                ),
+                                            radius_r_q33_r_q33_quotient_of_r_q32 * sum_of_r_q31,
+                                        ),
+                                    speed_wy
+                                        .mul_add(
+                                            -(radius * r_q31)
+                                                .mul_add(
+                                                    sum_of_r_q31 - product_of_r_q33,
+                                                    radius_r_q33_r_q33_quotient_of_r_q31 * sum_of_r_q31,
+                                                ),
+                                            -product_of_speed_wz_radius_r_q33,
+                                        ),
+                                ),
+                            h6
+                                * speed_wy_radius_r_q33
                                     .mul_add(
-                                        product_of_sum_of_r_q22_squared,
-                                        r_q33 * (r_q11_squared - r_q21_squared),
-                                    ),
-                                h5_radius
-                                    .mul_add(
-                                        r_q11_r_q12_r_q33 - r_q21_r_q22_sum_of_r_q33_2,
-                                        h6_radius
+                                        r_q31.mul_add(-sum_of_r_q31_2, r_q33_squared),
+                                        radius_r_q33_r_q33
                                             .mul_add(
-                                                two
-                                                    .mul_add(
-                                                        sum_of_r_q22_sum_of_3_sum_of,
-                                                        r_q33 * (r_q11_r_q13 - r_q21_r_q23),
-                                                    ),
-                                                h4_radius
-                                                    .mul_add(
-                                                        r_q21
-                                                            .mul_add(
-                                                                -sum_of_product_of_r_q12_r_q22_r_q33,
-                                                                r_q11_r_q22_minus_r_q12_r_q21
-                                                                    .mul_add(
-                                                                        -sum_of_sum_of_r_q11_squared_2,
-                                                                        r_q11 * sum_of_r_q22_r_q11_r_q33_sum_of,
-                                                                    ),
-                                                            ),
-                                                        h5_radius
-                                                            .mul_add(
-                                                                r_q21_r_q11_r_q22_minus_r_q12_r_q21
-                                                                    .mul_add(
-                                                                        -sum_of_r_q11_r_q33_r_q22,
-                                                                        r_q11_r_q12
-                                                                            .mul_add(
-                                                                                -r_q33_sum_of,
-                                                                                r_q22
-                                                                                    * (r_q12 * sum_of
-                                                                                        - r_q22
-                                                                                            * two
-                                                                                                .mul_add(
-                                                                                                    -r_q11_r_q12_r_q33,
-                                                                                                    r_q11_r_q21_plus_r_q12_r_q22 + r_q21_r_q22_sum_of_r_q33_2,
-                                                                                                )),
-                                                                            ),
-                                                                    ),
-                                                                h6_radius
-                                                                    * r_q13
-                                                                        .mul_add(
-                                                                            sum_of_r_q22_r_q11_r_q33_sum_of,
-                                                                            r_q23
-                                                                                .mul_add(
-                                                                                    -sum_of_product_of_r_q12_r_q22_r_q33,
-                                                                                    r_q21_r_q11_r_q23_minus_r_q13_r_q21
-                                                                                        .mul_add(
-                                                                                            (two * r_q22_squared)
-                                                                                                .mul_add(r_q22, -sum_of_r_q11_r_q33_r_q22),
-                                                                                            r_q12_r_q23_minus_r_q13_r_q22
-                                                                                                * sum_of_sum_of_r_q11_squared_2,
-                                                                                        ),
-                                                                                ),
-                                                                        ),
-                                                            ),
-                                                    ) * inverse_value_of_squared,
+                                                -r_q32
+                                                    .mul_add(speed_wz, r_q31 * product_of_r_q33_r_q31_speed_wy),
+                                                speed_wx_radius_r_q33 * r_q32 * sum_of_r_q31_2,
                                             ),
                                     ),
-                            )
-                        - speed_wy
-                            * h4_radius
+                        ) * inverse_root_one_minus_r_q33_squared,
+                ),
+            -root_one_minus_r_q33_squared
+                .mul_add(
+                    speed_wx_h4
+                        .mul_add(
+                            radius_r_q11_r_q22_minus_r_q12_r_q21,
+                            speed_wz
                                 .mul_add(
-                                    r_q11_r_q12.mul_add(sum_of_r_q33_2, -r_q21_r_q22_r_q33),
-                                    h4_radius
+                                    product_of_h5 - product_of_h4,
+                                    speed_wy_h5 * radius_r_q11_r_q22_minus_r_q12_r_q21,
+                                ),
+                        ),
+                    h4
+                        .mul_add(
+                            speed_wy
+                                .mul_add(
+                                    -(radius_r_q33 * r_q31)
                                         .mul_add(
-                                            (r_q12 * r_q11_r_q22_minus_r_q12_r_q21)
-                                                .mul_add(
-                                                    -sum_of_r_q11_r_q22_r_q33_r_q11_r_q22,
-                                                    r_q21_r_q22_r_q33
-                                                        .mul_add(
-                                                            sum_of_2,
-                                                            r_q11
-                                                                * (r_q11
-                                                                    * two
-                                                                        .mul_add(
-                                                                            -r_q21_r_q22_r_q33,
-                                                                            sum_of_r_q11_r_q21_plus_r_q12_r_q22_2,
-                                                                        ) - r_q21 * sum_of_2),
-                                                        ),
-                                                ),
-                                            h5_radius
-                                                .mul_add(
-                                                    r_q12
-                                                        .mul_add(
-                                                            sum_of_r_q11_r_q21_r_q11_r_q22_r_q33,
-                                                            r_q22
-                                                                .mul_add(
-                                                                    -sum_of_r_q11_r_q22_r_q33_sum_of_2,
-                                                                    r_q11_r_q22_minus_r_q12_r_q21
-                                                                        * sum_of_sum_of_r_q11_squared_2_2,
-                                                                ),
-                                                        ),
-                                                    h6_radius
-                                                        * r_q13
-                                                            .mul_add(
-                                                                sum_of_r_q11_r_q21_r_q11_r_q22_r_q33,
-                                                                r_q23
-                                                                    .mul_add(
-                                                                        -sum_of_r_q11_r_q22_r_q33_sum_of_2,
-                                                                        r_q11_r_q23_minus_r_q13_r_q21
-                                                                            .mul_add(
-                                                                                sum_of_sum_of_r_q11_squared_2_2,
-                                                                                r_q12_r_q12_r_q23_minus_r_q13_r_q22
-                                                                                    * sum_of_r_q11_r_q22_r_q33_r_q11_r_q22,
-                                                                            ),
-                                                                    ),
-                                                            ),
-                                                ),
-                                        )
-                                        .mul_add(
-                                            inverse_value_of_squared,
-                                            -h5_radius
-                                                * (two * product_of_7
-                                                    - r_q33 * (r_q12_squared - r_q22_squared))
-                                                - h6_radius
-                                                    * (two * sum_of_r_q11_r_q23_minus_r_q13_r_q21
-                                                        - r_q33 * r_q12.mul_add(r_q13, -r_q22_r_q23)),
+                                            r_q11_r_q23_minus_r_q13_r_q21,
+                                            radius_r_q33_r_q33_quotient_of_r_q31
+                                                * r_q33_r_q11_r_q23_minus_r_q13_r_q21,
                                         ),
-                                )) * inverse_value_of
-                        + h6
-                            * (speed_wx
-                                * (product_of_value_of_5 - product_of_5
-                                    - product_of_product_of_r_q33_2_r_q33)
-                                - speed_wy
-                                    * (product_of_value_of - product_of_4
-                                        - product_of_product_of_r_q33_2_r_q33_2))
-                        + speed_wz
-                            * (h4 * (product_of_5 + product_of_product_of_r_q33_2_r_q33)
-                                - h5
-                                    * (product_of_4 + product_of_product_of_r_q33_2_r_q33_2)),
+                                    speed_wz_radius_r_q33_r_q33
+                                        .mul_add(
+                                            -r_q12_r_q23_minus_r_q13_r_q22,
+                                            speed_wx
+                                                * radius_r_q33
+                                                    .mul_add(
+                                                        r_q32_r_q11_r_q23_minus_r_q13_r_q21
+                                                            + r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                                        radius_r_q33_r_q33_quotient_of_r_q32
+                                                            * r_q33_r_q11_r_q23_minus_r_q13_r_q21,
+                                                    ),
+                                        ),
+                                ),
+                            h5
+                                * speed_wx
+                                    .mul_add(
+                                        radius_r_q33
+                                            .mul_add(
+                                                r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                                radius_r_q33_r_q33_quotient_of_r_q32
+                                                    * r_q33_r_q12_r_q23_minus_r_q13_r_q22,
+                                            ),
+                                        speed_wy
+                                            .mul_add(
+                                                -radius_r_q33
+                                                    .mul_add(
+                                                        r_q31_r_q12_r_q23_minus_r_q13_r_q22
+                                                            - r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                                        radius_r_q33_r_q33_quotient_of_r_q31
+                                                            * r_q33_r_q12_r_q23_minus_r_q13_r_q22,
+                                                    ),
+                                                speed_wz_radius_r_q33_r_q33 * r_q11_r_q23_minus_r_q13_r_q21,
+                                            ),
+                                    ),
+                        ) * inverse_root_one_minus_r_q33_squared,
                 ),
         ])
     }

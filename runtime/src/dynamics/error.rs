@@ -26,6 +26,29 @@ pub enum DynamicsError {
         "the nonholonomic constraints are dependent, so that λ is not determined: A has lost rank"
     )]
     DependentConstraints,
+    /// A constraint that couples joints no longer determines the speed that depends on it.
+    #[error(
+        "constraint `{constraint}`: at this configuration it does not determine the speeds that depend on the others: a pivot is \
+         {ratio:e} of the largest, the limit is {limit:e}"
+    )]
+    Coupling {
+        /// The constraint.
+        constraint: String,
+        /// Pivot over largest entry.
+        ratio: f64,
+        /// Smallest ratio allowed.
+        limit: f64,
+    },
+    /// Speeds violate a constraint that couples joints.
+    #[error("constraint `{constraint}`: the speeds violate it by {value:e}, more than {limit:e}")]
+    ConstraintViolated {
+        /// The constraint.
+        constraint: String,
+        /// The forbidden velocity.
+        value: f64,
+        /// How much of it is taken for rounding.
+        limit: f64,
+    },
     /// A vector has the wrong size or holds a number that is not finite.
     #[error(transparent)]
     State(#[from] StateError),

@@ -12,7 +12,7 @@ pub mod recursive;
 pub mod reference;
 
 pub use error::DynamicsError;
-pub use recursive::{MassMatrix, Recursive};
+pub use recursive::{Frame, MassMatrix, Readings, Recursive};
 pub use reference::Reference;
 
 use crate::mechanism::Mechanism;
@@ -21,10 +21,18 @@ use alloc::sync::Arc;
 /// Equations of motion of one mechanism.
 ///
 /// `q` is a configuration, `speeds` v̄ and `momenta` p̄ have one entry a speed, `efforts` τ one a freedom: τ is collocated
-/// with v. Configurations are taken to lie on the joints' manifolds ([`Mechanism::check_configuration`]).
+/// with v. Where constraints couple joints ([`Mechanism::with_constraints`]), v̄ has the speeds of all joints, and the entries of dependent
+/// ones are 0 in p̄ and in all rates. Configurations are taken to lie on the joints' manifolds ([`Mechanism::check_configuration`]).
 pub trait Dynamics {
     /// The mechanism whose equations these are.
     fn mechanism(&self) -> &Arc<Mechanism>;
+
+    /// The speeds that constraints couple to the others, into their entries of `speeds`; the others are read. Nothing to do where no
+    /// constraint couples joints.
+    ///
+    /// # Errors
+    /// Constraints that do not determine them; a wrong size.
+    fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError>;
 
     /// v̄̇ into `rates`, (24), (34).
     ///

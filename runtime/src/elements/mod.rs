@@ -5,6 +5,7 @@
 //! [`Mechanism`]: see [`Mechanism::with_elements`].
 
 mod body;
+mod constraint;
 mod drive;
 mod error;
 mod joint;
@@ -12,6 +13,7 @@ mod spring;
 mod view;
 
 pub use body::{BodySpring, BodyWrench, WrenchAxes};
+pub use constraint::PointConstraint;
 pub use drive::{Drive, Law};
 pub use error::ElementError;
 pub use joint::{JointDamper, JointEffort};

@@ -4,6 +4,7 @@ use super::approach::Watch;
 use super::clock::Clock;
 use super::control::Controller;
 use super::flow::Flow;
+use super::options::Control;
 use super::stepper::Stepper;
 use super::{
     Form, Inputs, IntegrateError, Method, Near, Observer, Options, Solution, State, Statistics,
@@ -93,15 +94,13 @@ impl<'a> Driver<'a> {
 
     fn pacing(&self) -> Pacing {
         let order = self.options.method.tableau().order;
-        let step = match self.options.method {
-            Method::Rk4 { dt } => dt,
-            Method::DormandPrince {
-                tolerance,
-                max_step,
-                first_step,
-            } => first_step
-                .unwrap_or_else(|| self.first_step(tolerance, order))
-                .min(max_step),
+        let step = match (self.options.method, self.options.method.control()) {
+            (Method::Rk4 { dt }, _) => dt,
+            (_, Some(control)) => control
+                .first_step
+                .unwrap_or_else(|| self.first_step(control.tolerance, order))
+                .min(control.max_step),
+            (_, None) => self.options.t_end - self.start,
         };
         Pacing {
             step,
@@ -155,11 +154,11 @@ impl<'a> Driver<'a> {
         let outcome = self
             .stepper
             .attempt(&mut self.flow, self.clock.time(), step);
-        let Method::DormandPrince {
+        let Some(Control {
             tolerance,
             max_step,
             ..
-        } = self.options.method
+        }) = self.options.method.control()
         else {
             return outcome;
         };

@@ -2,7 +2,7 @@
 
 use super::{Form, Inputs};
 use crate::dynamics::{Dynamics, DynamicsError};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{CONSTRAINT_TOLERANCE, Mechanism};
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -74,10 +74,34 @@ impl<'a> Flow<'a> {
     /// y of an initial v̄: v̄ itself or `p̄ = M̄ v̄`.
     pub(super) fn initial(&mut self, q: &[f64], speeds: &[f64]) -> Result<Vec<f64>, DynamicsError> {
         let mut y = speeds.to_vec();
+        self.check_constraints(q, speeds, &mut y)?;
         if self.form == Form::Hamiltonian {
             self.dynamics.momenta(q, speeds, &mut y)?;
         }
         Ok(y)
+    }
+
+    /// Whether the speeds are such as the constraints that couple joints allow; `y` becomes what they make of them.
+    fn check_constraints(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        y: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.dynamics.complete_speeds(q, y)?;
+        let limit = speeds.iter().fold(1.0_f64, |m, v| m.max(v.abs())) * CONSTRAINT_TOLERANCE;
+        let dependent = self.mechanism.dependent_speeds().iter();
+        for (&speed, constraint) in dependent.zip(self.mechanism.constraints()) {
+            let value = (speeds[speed] - y[speed]).abs();
+            if value.is_nan() || value > limit {
+                return Err(DynamicsError::ConstraintViolated {
+                    constraint: constraint.name.clone(),
+                    value,
+                    limit,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// What y of one unit of each speed amounts to: 1, or the diagonal of M̄.
@@ -88,9 +112,11 @@ impl<'a> Flow<'a> {
             let (mut unit, mut momenta) = (vec![0.0; size], vec![0.0; size]);
             for i in 0..size {
                 unit[i] = 1.0;
+                self.dynamics.complete_speeds(q, &mut unit)?;
                 self.dynamics.momenta(q, &unit, &mut momenta)?;
-                units[i] = momenta[i];
-                unit[i] = 0.0;
+                // A dependent speed has no momentum of its own.
+                units[i] = if momenta[i] > 0.0 { momenta[i] } else { 1.0 };
+                unit.fill(0.0);
             }
         }
         Ok(units)
@@ -161,10 +187,11 @@ impl<'a> Flow<'a> {
         match self.form {
             Form::Lagrangian => {
                 rates.speeds.copy_from_slice(y);
+                dynamics.complete_speeds(configuration, &mut rates.speeds)?;
                 efforts.fill(0.0);
-                inputs(time, configuration, y, efforts);
+                inputs(time, configuration, &rates.speeds, efforts);
                 mechanism.set_driven_accelerations(time, efforts);
-                dynamics.accelerations(configuration, y, efforts, &mut rates.y)
+                dynamics.accelerations(configuration, &rates.speeds, efforts, &mut rates.y)
             }
             Form::Hamiltonian => dynamics.momentum_rates(
                 configuration,

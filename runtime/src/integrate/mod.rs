@@ -7,10 +7,12 @@
 mod approach;
 mod clock;
 mod control;
+mod dop853;
 mod driver;
 mod error;
 mod flow;
 mod options;
+mod residue;
 mod solution;
 mod stepper;
 mod tableau;
@@ -19,7 +21,7 @@ pub use approach::{Approach, Near};
 pub use error::{IntegrateError, StepFailure};
 pub use options::{Form, Method, Options};
 pub use solution::{Solution, State, Statistics, Step};
-pub use tableau::Tableau;
+pub use tableau::{Estimate, Tableau};
 
 use crate::dynamics::Dynamics;
 use core::ops::ControlFlow;

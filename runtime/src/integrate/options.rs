@@ -1,6 +1,7 @@
 //! What an integration is asked to do.
 
 use super::IntegrateError;
+use super::dop853::DORMAND_PRINCE_8;
 use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
 use alloc::vec::Vec;
 
@@ -31,6 +32,42 @@ pub enum Method {
         /// First step to try, s; `None` to estimate it.
         first_step: Option<f64>,
     },
+    /// Dormand and Prince's method of order 8(5,3) with step control, known as DOP853: for tolerances below 1e-8 or so.
+    DormandPrince8 {
+        /// Error allowed a step, as for [`Method::DormandPrince`].
+        tolerance: f64,
+        /// Longest step, s; infinity for none.
+        max_step: f64,
+        /// First step to try, s; `None` to estimate it.
+        first_step: Option<f64>,
+    },
+}
+
+/// What step control is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Control {
+    pub(super) tolerance: f64,
+    pub(super) max_step: f64,
+    pub(super) first_step: Option<f64>,
+}
+
+impl Control {
+    /// Least tolerance, below which rounding of the estimate decides.
+    const LEAST_TOLERANCE: f64 = 1e-15;
+
+    fn check(&self) -> Result<(), IntegrateError> {
+        let allowed = self.tolerance >= Self::LEAST_TOLERANCE && self.tolerance <= 0.1;
+        require(
+            "tolerance",
+            self.tolerance,
+            allowed,
+            "between 1e-15 and 0.1",
+        )?;
+        require("max_step", self.max_step, self.max_step > 0.0, "positive")?;
+        let first = self.first_step.unwrap_or(1.0);
+        let allowed = first > 0.0 && first.is_finite();
+        require("first_step", first, allowed, "positive and finite")
+    }
 }
 
 impl Method {
@@ -43,37 +80,50 @@ impl Method {
         }
     }
 
+    /// Order 8 with step control to `tolerance`, with nothing else prescribed.
+    pub const fn dormand_prince_8(tolerance: f64) -> Self {
+        Self::DormandPrince8 {
+            tolerance,
+            max_step: f64::INFINITY,
+            first_step: None,
+        }
+    }
+
     /// Its coefficients.
     pub const fn tableau(&self) -> &'static Tableau {
         match self {
             Self::Rk4 { .. } => &CLASSICAL,
             Self::DormandPrince { .. } => &DORMAND_PRINCE,
+            Self::DormandPrince8 { .. } => &DORMAND_PRINCE_8,
         }
     }
 
-    fn check(&self) -> Result<(), IntegrateError> {
+    /// What its step control is given, if it has any.
+    pub(super) const fn control(&self) -> Option<Control> {
         match *self {
-            Self::Rk4 { dt } => {
-                require("dt", dt, dt > 0.0 && dt.is_finite(), "positive and finite")
-            }
+            Self::Rk4 { .. } => None,
             Self::DormandPrince {
                 tolerance,
                 max_step,
                 first_step,
-            } => {
-                let smallest = 4.0 * f64::EPSILON;
-                let allowed = tolerance >= smallest && tolerance <= 0.1;
-                require("tolerance", tolerance, allowed, "between 8.9e-16 and 0.1")?;
-                require("max_step", max_step, max_step > 0.0, "positive")?;
-                let first = first_step.unwrap_or(1.0);
-                require(
-                    "first_step",
-                    first,
-                    first > 0.0 && first.is_finite(),
-                    "positive and finite",
-                )
             }
+            | Self::DormandPrince8 {
+                tolerance,
+                max_step,
+                first_step,
+            } => Some(Control {
+                tolerance,
+                max_step,
+                first_step,
+            }),
         }
+    }
+
+    fn check(&self) -> Result<(), IntegrateError> {
+        if let Self::Rk4 { dt } = *self {
+            return require("dt", dt, dt > 0.0 && dt.is_finite(), "positive and finite");
+        }
+        self.control().as_ref().map_or(Ok(()), Control::check)
     }
 }
 

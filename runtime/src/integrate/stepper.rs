@@ -1,7 +1,8 @@
 //! One step of an explicit method in (ϕ, y).
 
 use super::flow::{Flow, Rates, multiply, retract};
-use super::{StepFailure, Tableau};
+use super::residue::{Residue, add_exactly};
+use super::{Estimate, StepFailure, Tableau};
 use crate::mechanism::Body;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,7 +17,10 @@ pub(super) struct Stepper {
     stages: Vec<Rates>,
     phi: Vec<f64>,
     next_y: Vec<f64>,
+    next_residue: Vec<f64>,
     next_configuration: Vec<f64>,
+    /// What Q and y are too coarse to hold.
+    residue: Residue,
     /// What counts as one in y.
     units: Vec<f64>,
     /// ϕ to the rotation of each joint at the state, [`Flow::turn_maps`].
@@ -38,7 +42,9 @@ impl Stepper {
             stages: tableau.nodes.iter().map(|_| flow.new_rates()).collect(),
             phi: vec![0.0; flow.mechanism.layout().freedoms],
             next_y: y.clone(),
+            next_residue: vec![0.0; y.len()],
             next_configuration: configuration.to_vec(),
+            residue: Residue::new(&flow.mechanism),
             units: flow.units(configuration)?,
             turn_maps: vec![0.0; 3 * flow.mechanism.layout().freedoms],
             y,
@@ -84,12 +90,23 @@ impl Stepper {
 
     /// Error of the step just tried over the tolerance, and the joint that has it.
     pub(super) fn error(&self, flow: &Flow<'_>, step: f64, tolerance: f64) -> (f64, usize) {
-        let Some(weights) = self.tableau.error_weights else {
-            return (0.0, 0);
-        };
+        let unit = step / tolerance;
+        match self.tableau.estimate {
+            Estimate::None => (0.0, 0),
+            Estimate::One(weights) => self.largest(flow, unit, weights),
+            Estimate::Pair { fifth, third } => {
+                let (fifth, joint) = self.largest(flow, unit, fifth);
+                let (third, _) = self.largest(flow, unit, third);
+                (paired(fifth, third), joint)
+            }
+        }
+    }
+
+    /// The largest `unit · Σ weights · rates`, in units of ϕ and y, and the joint that has it.
+    fn largest(&self, flow: &Flow<'_>, unit: f64, weights: &[f64]) -> (f64, usize) {
         let sum = |entry: &dyn Fn(&Rates) -> f64| {
             let terms = weights.iter().zip(&self.stages);
-            (step
+            (unit
                 * terms
                     .map(|(weight, rates)| weight * entry(rates))
                     .sum::<f64>())
@@ -103,7 +120,7 @@ impl Stepper {
                 let scale = self.y[i].abs().max(self.next_y[i].abs()).max(self.units[i]);
                 sum(&|rates| rates.y[i]) / scale
             });
-            let error = local.chain(rates).fold(0.0, f64::max) / tolerance;
+            let error = local.chain(rates).fold(0.0, f64::max);
             if error > worst.0 {
                 worst = (error, index);
             }
@@ -124,6 +141,9 @@ impl Stepper {
             let projected = body.joint().project(own);
             projected.map_err(|cause| body.finite_map(cause))?;
         }
+        let (old, new) = (&self.configuration, &self.next_configuration);
+        self.residue.keep(&flow.mechanism, old, new, &self.phi);
+        core::mem::swap(&mut self.residue.y, &mut self.next_residue);
         core::mem::swap(&mut self.configuration, &mut self.next_configuration);
         core::mem::swap(&mut self.y, &mut self.next_y);
         flow.turn_maps(&self.configuration, &mut self.turn_maps);
@@ -160,20 +180,25 @@ impl Stepper {
         local.chain(others).fold(0.0, f64::max)
     }
 
-    /// ϕ and y after `step · Σ weights · rates`.
+    /// ϕ and y after `step · Σ weights · rates`, from what the last step left over on.
     fn combine(&mut self, step: f64, weights: &[f64]) {
-        self.phi.fill(0.0);
-        self.next_y.copy_from_slice(&self.y);
+        self.phi.copy_from_slice(&self.residue.phi);
+        self.next_residue.copy_from_slice(&self.residue.y);
         for (&weight, rates) in weights.iter().zip(&self.stages) {
             if weight == 0.0 {
                 continue;
             }
             add(&mut self.phi, step * weight, &rates.phi);
-            add(&mut self.next_y, step * weight, &rates.y);
+            add(&mut self.next_residue, step * weight, &rates.y);
+        }
+        let sums = self.next_y.iter_mut().zip(&mut self.next_residue);
+        for (&y, (sum, change)) in self.y.iter().zip(sums) {
+            (*sum, *change) = add_exactly(y, *change);
         }
     }
 
-    /// Refuses what is not finite and rotations beyond π, where logarithms and coefficients end.
+    /// Refuses what is not finite, and rotations beyond π where the differential of Φ ends near a full turn. Angles about one
+    /// axis add up, so that no step is too long for them.
     fn check_motion(&self, flow: &Flow<'_>) -> Result<(), StepFailure> {
         for body in flow.mechanism.bodies() {
             let ranges = body.ranges();
@@ -181,6 +206,9 @@ impl Stepper {
             let y = &self.next_y[ranges.speeds.clone()];
             if phi.iter().chain(y).any(|value| !value.is_finite()) {
                 return Err(not_finite(body));
+            }
+            if body.joint().structures().retract_differential.is_identity() {
+                continue;
             }
             let mut turn = [0.0; 3];
             let own = 3 * ranges.freedoms.start..3 * ranges.freedoms.end;
@@ -218,5 +246,15 @@ fn not_finite(body: &Body) -> StepFailure {
 fn add(sum: &mut [f64], weight: f64, terms: &[f64]) {
     for (sum, term) in sum.iter_mut().zip(terms) {
         *sum += weight * term;
+    }
+}
+
+/// The estimate of [`Estimate::Pair`]; NaN where a difference is.
+fn paired(fifth: f64, third: f64) -> f64 {
+    let norm = num_traits::Float::hypot(fifth, 0.1 * third);
+    if fifth == 0.0 {
+        0.0
+    } else {
+        fifth * (fifth / norm)
     }
 }

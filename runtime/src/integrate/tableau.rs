@@ -11,10 +11,26 @@ pub struct Tableau {
     pub matrix: &'static [&'static [f64]],
     /// b_i.
     pub weights: &'static [f64],
-    /// b_i − b̂_i, for methods with an embedded one.
-    pub error_weights: Option<&'static [f64]>,
+    /// How the error of a step is estimated.
+    pub estimate: Estimate,
     /// Whether the last stage is the first stage of the next step.
     pub first_same_as_last: bool,
+}
+
+/// What a method says about the error of its steps: weights b_i − b̂_i against embedded methods.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Estimate {
+    /// Nothing.
+    None,
+    /// The difference e to one embedded method.
+    One(&'static [f64]),
+    /// The differences e₅ and e₃ to methods of order 5 and 3, which make `|e₅|² / √(|e₅|² + 0.01 |e₃|²)`.
+    Pair {
+        /// Against the method of order 5.
+        fifth: &'static [f64],
+        /// Against the method of order 3.
+        third: &'static [f64],
+    },
 }
 
 /// The classical method of order 4.
@@ -23,7 +39,7 @@ pub(super) const CLASSICAL: Tableau = Tableau {
     nodes: &[0.0, 0.5, 0.5, 1.0],
     matrix: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
     weights: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
-    error_weights: None,
+    estimate: Estimate::None,
     first_same_as_last: false,
 };
 
@@ -67,7 +83,7 @@ pub(super) const DORMAND_PRINCE: Tableau = Tableau {
         11.0 / 84.0,
         0.0,
     ],
-    error_weights: Some(&[
+    estimate: Estimate::One(&[
         71.0 / 57600.0,
         0.0,
         -71.0 / 16695.0,

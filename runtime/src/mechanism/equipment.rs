@@ -1,11 +1,13 @@
 //! What a mechanism carries besides its bodies: elements, rotor inertias, drives.
 
 use super::{Mechanism, MechanismError};
-use crate::elements::{Drive, Element, ElementError};
+use crate::dynamics::Recursive;
+use crate::elements::{Drive, Element, ElementError, PointConstraint};
 use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
+use nalgebra::DMatrix;
 
 /// Elements, rotor inertias and drives of a mechanism.
 #[derive(Clone, Debug, Default)]
@@ -14,7 +16,13 @@ pub(super) struct Equipment {
     /// One entry a freedom; empty where there is none.
     armature: Vec<f64>,
     drives: Vec<Drive>,
+    constraints: Vec<PointConstraint>,
+    /// The speeds that depend on the others, one a constraint.
+    dependent: Vec<usize>,
 }
+
+/// How small a pivot of the constraints may be next to the largest for them to be taken for independent.
+const INDEPENDENCE: f64 = 1e-9;
 
 impl Mechanism {
     /// The mechanism with these elements instead of those it had.
@@ -102,6 +110,48 @@ impl Mechanism {
         Ok(self)
     }
 
+    /// The mechanism with these constraints that couple joints, Theorem 3, instead of those it had; drives are to be given before.
+    ///
+    /// At `q` the speeds that depend on the others are chosen, by pivoting: those that the constraints determine best.
+    ///
+    /// # Errors
+    /// Every constraint that does not fit; a wrong size of `q`; constraints that are dependent at `q`.
+    pub fn with_constraints(
+        mut self,
+        constraints: Vec<PointConstraint>,
+        q: &[f64],
+    ) -> Result<Self, Vec<MechanismError>> {
+        refuse(constraints.iter().filter_map(|c| c.check(&self).err()))?;
+        self.check_configuration(q)
+            .map_err(|cause| vec![MechanismError::Configuration(cause)])?;
+        self.equipment.constraints = constraints;
+        self.equipment.dependent.clear();
+        let matrix = Recursive::new(Arc::new(self.clone())).constraint_matrix(q);
+        let taken = |speed: usize| {
+            let drives = self.equipment.drives.iter();
+            let mut ranges = drives.map(|drive| &self.bodies[drive.body].ranges.speeds);
+            ranges.any(|range| range.contains(&speed))
+        };
+        self.equipment.dependent = dependent(matrix, taken).map_err(|(row, ratio)| {
+            vec![MechanismError::DependentConstraint {
+                constraint: self.equipment.constraints[row].name.clone(),
+                ratio,
+                limit: INDEPENDENCE,
+            }]
+        })?;
+        Ok(self)
+    }
+
+    /// Constraints that couple joints.
+    pub fn constraints(&self) -> &[PointConstraint] {
+        &self.equipment.constraints
+    }
+
+    /// The speeds that constraints make depend on the others, one a constraint.
+    pub fn dependent_speeds(&self) -> &[usize] {
+        &self.equipment.dependent
+    }
+
     /// What acts on the mechanism besides gravity and inputs.
     pub fn elements(&self) -> &[Arc<dyn Element>] {
         &self.equipment.elements
@@ -154,4 +204,39 @@ fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), Vec<Mechan
         true => Ok(()),
         false => Err(failures),
     }
+}
+
+/// One column for each row of `matrix`, by elimination with complete pivoting among the columns that are not `taken`; else a row that
+/// depends on others, with the ratio of its pivot to the largest entry.
+fn dependent(
+    mut matrix: DMatrix<f64>,
+    taken: impl Fn(usize) -> bool,
+) -> Result<Vec<usize>, (usize, f64)> {
+    let largest = matrix.amax();
+    let mut rows: Vec<usize> = (0..matrix.nrows()).collect();
+    let mut columns: Vec<usize> = (0..matrix.ncols()).filter(|&j| !taken(j)).collect();
+    let mut chosen = Vec::new();
+    while let Some(&first) = rows.first() {
+        let entries = rows
+            .iter()
+            .flat_map(|&i| columns.iter().map(move |&j| (i, j)));
+        let size = |&(i, j): &(usize, usize)| matrix[(i, j)].abs();
+        let best = entries.max_by(|a, b| size(a).total_cmp(&size(b)));
+        let (row, column) = best.ok_or((first, 0.0))?;
+        let pivot = matrix[(row, column)];
+        if pivot.is_nan() || pivot.abs() <= INDEPENDENCE * largest {
+            return Err((row, pivot.abs() / largest));
+        }
+        rows.retain(|&i| i != row);
+        columns.retain(|&j| j != column);
+        chosen.push(column);
+        let pivot_row = matrix.row(row).into_owned();
+        for &i in &rows {
+            let factor = matrix[(i, column)] / pivot;
+            for j in 0..matrix.ncols() {
+                matrix[(i, j)] -= factor * pivot_row[j];
+            }
+        }
+    }
+    Ok(chosen)
 }

@@ -109,6 +109,22 @@ pub enum MechanismError {
         /// Smallest ratio allowed.
         limit: f64,
     },
+    /// The configuration at which dependent speeds are to be chosen.
+    #[error(transparent)]
+    Configuration(StateError),
+    /// A constraint depends on the others.
+    #[error(
+        "constraint `{constraint}`: it depends on the other constraints, or forbids nothing that the joints allow: its pivot is {ratio:e} of \
+         the largest, the limit is {limit:e}"
+    )]
+    DependentConstraint {
+        /// The constraint.
+        constraint: String,
+        /// Pivot over largest entry.
+        ratio: f64,
+        /// Smallest ratio allowed.
+        limit: f64,
+    },
     /// A spring, damper, rotor inertia, drive or the like does not fit.
     #[error(transparent)]
     Element(#[from] crate::elements::ElementError),

@@ -1,9 +1,8 @@
 //! Errors in units of the last place, the worst of each kernel kept.
 
-use super::{Grid, Tracked};
+use super::{Grid, Tracked, Wide};
 use hamel::nalgebra::SMatrix;
 use hamel::scalar::Scalar;
-use hamel_codegen::precise::Precise;
 use std::collections::BTreeMap;
 
 /// A type of numbers whose kernels are measured.
@@ -74,7 +73,7 @@ impl Worst {
         };
         // An infinite scale would forgive everything.
         let unit = if unit.is_finite() { unit } else { f64::NAN };
-        let distance = &Precise::from_f64(got, want.value.bits()) - &want.value;
+        let distance = Wide::from_f64(got) - want.value;
         self.error(kernel, distance.to_f64().abs() / unit, || {
             format!(
                 "got {got:e} for {:e} of scale {:e} at {}",
@@ -123,11 +122,10 @@ impl Worst {
 #[cfg(test)]
 mod tests {
     use super::{Measured, Worst};
-    use crate::accuracy::{BITS, Tracked, check};
-    use hamel_codegen::precise::Precise;
+    use crate::accuracy::{Tracked, Wide, check};
 
     fn want(scale: f64) -> Tracked {
-        Tracked::computed(Precise::from_f64(1.0, BITS), scale)
+        Tracked::computed(Wide::from_f64(1.0), scale)
     }
 
     fn error(got: f64, scale: f64) -> f64 {
@@ -155,7 +153,7 @@ mod tests {
             &want(1.0),
             &String::new,
         );
-        check("joint", &worst, 16.0, &[]);
+        check("joint", &worst, 16.0);
     }
 
     #[test]
@@ -164,6 +162,6 @@ mod tests {
         let mut worst = Worst::default();
         worst.meet("kernel", f64::NAN, &want(1.0), &String::new);
         worst.meet("kernel", 1.0, &want(1.0), &String::new);
-        check("joint", &worst, 16.0, &[]);
+        check("joint", &worst, 16.0);
     }
 }

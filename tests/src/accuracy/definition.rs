@@ -1,396 +1,159 @@
-//! A joint's kernels at ϕ = 0 from their definitions: (5), (17), (23), (28), (31), and those of c and its dual.
+//! The definition of a joint, read once: all that kernels are compared with, at any number of points.
 
-use super::environment::Environment;
+use super::at_zero::{Arguments, AtZero};
+use super::declared::{Declared, constants};
 use super::jet::ONCE;
-use super::{Grid, Jet, Tracked};
-use hamel_codegen::algebra;
-use hamel_codegen::expr::{Expr, Number, Symbol};
-use hamel_codegen::matrix::Matrix;
-use hamel_codegen::model::{JointSpec, VelocityFrame};
+use super::program::{Program, Sheet};
+use super::{Grid, Node, Tracked};
+use hamel_codegen::derived::{Derived, KernelKind};
+use hamel_codegen::expr::Expr;
+use hamel_codegen::model::JointSpec;
 
-/// What a spec declares, ready for evaluation anywhere.
+/// What a spec declares and its consequences, with the values of the joint's parameters.
 #[derive(Clone, Debug)]
 pub struct Definition {
-    pub(super) spec: JointSpec,
-    pub(super) coordinates: Vec<Symbol>,
-    locals: Vec<Symbol>,
-    /// Φ(Q, ϕ), stored scalars.
-    moved: Vec<Expr>,
-    home: Vec<Expr>,
-    parameters: Environment,
+    declared: Declared,
+    configuration: usize,
+    speeds: usize,
+    /// Q, v, v̄ and h to the kernels at ϕ = 0.
+    kernels: Program,
+    /// Q and ϕ to Φ(Q, ϕ).
+    moved: Program,
+    /// Q and ϕ to Φ(Q, ϕ) and ∂Φ/∂ϕ.
+    moved_with_tangent: Program,
+    /// Q to ∂Φ/∂ϕ at ϕ = 0.
+    directions: Program,
+    /// Q to the functions of loci and the relations.
+    functions: Program,
 }
 
-/// H(Q), rotation and translation.
-pub(super) type Pose = (Grid<Jet>, Grid<Jet>);
-
-/// Everything at one Q.
-#[derive(Clone, Debug)]
-pub struct AtZero {
-    /// R of H(Q), with its derivatives along ϕ.
-    pub rotation: Grid<Jet>,
-    /// p of H(Q), likewise.
-    pub translation: Grid<Jet>,
-    /// X(Q), likewise.
-    pub twist_map: Grid<Jet>,
-    /// X^c(Q), likewise.
-    pub twist_map_child: Grid<Jet>,
-    /// S₀(Q).
-    pub velocity_map: Grid<Tracked>,
-    /// S₀⁻¹(Q).
-    pub inverse: Grid<Tracked>,
-    /// ∂S/∂ϕ_k.
-    pub slopes: Vec<Grid<Tracked>>,
-    /// A(Q), where declared.
-    pub constraint: Option<Grid<Tracked>>,
-    /// S̄(Q), with its derivatives along ϕ, where declared; the identity where nothing is.
-    pub speed_basis: Option<Grid<Jet>>,
-    /// ∂Φ/∂ϕ of the stored scalars.
-    pub tangent: Grid<Tracked>,
+/// The exact numbers.
+pub fn numbers(values: &[f64]) -> Vec<Tracked> {
+    values.iter().map(|value| Tracked::input(*value)).collect()
 }
 
-/// The part of a matrix that does not vary.
-pub(super) fn values(grid: &Grid<Jet>) -> Grid<Tracked> {
-    grid.map(|entry| entry.value.clone())
+fn column(entries: &[Node]) -> Grid<Node> {
+    Grid::column(entries.to_vec())
 }
 
-/// The derivative of a matrix by the i-th variable.
-pub(super) fn slopes(grid: &Grid<Jet>, i: usize) -> Grid<Tracked> {
-    grid.map(|entry| entry.slope(i))
+/// Φ(Q, ϕ) and ∂Φ/∂ϕ.
+fn moved_with_tangent(declared: &Declared, q: &[Node], phi: &[Node]) -> Sheet<Node> {
+    let moved = declared.moved(&constants(q), &declared.variables(phi, ONCE));
+    let mut sheet = Sheet::default();
+    let entry = |i: usize, k: usize| moved[i].slope(ONCE + k);
+    sheet.put("tangent", Grid::from_fn(moved.len(), phi.len(), entry));
+    let values = moved.iter().map(|jet| jet.value.clone()).collect();
+    sheet.put("moved", Grid::column(values));
+    sheet
 }
 
-fn inputs(values: &[f64]) -> Vec<Jet> {
-    values.iter().map(|value| Jet::input(*value)).collect()
+fn functions(declared: &Declared, relations: &[Expr], q: &[Node]) -> Sheet<Node> {
+    let loci = declared.spec.loci.iter();
+    let loci: Vec<Expr> = loci.map(|locus| locus.value.function.clone()).collect();
+    let mut sheet = Sheet::default();
+    sheet.put("loci", declared.evaluate(&loci, &constants(q)));
+    sheet.put("relations", declared.evaluate(relations, &constants(q)));
+    sheet
 }
 
 impl Definition {
     /// The definition of the joint with these values of its parameters.
-    pub fn new(spec: JointSpec, parameters: &[f64]) -> Self {
-        let symbols = spec.parameters.iter().map(|parameter| &parameter.symbol);
-        let manifold = &spec.manifold.value;
-        let home = spec.home.as_ref().map(|home| home.value.clone());
+    pub fn new(derived: &Derived, parameters: &[f64]) -> Self {
+        let declared = Declared::new(derived.spec.clone(), parameters);
+        let (n, k) = (declared.coordinates.len(), declared.freedoms());
+        let speeds = derived.shape.speeds;
+        let relations = derived.kernel(KernelKind::Residual);
+        let relations = relations.map_or(&[][..], |kernel| kernel.outputs[0].entries());
+        let zero = declared.zero();
         Self {
-            parameters: Environment::default().with(symbols, &inputs(parameters)),
-            coordinates: manifold.coordinates(),
-            locals: spec
-                .freedoms
-                .value
-                .iter()
-                .map(|f| f.local.clone())
-                .collect(),
-            moved: spec
-                .retract
-                .as_ref()
-                .map_or_else(|| exponential(&spec), |declared| declared.value.clone()),
-            home: home.unwrap_or_else(|| manifold.home()),
-            spec,
+            kernels: Program::new(n + k + speeds + 6, |all| {
+                let (q, rest) = all.split_at(n);
+                let (v, rest) = rest.split_at(k);
+                let (speeds, wrench) = rest.split_at(speeds);
+                let arguments = Arguments {
+                    velocity: column(v),
+                    speeds: column(speeds),
+                    wrench: column(wrench),
+                };
+                AtZero::new(&declared, q).kernels(&arguments)
+            }),
+            moved: Program::new(n + k, |all| {
+                let (q, phi) = all.split_at(n);
+                moved_with_tangent(&declared, q, phi).only("moved")
+            }),
+            moved_with_tangent: Program::new(n + k, |all| {
+                let (q, phi) = all.split_at(n);
+                moved_with_tangent(&declared, q, phi)
+            }),
+            directions: Program::new(n, |q| moved_with_tangent(&declared, q, &zero)),
+            functions: Program::new(n, |q| functions(&declared, relations, q)),
+            configuration: n,
+            speeds,
+            declared,
         }
+    }
+
+    /// The spec.
+    pub fn spec(&self) -> &JointSpec {
+        &self.declared.spec
+    }
+
+    /// What the spec declares.
+    pub fn declared(&self) -> &Declared {
+        &self.declared
+    }
+
+    /// Number of stored scalars.
+    pub fn configuration(&self) -> usize {
+        self.configuration
     }
 
     /// Number of freedoms.
     pub fn freedoms(&self) -> usize {
-        self.locals.len()
+        self.declared.freedoms()
     }
 
-    fn at(&self, q: &[Jet]) -> Environment {
-        self.parameters.with(&self.coordinates, q)
+    /// Number of speeds.
+    pub fn speeds(&self) -> usize {
+        self.speeds
     }
 
-    /// Expressions of Q and the parameters, at one Q.
-    pub fn evaluate(&self, expressions: &[Expr], q: &[f64]) -> Vec<Tracked> {
-        let jets = self.at(&inputs(q)).evaluate_all(expressions);
-        jets.into_iter().map(|jet| jet.value).collect()
+    /// All kernels at ϕ = 0 by their names.
+    pub fn kernels(&self, q: &[f64], v: &[f64], speeds: &[f64], wrench: &[f64]) -> Sheet<Tracked> {
+        self.kernels.run(&numbers(&[q, v, speeds, wrench].concat()))
+    }
+
+    /// Q and v to derivatives of kernels along ϕ̇ = v.
+    pub fn derivatives(&self) -> Program {
+        let n = self.configuration;
+        Program::new(n + self.freedoms(), |all| {
+            let (q, v) = all.split_at(n);
+            AtZero::new(&self.declared, q).derivatives(&column(v))
+        })
     }
 
     /// Φ(Q, ϕ).
-    pub(super) fn moved(&self, q: &[Jet], phi: &[Jet]) -> Vec<Jet> {
-        self.at(q).with(&self.locals, phi).evaluate_all(&self.moved)
+    pub(super) fn moved(&self, q: &[Tracked], phi: &[Tracked]) -> Grid<Tracked> {
+        self.moved.run(&[q, phi].concat()).get("moved").clone()
     }
 
-    /// ϕ, each coordinate a variable; numbered from `first`.
-    pub(super) fn variables(&self, phi: &[Tracked], first: usize) -> Vec<Jet> {
-        let variable = |(i, value): (usize, &Tracked)| Jet::variable(value.clone(), first + i);
-        phi.iter().enumerate().map(variable).collect()
+    /// Φ(Q, ϕ) as `moved` and ∂Φ/∂ϕ as `tangent`.
+    pub(super) fn moved_with_tangent(&self, q: &[Tracked], phi: &[Tracked]) -> Sheet<Tracked> {
+        self.moved_with_tangent.run(&[q, phi].concat())
     }
 
-    pub(super) fn zero(&self) -> Vec<Tracked> {
-        vec![Tracked::input(0.0); self.freedoms()]
+    /// ∂Φ/∂ϕ at ϕ = 0.
+    pub(super) fn directions(&self, q: &[Tracked]) -> Grid<Tracked> {
+        self.directions.run(q).get("tangent").clone()
     }
 
-    fn pose(&self, q: &[Jet]) -> Pose {
-        let at = self.at(q);
-        let pose = &self.spec.pose.value;
-        (at.matrix(&pose.rotation), at.matrix(&pose.translation))
+    /// The functions of the joint's loci at Q.
+    pub fn loci(&self, q: &[f64]) -> Grid<Tracked> {
+        self.functions.run(&numbers(q)).get("loci").clone()
     }
 
-    /// `vee(Ḣ H⁻¹)` by the variables from `first` on: J of (23), 6×k.
-    fn jacobian(&self, pose: &Pose, first: usize) -> Grid<Jet> {
-        let (rotation, translation) = pose;
-        let outer = |grid: &Grid<Jet>| match first < ONCE {
-            true => grid.clone(),
-            false => grid.map(Jet::at_zero_of_once),
-        };
-        let (transposed, p) = (outer(rotation).transpose(), outer(translation));
-        let column = |k: usize| {
-            let spin = rotation.map(|e| e.partial(first + k)).times(&transposed);
-            let omega = [(2, 1), (0, 2), (1, 0)].map(|(i, j)| spin.at(i, j).clone());
-            let velocity = translation.map(|e| e.partial(first + k));
-            let lever = cross(&omega, p.entries());
-            let linear = velocity.minus(&lever);
-            [&omega, linear.entries()].concat()
-        };
-        let columns: Vec<Vec<Jet>> = (0..self.freedoms()).map(column).collect();
-        Grid::from_fn(6, columns.len(), |i, k| columns[k][i].clone())
-    }
-
-    /// J(Q, 0) where Q itself may vary: the twist of the child for each ϕ̇.
-    fn directions(&self, q: &[Jet]) -> Grid<Jet> {
-        let step = self.variables(&self.zero(), ONCE);
-        self.jacobian(&self.pose(&self.moved(q, &step)), ONCE)
-    }
-
-    /// X(Q), as declared or as the frame of v has it.
-    fn twist_map(&self, q: &[Jet]) -> Grid<Jet> {
-        if let Some(declared) = &self.spec.twist_map {
-            return self.at(q).matrix(&declared.value);
-        }
-        match self.spec.velocity.value {
-            VelocityFrame::Parent => {
-                let home = self.parameters.evaluate_all(&self.home);
-                to_child(&self.pose(&home), &self.directions(&home))
-            }
-            VelocityFrame::Child | VelocityFrame::Rates => self.directions(q),
-        }
-    }
-
-    /// S̄ as declared; the identity for a joint without constraint; nothing where only A is declared.
-    fn speed_basis(&self, q: &[Jet]) -> Option<Grid<Jet>> {
-        match (&self.spec.speed_basis, &self.spec.constraint) {
-            (Some(declared), _) => Some(self.at(q).matrix(&declared.value)),
-            (None, None) => Some(self.at(q).matrix(&Matrix::identity(self.freedoms()))),
-            (None, Some(_)) => None,
-        }
-    }
-
-    /// All kernels at ϕ = 0.
-    pub fn at_zero(&self, q: &[f64]) -> AtZero {
-        let base = inputs(q);
-        let moving = self.moved(&base, &self.variables(&self.zero(), 0));
-        let pose = self.pose(&moving);
-        let jacobian = self.jacobian(&pose, 0);
-        let x = self.twist_map(&moving);
-        let (velocity_map, slices) = self.velocity_map(&x, &jacobian);
-        let constraint = self.spec.constraint.as_ref();
-        AtZero {
-            twist_map_child: to_child(&pose, &x),
-            twist_map: x,
-            inverse: velocity_map.inverse(),
-            velocity_map,
-            slopes: slices,
-            constraint: constraint.map(|a| values(&self.at(&base).matrix(&a.value))),
-            speed_basis: self.speed_basis(&moving),
-            tangent: Grid::from_fn(q.len(), self.freedoms(), |i, k| moving[i].slope(k)),
-            rotation: pose.0,
-            translation: pose.1,
-        }
-    }
-
-    /// X₀ S₀ = J₀ and X₀ S_k = J_k − X_k S₀, (23) order by order.
-    fn velocity_map(&self, x: &Grid<Jet>, j: &Grid<Jet>) -> (Grid<Tracked>, Vec<Grid<Tracked>>) {
-        let base = values(x);
-        let left = base.values().left_inverse();
-        let start = base.solve_by(&left, &values(j));
-        let slice = |k: usize| {
-            let right = slopes(j, k).minus(&slopes(x, k).times(&start));
-            base.solve_by(&left, &right)
-        };
-        let all = (0..self.freedoms()).map(slice).collect();
-        (start, all)
-    }
-}
-
-impl AtZero {
-    fn freedoms(&self) -> usize {
-        self.slopes.len()
-    }
-
-    /// Σ γ_k v_k, (17).
-    pub fn gamma(&self, v: &Grid<Tracked>) -> Grid<Tracked> {
-        let k = self.freedoms();
-        let w = self.inverse.times(v);
-        let inner = Grid::from_fn(k, k, |l, j| {
-            let term = |m: usize| {
-                let turned = self.slopes[l].at(j, m).negative();
-                self.slopes[m].at(j, l).plus(&turned).times(w.at(m, 0))
-            };
-            (1..k).fold(term(0), |sum, m| sum.plus(&term(m)))
-        });
-        self.inverse.transpose().times(&inner)
-    }
-
-    /// J22(Q, p), (28).
-    pub fn j22(&self, p: &Grid<Tracked>) -> Grid<Tracked> {
-        let k = self.freedoms();
-        let b = Grid::from_fn(k, k, |i, m| {
-            self.slopes[m].transpose().times(p).at(i, 0).clone()
-        });
-        let turned = b.transpose().minus(&b);
-        self.inverse.transpose().times(&turned).times(&self.inverse)
-    }
-
-    /// Q̇(Q, v), (31).
-    pub fn configuration_rate(&self, v: &Grid<Tracked>) -> Grid<Tracked> {
-        self.tangent.times(&self.inverse.times(v))
-    }
-
-    /// Ẋ̄^c with X̄ = X S̄, at the speeds v̄.
-    pub fn twist_rate(&self, basis: &Grid<Jet>, speeds: &Grid<Tracked>) -> Grid<Tracked> {
-        let map = self.twist_map_child.times(basis);
-        let rate = self.inverse.times(&values(basis).times(speeds));
-        let along = |k: usize| slopes(&map, k).map(|entry| entry.times(rate.at(k, 0)));
-        (1..self.freedoms()).fold(along(0), |sum, k| sum.plus(&along(k)))
-    }
-}
-
-/// Φ = Q exp(Σ b_k ϕ_k) on every factor.
-fn exponential(spec: &JointSpec) -> Vec<Expr> {
-    let factors = spec.manifold.value.factors().iter().enumerate();
-    let moved = factors.flat_map(|(n, factor)| {
-        let mut standard = vec![Expr::zero(); factor.kind.dimension()];
-        for freedom in spec.freedoms.value.iter().filter(|f| f.factor == n) {
-            for (sum, component) in standard.iter_mut().zip(&freedom.generator) {
-                *sum += &(component * &Expr::symbol(&freedom.local));
-            }
-        }
-        let step = algebra::hat(factor.kind, &standard);
-        let step =
-            algebra::exp(&step).unwrap_or_else(|| panic!("{}: exp has a closed form", factor.name));
-        factor.coordinates_of(&factor.matrix().times(&step))
-    });
-    moved.collect()
-}
-
-/// `a × b`.
-fn cross(a: &[Jet; 3], b: &[Jet]) -> Grid<Jet> {
-    let minus = |x: Jet| Grid::column(vec![x]).negative().at(0, 0).clone();
-    let entry = |i: usize| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        a[j].times(&b[k]).plus(&minus(a[k].times(&b[j])))
-    };
-    Grid::column((0..3).map(entry).collect())
-}
-
-/// `Ad_{H⁻¹} = [Rᵀ 0; −Rᵀp~ Rᵀ]` times twists.
-fn to_child((rotation, translation): &Pose, twists: &Grid<Jet>) -> Grid<Jet> {
-    let transposed = rotation.transpose();
-    let column = |k: usize| {
-        let omega = [0, 1, 2].map(|i| twists.at(i, k).clone());
-        let linear = Grid::from_fn(3, 1, |i, _| twists.at(3 + i, k).clone());
-        // v − p × ω = v + ω × p.
-        let moved = linear.plus(&cross(&omega, translation.entries()));
-        let angular = transposed.times(&Grid::column(omega.to_vec()));
-        [angular.entries(), transposed.times(&moved).entries()].concat()
-    };
-    let columns: Vec<Vec<Jet>> = (0..twists.columns).map(column).collect();
-    Grid::from_fn(6, columns.len(), |i, k| columns[k][i].clone())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::exponential;
-    use crate::accuracy::environment::Environment;
-    use crate::accuracy::{BITS, Grid, Jet, Tracked};
-    use hamel_codegen::algebra;
-    use hamel_codegen::expr::{Expr, Number};
-    use hamel_codegen::manifold::Kind;
-    use hamel_codegen::precise::Precise;
-
-    const JOINTS: [(&str, Kind); 6] = [
-        (
-            "config Q: SO3; basis a, b, c of so3; velocity in child; H = Q;",
-            Kind::So3,
-        ),
-        (
-            "config Q: S3; basis a, b, c of so3; velocity in child; H = rot(Q);",
-            Kind::S3,
-        ),
-        (
-            "config Q: SE3; basis a, b, c, d, e, f of se3; velocity in child; H = Q;",
-            Kind::Se3,
-        ),
-        (
-            "config Q: SE2; basis a, b, c of se2; velocity in child; H = pose(rot_z(Q), [Q.x, Q.y, 0]);",
-            Kind::Se2,
-        ),
-        (
-            "config Q: S1; basis a of so2; velocity in child; H = rot_z(Q);",
-            Kind::S1,
-        ),
-        (
-            "config Q: SO2; basis a of so2; velocity in child; H = rot_z(Q);",
-            Kind::So2,
-        ),
-    ];
-
-    /// The power series of exp: 120 terms at |ξ| < 10 leave 10¹²⁰/120! = 1e-79.
-    fn series(xi: &Grid<Tracked>) -> Grid<Tracked> {
-        let identity = Grid::from_fn(xi.rows, xi.rows, |i, j| {
-            Tracked::input(f64::from(u8::from(i == j)))
-        });
-        let (mut sum, mut power) = (identity.clone(), identity);
-        for n in 1..120 {
-            let inverse = Tracked::input(1.0).over(&Tracked::input(f64::from(n)));
-            power = power.times(xi).map(|entry| entry.times(&inverse));
-            sum = sum.plus(&power);
-        }
-        sum
-    }
-
-    /// Φ at the identity is the power series, near 0, at half a turn and beyond.
-    #[test]
-    fn closed_forms_of_exp_are_the_series() {
-        for (text, kind) in JOINTS {
-            let source = format!("hamel = 1;\njoint test {{ {text} }}\n");
-            let spec = hamel_codegen::spec::parse(&source, "test.joint").expect("a right spec");
-            let moved = exponential(&spec);
-            for scale in [1e-150, 1e-3, 1.0, std::f64::consts::PI, 4.0] {
-                let phi: Vec<f64> = (0..kind.dimension())
-                    .map(|i| scale / (1.0 + i as f64))
-                    .collect();
-                let jets: Vec<Jet> = phi.iter().map(|x| Jet::input(*x)).collect();
-                let locals = spec.freedoms.value.iter().map(|freedom| &freedom.local);
-                let coordinates = spec.manifold.value.coordinates();
-                let home = Environment::default().evaluate_all(&spec.manifold.value.home());
-                let at = Environment::default()
-                    .with(locals, &jets)
-                    .with(&coordinates, &home);
-                let symbols: Vec<Expr> = spec
-                    .freedoms
-                    .value
-                    .iter()
-                    .map(|f| Expr::symbol(&f.local))
-                    .collect();
-                let xi = super::values(&at.matrix(&algebra::hat(kind, &symbols)));
-                let factor = &spec.manifold.value.factors()[0];
-                let place = factor.coordinates_of(&algebra_index(kind));
-                let expected = series(&xi);
-                for (got, place) in at.evaluate_all(&moved).iter().zip(place) {
-                    let place = hamel_codegen::expr::evaluate_f64(&place, &|_| f64::NAN) as usize;
-                    let error = &got.value.value - &expected.entries()[place].value;
-                    // 2⁻²²⁰ of terms up to 10⁴.
-                    assert!(
-                        error.abs().to_f64() < Precise::integer(1, BITS).halved(207).to_f64(),
-                        "{text} {scale}"
-                    );
-                }
-            }
-        }
-    }
-
-    /// The square matrix of a group whose entries are their own places, row by row.
-    fn algebra_index(kind: Kind) -> hamel_codegen::matrix::Matrix {
-        let size = algebra::hat(kind, &vec![Expr::zero(); kind.dimension()]).rows();
-        hamel_codegen::matrix::Matrix::from_fn(size, size, |i, j| {
-            Expr::integer((size * i + j) as i64)
-        })
+    /// The relations of the manifold at Q.
+    pub fn relations(&self, q: &[f64]) -> Grid<Tracked> {
+        self.functions.run(&numbers(q)).get("relations").clone()
     }
 }

@@ -1,11 +1,10 @@
 //! The finite maps of a joint from their definitions: Φ(Q, ϕ), its inverse, its differential.
 
-use super::definition::Definition;
-use super::jet::ONCE;
-use super::tracked::larger;
-use super::{Grid, Jet, Tracked};
-use hamel_codegen::expr::{Expr, Number};
-use hamel_codegen::precise::Precise;
+use super::Grid;
+use super::definition::{Definition, numbers};
+use super::tracked::{Tracked, larger};
+use super::wide::Wide;
+use hamel_codegen::expr::Number;
 
 /// Φ(Q, ϕ) with its derivatives.
 #[derive(Clone, Debug)]
@@ -26,25 +25,19 @@ const CORRECTIONS: usize = 8;
 /// A correction below this part of what it corrects is the last: the next one would be below 1e-35.
 const LAST: f64 = 1e-28;
 
-fn numbers(values: &[f64]) -> Vec<Tracked> {
-    values.iter().map(|value| Tracked::input(*value)).collect()
-}
-
-fn constants(values: &[Tracked]) -> Vec<Jet> {
-    values.iter().cloned().map(Jet::constant).collect()
-}
-
 /// The largest size of an entry.
-fn size(values: &[Precise]) -> f64 {
+fn size(values: &[Wide]) -> f64 {
     values.iter().map(|x| x.to_f64().abs()).fold(0.0, larger)
 }
 
 impl Definition {
     /// Φ and its differential at finite ϕ.
     pub fn at_phi(&self, q: &[f64], phi: &[f64]) -> AtPhi {
-        let (moved, tangent) = self.moved_with_tangent(&numbers(q), &numbers(phi));
-        let (_, there) = self.moved_with_tangent(&moved, &self.zero());
-        let differential = there.solve_by(&there.values().left_inverse(), &tangent);
+        let there = self.moved_with_tangent(&numbers(q), &numbers(phi));
+        let moved = there.get("moved").entries().to_vec();
+        let tangent = there.get("tangent").clone();
+        let directions = self.directions(&moved);
+        let differential = directions.solve_by(&directions.left_inverse(), &tangent);
         AtPhi {
             inverse: differential.inverse(),
             moved,
@@ -53,37 +46,29 @@ impl Definition {
         }
     }
 
-    fn moved_with_tangent(&self, q: &[Tracked], phi: &[Tracked]) -> (Vec<Tracked>, Grid<Tracked>) {
-        let moved = self.moved(&constants(q), &self.variables(phi, ONCE));
-        let tangent = Grid::from_fn(moved.len(), phi.len(), |i, k| moved[i].slope(ONCE + k));
-        (moved.into_iter().map(|jet| jet.value).collect(), tangent)
-    }
-
     /// The ϕ near `start` with Φ(Q, ϕ) = `target` (nearest, where the target is off the manifold by rounding). Its scale is how far
     /// errors of an ulp in the summands of Φ(Q, ϕ) move it: those of Q are among them.
-    pub fn local(&self, q: &[f64], target: &[f64], start: &[f64]) -> Grid<Tracked> {
+    pub fn local(&self, at: &AtPhi, q: &[f64], target: &[f64], start: &[f64]) -> Grid<Tracked> {
         let q = numbers(q);
         let target = numbers(target);
-        let (moved, tangent) = self.moved_with_tangent(&q, &numbers(start));
-        let left = tangent.values().left_inverse();
+        let left = at.tangent.values().left_inverse();
         let mut phi = numbers(start);
+        let mut reached = at.moved.clone();
         for _ in 0..CORRECTIONS {
-            let reached = self.moved(&constants(&q), &constants(&phi));
-            let rest = Grid::from_fn(target.len(), 1, |i, _| {
-                &target[i].value - &reached[i].value.value
-            });
+            let rest = Grid::from_fn(target.len(), 1, |i, _| target[i].value - reached[i].value);
             let step = left.times(&rest);
             for (k, value) in phi.iter_mut().enumerate() {
-                *value = Tracked::computed(&value.value + step.at(k, 0), 0.0);
+                *value = Tracked::computed(value.value + *step.at(k, 0), 0.0);
             }
             if size(step.entries()) <= LAST * phi.iter().map(|x| x.scale).fold(0.0, larger) {
                 break;
             }
+            reached = self.moved(&q, &phi).entries().to_vec();
         }
         Grid::from_fn(phi.len(), 1, |k, _| {
-            let moves = |i: usize| left.at(k, i).to_f64().abs() * moved[i].scale;
-            let scale = (0..moved.len()).map(moves).fold(0.0, larger);
-            Tracked::computed(phi[k].value.clone(), scale)
+            let moves = |i: usize| left.at(k, i).to_f64().abs() * at.moved[i].scale;
+            let scale = (0..at.moved.len()).map(moves).fold(0.0, larger);
+            Tracked::computed(phi[k].value, scale)
         })
     }
 
@@ -91,28 +76,22 @@ impl Definition {
     /// reduced to nothing. Its scale is how far errors of an ulp in the scalars of Q move it along the manifold.
     pub fn nearest(&self, q: &[f64], start: &[Tracked]) -> Vec<Tracked> {
         let mut point = start.to_vec();
+        let mut tangent = self.directions(&point).values();
+        let mut left = tangent.left_inverse();
         for _ in 0..CORRECTIONS {
-            let (_, tangent) = self.moved_with_tangent(&point, &self.zero());
-            let rest = Grid::from_fn(q.len(), 1, |i, _| {
-                &Tracked::input(q[i]).value - &point[i].value
-            });
-            let step = tangent.values().left_inverse().times(&rest);
+            let rest = Grid::from_fn(q.len(), 1, |i, _| Wide::from_f64(q[i]) - point[i].value);
+            let step = left.times(&rest);
             if size(step.entries()) <= LAST * q.iter().copied().map(f64::abs).fold(0.0, larger) {
                 break;
             }
-            let step: Vec<Tracked> = step
-                .entries()
-                .iter()
-                .map(|s| Tracked::computed(s.clone(), 0.0))
-                .collect();
-            let moved = self.moved(&constants(&point), &constants(&step));
-            point = moved
-                .into_iter()
-                .map(|jet| Tracked::computed(jet.value.value, 0.0))
-                .collect();
+            let step = step.map(|s| Tracked::computed(*s, 0.0));
+            let moved = self.moved(&point, step.entries());
+            let moved = moved.map(|x| Tracked::computed(x.value, 0.0));
+            point = moved.entries().to_vec();
+            tangent = self.directions(&point).values();
+            left = tangent.left_inverse();
         }
-        let (_, tangent) = self.moved_with_tangent(&point, &self.zero());
-        let along = tangent.values().times(&tangent.values().left_inverse());
+        let along = tangent.times(&left);
         let scale = |i: usize| {
             let moves = |j: usize| along.at(i, j).to_f64().abs() * q[j].abs();
             (0..q.len()).map(moves).fold(0.0, larger)
@@ -123,19 +102,19 @@ impl Definition {
 
     /// The least size of a function of a locus at Q; nothing where there is none.
     pub fn singularity(&self, q: &[f64]) -> Option<Tracked> {
-        let loci = &self.spec.loci;
-        let functions: Vec<Expr> = loci.iter().map(|l| l.value.function.clone()).collect();
-        let values = self.evaluate(&functions, q).into_iter();
-        let sizes = values.map(|x| Tracked::computed(x.value.abs(), x.scale));
-        sizes.reduce(|a, b| match a.value.compare(&b.value) {
-            Some(std::cmp::Ordering::Greater) => b,
+        let values = self.loci(q);
+        let sizes = values.entries().iter();
+        let sizes = sizes.map(|x| Tracked::computed(x.value.abs(), x.scale));
+        sizes.reduce(|a, b| match a.value.compare_sizes(b.value) {
+            std::cmp::Ordering::Greater => b,
             _ => a,
         })
     }
 
     /// The root of the sum of squares of the relations at Q, with the scale of the largest summand of a relation.
-    pub fn residual(&self, relations: &[Expr], q: &[f64]) -> Tracked {
-        let values = self.evaluate(relations, q);
+    pub fn residual(&self, q: &[f64]) -> Tracked {
+        let values = self.relations(q);
+        let values = values.entries();
         let zero = Tracked::input(0.0);
         let sum = values
             .iter()

@@ -1,8 +1,8 @@
 //! Small dense matrices of any arithmetic, and least squares in high precision.
 
-use super::tracked::{BITS, Tracked, larger};
+use super::tracked::{Tracked, larger};
+use super::wide::Wide;
 use hamel_codegen::expr::{Number, Rational};
-use hamel_codegen::precise::Precise;
 
 /// A matrix, row by row.
 #[derive(Clone, Debug)]
@@ -22,6 +22,15 @@ impl<T: Clone> Grid<T> {
             rows,
             columns,
             entries: entries.collect(),
+        }
+    }
+
+    /// The matrix with these entries, row by row.
+    pub fn of_entries(rows: usize, columns: usize, entries: Vec<T>) -> Self {
+        Self {
+            rows,
+            columns,
+            entries,
         }
     }
 
@@ -95,25 +104,37 @@ const NOISE: f64 = 7e-43;
 
 impl Grid<Tracked> {
     /// The values alone.
-    pub fn values(&self) -> Grid<Precise> {
-        self.map(|entry| entry.value.clone())
+    pub fn values(&self) -> Grid<Wide> {
+        self.map(|entry| entry.value)
+    }
+
+    /// `(AᵀA)⁻¹Aᵀ`, NaN where the rank drops.
+    pub fn left_inverse(&self) -> Self {
+        let inverse = self.values().left_inverse();
+        inverse.map(|entry| Tracked::computed(*entry, 0.0))
     }
 
     /// The least-squares solution of `self · x = right` by `left`, the left inverse of `self`. An entry's scale is the largest
     /// change that one entry of `self` or `right` makes by an error of its own scale.
-    pub fn solve_by(&self, left: &Grid<Precise>, right: &Self) -> Self {
-        let x = left.times(&right.values());
-        let of_row = |i: usize| (0..left.columns).map(move |r| left.at(i, r).to_f64().abs());
-        let of_column = |j: usize| (0..right.rows).map(move |r| right.at(r, j).scale);
-        let moved = |i: usize, j: usize, r: usize| {
-            let of_matrix =
-                (0..self.columns).map(|m| self.at(r, m).scale * x.at(m, j).to_f64().abs());
-            left.at(i, r).to_f64().abs() * of_matrix.fold(right.at(r, j).scale, larger)
+    pub fn solve_by(&self, left: &Self, right: &Self) -> Self {
+        let x = left.values().times(&right.values());
+        let gains = left.map(|entry| entry.scale);
+        let sizes = x.map(|entry| entry.to_f64().abs());
+        // Row r of the system is off by this much in column j.
+        let shaken = Grid::from_fn(self.rows, right.columns, |r, j| {
+            let of_matrix = (0..self.columns).map(|m| self.at(r, m).scale * sizes.at(m, j));
+            of_matrix.fold(right.at(r, j).scale, larger)
+        });
+        let of_row = |i: usize| (0..left.columns).map(|r| *gains.at(i, r)).fold(0.0, larger);
+        let of_column = |j: usize| {
+            (0..right.rows)
+                .map(|r| right.at(r, j).scale)
+                .fold(0.0, larger)
         };
         Self::from_fn(x.rows, x.columns, |i, j| {
-            let noise = NOISE * of_row(i).fold(0.0, larger) * of_column(j).fold(0.0, larger);
-            let scale = (0..self.rows).map(|r| moved(i, j, r)).fold(noise, larger);
-            Tracked::computed(x.at(i, j).clone(), scale)
+            let noise = NOISE * of_row(i) * of_column(j);
+            let moved = (0..self.rows).map(|r| gains.at(i, r) * shaken.at(r, j));
+            Tracked::computed(*x.at(i, j), moved.fold(noise, larger))
         })
     }
 
@@ -122,11 +143,18 @@ impl Grid<Tracked> {
         let identity = Self::from_fn(self.rows, self.rows, |i, j| {
             Tracked::input(f64::from(u8::from(i == j)))
         });
-        self.solve_by(&self.values().left_inverse(), &identity)
+        self.solve_by(&self.left_inverse(), &identity)
     }
 }
 
-impl Grid<Precise> {
+impl Grid<Wide> {
+    /// Product; the inner dimension is at least 1.
+    pub fn times(&self, other: &Self) -> Self {
+        Self::from_fn(self.rows, other.columns, |i, j| {
+            (0..self.columns).fold(Wide::ZERO, |sum, k| sum + *self.at(i, k) * *other.at(k, j))
+        })
+    }
+
     /// `(AᵀA)⁻¹Aᵀ`, NaN where the rank drops.
     pub fn left_inverse(&self) -> Self {
         let transposed = self.transpose();
@@ -135,35 +163,33 @@ impl Grid<Precise> {
 }
 
 /// Gauss elimination with row pivoting of a square system.
-fn solve(mut a: Grid<Precise>, mut b: Grid<Precise>) -> Grid<Precise> {
+fn solve(mut a: Grid<Wide>, mut b: Grid<Wide>) -> Grid<Wide> {
     let size = a.rows;
     let width = b.columns;
+    let mut inverses = vec![];
     for k in 0..size {
-        let pivot = (k..size)
-            .max_by(|&i, &j| {
-                let (x, y) = (a.at(i, k).abs(), a.at(j, k).abs());
-                x.compare(&y).unwrap_or(std::cmp::Ordering::Equal)
-            })
-            .unwrap_or(k);
+        let by_size = |&i: &usize, &j: &usize| a.at(i, k).compare_sizes(*a.at(j, k));
+        let pivot = (k..size).max_by(by_size).unwrap_or(k);
         for j in 0..size {
             a.entries.swap(k * size + j, pivot * size + j);
         }
         for j in 0..width {
             b.entries.swap(k * width + j, pivot * width + j);
         }
-        let inverse = Precise::integer(1, BITS) / a.at(k, k).clone();
+        let inverse = a.at(k, k).recip();
         for i in (0..size).filter(|&i| i != k) {
-            let factor = a.at(i, k) * &inverse;
+            let factor = *a.at(i, k) * inverse;
             if factor.is_zero() {
                 continue;
             }
             for j in k..size {
-                a.entries[i * size + j] = a.at(i, j) - &(&factor * a.at(k, j));
+                a.entries[i * size + j] = *a.at(i, j) - factor * *a.at(k, j);
             }
             for j in 0..width {
-                b.entries[i * width + j] = b.at(i, j) - &(&factor * b.at(k, j));
+                b.entries[i * width + j] = *b.at(i, j) - factor * *b.at(k, j);
             }
         }
+        inverses.push(inverse);
     }
-    Grid::from_fn(size, width, |i, j| b.at(i, j) / a.at(i, i))
+    Grid::from_fn(size, width, |i, j| *b.at(i, j) * inverses[i])
 }

@@ -1,6 +1,6 @@
 //! Polynomials of degree 2 in local coordinates, exactly: values with all first and second derivatives.
 
-use super::Tracked;
+use super::Node;
 use hamel_codegen::expr::{Function, Number, Rational};
 use std::collections::BTreeMap;
 
@@ -11,14 +11,14 @@ pub const ONCE: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Jet {
     /// The constant term.
-    pub value: Tracked,
-    first: BTreeMap<usize, Tracked>,
-    second: BTreeMap<(usize, usize), Tracked>,
+    pub value: Node,
+    first: BTreeMap<usize, Node>,
+    second: BTreeMap<(usize, usize), Node>,
 }
 
 impl Jet {
     /// A number.
-    pub fn constant(value: Tracked) -> Self {
+    pub fn constant(value: Node) -> Self {
         Self {
             value,
             first: BTreeMap::new(),
@@ -28,20 +28,20 @@ impl Jet {
 
     /// An input.
     pub fn input(value: f64) -> Self {
-        Self::constant(Tracked::input(value))
+        Self::constant(Node::input(value))
     }
 
     /// `value + x_i`.
-    pub fn variable(value: Tracked, i: usize) -> Self {
+    pub fn variable(value: Node, i: usize) -> Self {
         Self {
-            first: BTreeMap::from([(i, Tracked::input(1.0))]),
+            first: BTreeMap::from([(i, Node::input(1.0))]),
             ..Self::constant(value)
         }
     }
 
     /// The coefficient of x_i.
-    pub fn slope(&self, i: usize) -> Tracked {
-        self.first.get(&i).cloned().unwrap_or(Tracked::input(0.0))
+    pub fn slope(&self, i: usize) -> Node {
+        self.first.get(&i).cloned().unwrap_or(Node::input(0.0))
     }
 
     /// `∂/∂x_i` to first order in the others.
@@ -49,7 +49,7 @@ impl Jet {
         let mut first = BTreeMap::new();
         for (&(a, b), value) in &self.second {
             match (a == i, b == i) {
-                (true, true) => _ = first.insert(i, value.times(&Tracked::input(2.0))),
+                (true, true) => _ = first.insert(i, value.times(&Node::input(2.0))),
                 (true, false) => _ = first.insert(b, value.clone()),
                 (false, true) => _ = first.insert(a, value.clone()),
                 _ => {}
@@ -81,25 +81,25 @@ impl Jet {
     /// The part without the constant term.
     fn varying(&self) -> Self {
         Self {
-            value: Tracked::input(0.0),
+            value: Node::input(0.0),
             ..self.clone()
         }
     }
 
     /// `f(self)` from f, f′ and f″ at its value; the derivatives are made only where something varies.
-    fn mapped(&self, f: impl Fn(u8) -> Tracked) -> Self {
+    fn mapped(&self, f: impl Fn(u8) -> Node) -> Self {
         let start = Self::constant(f(0));
         if self.is_constant() {
             return start;
         }
         let n = self.varying();
-        let half = Self::constant(f(2).times(&Tracked::input(0.5)));
+        let half = Self::constant(f(2).times(&Node::input(0.5)));
         let slope = Self::constant(f(1)).plus(&half.times(&n));
         start.plus(&slope.times(&n))
     }
 
     /// `self` with every coefficient times `factor`.
-    fn scaled(&self, factor: &Tracked) -> Self {
+    fn scaled(&self, factor: &Node) -> Self {
         Self {
             value: self.value.times(factor),
             first: scaled(&self.first, factor),
@@ -108,7 +108,7 @@ impl Jet {
     }
 }
 
-fn scaled<K: Ord + Copy>(terms: &BTreeMap<K, Tracked>, factor: &Tracked) -> BTreeMap<K, Tracked> {
+fn scaled<K: Ord + Copy>(terms: &BTreeMap<K, Node>, factor: &Node) -> BTreeMap<K, Node> {
     terms
         .iter()
         .filter(|_| !factor.is_nothing())
@@ -116,7 +116,7 @@ fn scaled<K: Ord + Copy>(terms: &BTreeMap<K, Tracked>, factor: &Tracked) -> BTre
         .collect()
 }
 
-fn add<K: Ord + Copy>(sum: &mut BTreeMap<K, Tracked>, key: K, value: &Tracked) {
+fn add<K: Ord + Copy>(sum: &mut BTreeMap<K, Node>, key: K, value: &Node) {
     let total = match sum.get(&key) {
         Some(known) => known.plus(value),
         None => value.clone(),
@@ -166,7 +166,7 @@ impl Number for Jet {
 
     fn over(&self, other: &Self) -> Self {
         if other.is_constant() {
-            return self.scaled(&Tracked::input(1.0).over(&other.value));
+            return self.scaled(&Node::input(1.0).over(&other.value));
         }
         self.times(&other.function(Function::Recip, std::slice::from_ref(other)))
     }
@@ -199,8 +199,8 @@ fn angle(y: &Jet, x: &Jet) -> Jet {
 }
 
 /// The value, first or second derivative of a function of one argument.
-fn derivative(function: Function, order: u8, x: &Tracked) -> Tracked {
-    let number = |value: i64| Tracked::input(value as f64);
+fn derivative(function: Function, order: u8, x: &Node) -> Node {
+    let number = |value: i64| Node::input(value as f64);
     let at = |function: Function| x.function(function, std::slice::from_ref(x));
     let once = |function| derivative(function, order - 1, x);
     match (function, order) {
@@ -211,20 +211,20 @@ fn derivative(function: Function, order: u8, x: &Tracked) -> Tracked {
         (Function::Ln, _) => once(Function::Recip),
         (Function::Sqrt, 1) => at(Function::Recip)
             .times(&at(Function::Sqrt))
-            .times(&Tracked::input(0.5)),
+            .times(&Node::input(0.5)),
         (Function::Sqrt, _) => {
             let recip = at(Function::Recip);
             recip
                 .times(&recip)
                 .times(&at(Function::Sqrt))
-                .times(&Tracked::input(-0.25))
+                .times(&Node::input(-0.25))
         }
         (Function::Recip, 1) => at(Function::Recip).power(2).negative(),
         (Function::Recip, _) => at(Function::Recip).power(3).times(&number(2)),
         (Function::Stumpff(k), _) => {
             let ahead = number(k.into()).times(&once(Function::Stumpff(k + 2)));
             let behind = once(Function::Stumpff(k + 1)).negative();
-            ahead.plus(&behind).times(&Tracked::input(0.5))
+            ahead.plus(&behind).times(&Node::input(0.5))
         }
         (Function::DexpInverse(n), _) => once(Function::DexpInverse(n + 1)),
         (Function::Group, 1) => number(1),
@@ -236,9 +236,8 @@ fn derivative(function: Function, order: u8, x: &Tracked) -> Tracked {
 mod tests {
     use super::Jet;
     use crate::accuracy::environment::Environment;
-    use crate::accuracy::{BITS, Tracked};
+    use crate::accuracy::{Node, Wide};
     use hamel_codegen::expr::{Expr, Role, Symbol};
-    use hamel_codegen::precise::Precise;
 
     /// Every function of the language, of arguments that mix two variables.
     fn functions(x: &Expr, y: &Expr) -> Vec<Expr> {
@@ -258,6 +257,10 @@ mod tests {
         ]
     }
 
+    fn known(node: &Node) -> Wide {
+        node.known().expect("arguments are known").value
+    }
+
     /// First and second derivatives against those of the symbolic engine: 256 bits, less 56 for sums of a few terms of order 100.
     #[test]
     fn derivatives_are_those_of_the_function() {
@@ -265,21 +268,21 @@ mod tests {
         let [x, y] = symbols.each_ref().map(Expr::symbol);
         let values = [0.75, 1.25];
         let variables: Vec<Jet> = (0..2)
-            .map(|i| Jet::variable(Tracked::input(values[i]), i))
+            .map(|i| Jet::variable(Node::input(values[i]), i))
             .collect();
         let constants: Vec<Jet> = values.iter().map(|v| Jet::input(*v)).collect();
         let moving = Environment::default().with(&symbols, &variables);
         let still = Environment::default().with(&symbols, &constants);
-        let smallest = Precise::integer(1, BITS).halved(200).to_f64();
+        let smallest = f64::powi(0.5, 200);
         for f in functions(&x, &y) {
             let jet = moving.evaluate(&f);
             for (i, a) in symbols.iter().enumerate() {
                 let first = f.derivative(a);
-                let error = &jet.slope(i).value - &still.evaluate(&first).value.value;
+                let error = known(&jet.slope(i)) - known(&still.evaluate(&first).value);
                 assert!(error.to_f64().abs() < smallest, "d{i} {f}");
                 for (j, b) in symbols.iter().enumerate() {
-                    let second = still.evaluate(&first.derivative(b)).value.value;
-                    let error = &jet.partial(i).slope(j).value - &second;
+                    let second = known(&still.evaluate(&first.derivative(b)).value);
+                    let error = known(&jet.partial(i).slope(j)) - second;
                     assert!(error.to_f64().abs() < smallest, "d{i} d{j} {f}");
                 }
             }

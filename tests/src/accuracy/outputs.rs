@@ -1,14 +1,14 @@
 //! All kernels of a joint at one case, in any scalar: lanes and dual numbers against doubles.
 
+use super::Tracked;
 use super::compare::Worst;
-use super::definition::{AtZero, Definition, slopes};
+use super::definition::{Definition, numbers};
 use super::points::{Case, Points, Range};
-use super::{Grid, Tracked};
+use super::program::Sheet;
 use hamel::joint::Joint;
 use hamel::nalgebra::{SMatrix, SVector};
 use hamel::scalar::{Dual, F64x4, Scalar};
 use hamel_codegen::derived::Derived;
-use hamel_codegen::expr::Number;
 
 /// The numbers of one kernel, in the order of storage.
 pub type Output<T> = (&'static str, Vec<T>);
@@ -132,14 +132,14 @@ fn with_cases<J, const N: usize, const K: usize, const S: usize, const C: usize>
     J: Joint<N, K, S, C>,
 {
     let parameters: Vec<f64> = joint.parameters().map(|(_, value)| value).collect();
-    let definition = Definition::new(derived.spec.clone(), &parameters);
+    let definition = Definition::new(derived, &parameters);
     let range = Range {
         smallest: -300.0,
         round: |value| value,
     };
     let mut points = Points::new(&definition, range, 99);
     for _ in 0..count {
-        let cases: Vec<Case> = (0..F64x4::LANES).map(|_| points.case(S)).collect();
+        let cases: Vec<Case> = (0..F64x4::LANES).map(|_| points.case()).collect();
         each(&definition, &cases);
     }
 }
@@ -188,11 +188,12 @@ where
     J: Joint<N, K, S, C>,
 {
     let mut worst = Worst::default();
+    let mut program = None;
     with_cases(joint, derived, count, |definition, cases| {
         let case = &cases[0];
-        let at = definition.at_zero(&case.q);
-        let rate = Grid::column(case.v.iter().map(|v| Tracked::input(*v)).collect());
-        let motion = at.tangent.times(&rate);
+        let program = program.get_or_insert_with(|| definition.derivatives());
+        let at = program.run(&numbers(&[&case.q[..], &case.v].concat()));
+        let motion = at.get("motion");
         let alone = arguments(joint, std::slice::from_ref(case), |x| x[0]);
         let mut dual = arguments(joint, std::slice::from_ref(case), |x| Dual::constant(x[0]));
         dual.q = SVector::from_fn(|i, _| Dual::new(case.q[i], motion.at(i, 0).value.to_f64()));
@@ -207,7 +208,7 @@ where
                 );
             }
         }
-        for (kernel, expected) in derivatives(&at, &rate) {
+        for (kernel, expected) in derivatives(&at) {
             let numbers = found.iter().find(|(name, _)| *name == kernel);
             for (number, expected) in numbers.iter().flat_map(|(_, n)| n).zip(&expected) {
                 worst.meet(kernel, number.derivative, expected, &|| format!("{case:?}"));
@@ -217,23 +218,18 @@ where
     worst
 }
 
-/// The derivatives of definitions along ϕ̇ = `rate`, in the order of storage.
-fn derivatives(at: &AtZero, rate: &Grid<Tracked>) -> Vec<Output<Tracked>> {
-    let along = |grid: &Grid<super::Jet>| {
-        let term = |k: usize| slopes(grid, k).map(|entry| entry.times(rate.at(k, 0)));
-        let sum = (1..rate.rows).fold(term(0), |sum, k| sum.plus(&term(k)));
-        sum.transpose().entries().to_vec()
-    };
-    let mut all = vec![
-        ("rotation", along(&at.rotation)),
-        ("translation", along(&at.translation)),
-        ("twist_map", along(&at.twist_map)),
-        ("twist_map_child", along(&at.twist_map_child)),
+/// The derivatives of definitions, in the order of storage.
+fn derivatives(at: &Sheet<Tracked>) -> Vec<Output<Tracked>> {
+    let kernels = [
+        "rotation",
+        "translation",
+        "twist_map",
+        "twist_map_child",
+        "speed_basis",
     ];
-    all.extend(
-        at.speed_basis
-            .as_ref()
-            .map(|basis| ("speed_basis", along(basis))),
-    );
-    all
+    let found = kernels.iter().filter_map(|kernel| {
+        let matrix = at.find(kernel)?;
+        Some((*kernel, matrix.transpose().entries().to_vec()))
+    });
+    found.collect()
 }

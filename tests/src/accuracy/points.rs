@@ -1,11 +1,12 @@
 //! Random and extreme arguments of kernels: what a caller can have, rounded to the kernel's type.
 
 use super::Definition;
-use super::tracked::{BITS, Tracked};
+use super::tracked::Tracked;
+use super::wide::{BITS, Wide};
 use hamel_codegen::expr::{Atom, Expr, Symbol};
 use hamel_codegen::manifold::Kind;
 use hamel_codegen::model::Freedom;
-use hamel_codegen::precise::{Precise, Sampler};
+use hamel_codegen::precise::Sampler;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
@@ -14,6 +15,8 @@ use std::collections::BTreeSet;
 const LARGEST_ANGLE: f64 = 1e6 * std::f64::consts::TAU;
 /// Offsets, m.
 const LARGEST_OFFSET: f64 = 1e8;
+/// Coordinates of points that are not extreme, rad or m.
+const USUAL: f64 = 2.0;
 /// How near half a turn ϕ comes.
 const NEAREST_TO_PI: f64 = 1e-12;
 /// Local coordinates without a group have no radius that is known here; their Φ holds near 0.
@@ -60,7 +63,7 @@ impl<'a> Points<'a> {
     /// Cases in numbers of that range; `seed` tells batches apart.
     pub fn new(definition: &'a Definition, range: Range, seed: u64) -> Self {
         Self {
-            sampler: Sampler::new(&definition.spec, BITS),
+            sampler: Sampler::new(definition.spec(), BITS),
             random: ChaCha8Rng::seed_from_u64(seed),
             range,
             angles: angles(definition),
@@ -72,11 +75,11 @@ impl<'a> Points<'a> {
     ///
     /// # Panics
     /// Where the manifold has no point that the sampler finds.
-    pub fn case(&mut self, speeds: usize) -> Case {
+    pub fn case(&mut self) -> Case {
         let extreme = self.random.random_bool(0.5);
         let (exact, q) = loop {
             let exact = self.configuration(extreme);
-            let q: Vec<f64> = exact.iter().map(|x| self.rounded(x)).collect();
+            let q: Vec<f64> = exact.iter().map(|x| self.rounded(*x)).collect();
             if self.is_allowed(&q) {
                 break (exact, q);
             }
@@ -90,12 +93,12 @@ impl<'a> Points<'a> {
                 .collect(),
             phi: self.phi(extreme),
             v: self.numbers(freedoms),
-            speeds: self.numbers(speeds),
+            speeds: self.numbers(self.definition.speeds()),
             wrench: self.numbers(6),
         }
     }
 
-    fn rounded(&self, value: &Precise) -> f64 {
+    fn rounded(&self, value: Wide) -> f64 {
         (self.range.round)(value.to_f64())
     }
 
@@ -107,61 +110,84 @@ impl<'a> Points<'a> {
     }
 
     fn is_allowed(&self, q: &[f64]) -> bool {
-        let loci = &self.definition.spec.loci;
-        let functions: Vec<Expr> = loci.iter().map(|l| l.value.function.clone()).collect();
-        let values = self.definition.evaluate(&functions, q);
+        let values = self.definition.loci(q);
         values
+            .entries()
             .iter()
             .all(|value| value.value.to_f64().abs() > SMALLEST_LOCUS)
     }
 
     /// On the manifold, in high precision.
-    fn configuration(&mut self, extreme: bool) -> Vec<Precise> {
-        let manifold = &self.definition.spec.manifold.value;
-        if extreme && manifold.declared().is_empty() {
+    fn configuration(&mut self, extreme: bool) -> Vec<Wide> {
+        let manifold = &self.definition.spec().manifold.value;
+        if manifold.declared().is_empty() {
             let factors = manifold.factors().to_vec();
             return factors
                 .iter()
-                .flat_map(|factor| self.element(factor.kind, &factor.coordinates))
+                .flat_map(|factor| self.element(factor.kind, &factor.coordinates, extreme))
                 .collect();
         }
         let point = self.sampler.point().expect("the manifold has points");
-        let coordinates = &self.definition.coordinates;
-        coordinates
-            .iter()
-            .map(|symbol| point.value(symbol))
-            .collect()
+        let coordinates = manifold.coordinates();
+        let values = coordinates.iter().map(|symbol| point.value(symbol));
+        values.map(|value| Wide::from_precise(&value)).collect()
     }
 
-    fn element(&mut self, kind: Kind, coordinates: &[Symbol]) -> Vec<Precise> {
+    fn element(&mut self, kind: Kind, coordinates: &[Symbol], extreme: bool) -> Vec<Wide> {
         match kind {
             Kind::Real(_) => coordinates
                 .iter()
-                .map(|symbol| self.coordinate(symbol))
+                .map(|symbol| self.coordinate(symbol, extreme))
                 .collect(),
-            Kind::S1 => self.special_unit(2),
-            Kind::S2 => self.special_unit(3),
-            Kind::S3 => self.special_unit(4),
-            Kind::So2 => planar(&self.special_unit(2), &[]),
-            Kind::Se2 => planar(&self.special_unit(2), &self.offsets(2)),
-            Kind::So3 => rotation(&self.special_unit(4), &[]),
-            Kind::Se3 => rotation(&self.special_unit(4), &self.offsets(3)),
+            Kind::S1 => normalised(&self.direction(2, extreme)),
+            Kind::S2 => normalised(&self.direction(3, extreme)),
+            Kind::S3 => normalised(&self.direction(4, extreme)),
+            Kind::So2 => planar(&self.direction(2, extreme), &[]),
+            Kind::Se2 => planar(&self.direction(2, extreme), &self.offsets(2, extreme)),
+            Kind::So3 => rotation(&self.direction(4, extreme), &[]),
+            Kind::Se3 => rotation(&self.direction(4, extreme), &self.offsets(3, extreme)),
         }
     }
 
-    fn coordinate(&mut self, symbol: &Symbol) -> Precise {
+    fn coordinate(&mut self, symbol: &Symbol, extreme: bool) -> Wide {
         let largest = match self.angles.contains(symbol) {
             true => LARGEST_ANGLE,
             false => LARGEST_OFFSET,
         };
-        let value = self.spread(largest);
-        precise(value)
+        self.offset(largest, extreme)
     }
 
-    fn offsets(&mut self, count: usize) -> Vec<Precise> {
+    fn offsets(&mut self, count: usize, extreme: bool) -> Vec<Wide> {
         (0..count)
-            .map(|_| precise(self.spread(LARGEST_OFFSET)))
+            .map(|_| self.offset(LARGEST_OFFSET, extreme))
             .collect()
+    }
+
+    fn offset(&mut self, largest: f64, extreme: bool) -> Wide {
+        Wide::from_f64(match extreme {
+            true => self.spread(largest),
+            false => (self.range.round)(self.random.random_range(-USUAL..USUAL)),
+        })
+    }
+
+    fn direction(&mut self, size: usize, extreme: bool) -> Vec<f64> {
+        match extreme {
+            true => self.special_direction(size),
+            false => self.usual_direction(size),
+        }
+    }
+
+    /// Uniform: a point of the unit ball.
+    fn usual_direction(&mut self, size: usize) -> Vec<f64> {
+        loop {
+            let x = (0..size).map(|_| self.random.random_range(-1.0..1.0));
+            let x: Vec<f64> = x.collect();
+            let square: f64 = x.iter().map(|x| x * x).sum();
+            // Near the centre the direction would have few bits.
+            if (0.01..1.0).contains(&square) {
+                return x;
+            }
+        }
     }
 
     /// Of either sign; half of them of order `largest`, the others of any order of magnitude down to the smallest numbers.
@@ -181,8 +207,8 @@ impl<'a> Points<'a> {
         })
     }
 
-    /// A unit vector at or near one of the special ones: an axis, or half-way between axes.
-    fn special_unit(&mut self, size: usize) -> Vec<Precise> {
+    /// A direction at or near one of the special ones: an axis, or half-way between axes.
+    fn special_direction(&mut self, size: usize) -> Vec<f64> {
         loop {
             let special: Vec<i32> = (0..size)
                 .map(|_| self.random.random_range(-1..=1))
@@ -195,13 +221,13 @@ impl<'a> Points<'a> {
             };
             let x: Vec<f64> = special.iter().enumerate().map(entry).collect();
             if x.iter().map(|x| x * x).sum::<f64>() > 0.25 {
-                return normalised(&x);
+                return x;
             }
         }
     }
 
     fn phi(&mut self, extreme: bool) -> Vec<f64> {
-        let freedoms = self.definition.spec.freedoms.value.clone();
+        let freedoms = self.definition.spec().freedoms.value.clone();
         let direction: Vec<f64> = self.numbers(freedoms.len());
         let group = freedoms.iter().all(|freedom| !freedom.generator.is_empty());
         let angle = match (extreme, group) {
@@ -243,7 +269,7 @@ impl<'a> Points<'a> {
 
     /// Whether a freedom turns something, or is of unknown kind, so that it must stay within half a turn.
     fn turns(&self, freedom: &Freedom) -> bool {
-        let kind = self.definition.spec.manifold.value.factors()[freedom.factor].kind;
+        let kind = self.definition.spec().manifold.value.factors()[freedom.factor].kind;
         let rotations = match kind {
             Kind::Real(_) => return freedom.generator.is_empty(),
             Kind::S1 | Kind::So2 | Kind::Se2 => 1,
@@ -260,7 +286,7 @@ impl<'a> Points<'a> {
 
 /// Real coordinates that enter H through a function.
 fn angles(definition: &Definition) -> BTreeSet<Symbol> {
-    let pose = &definition.spec.pose.value;
+    let pose = &definition.spec().pose.value;
     let entries = pose
         .rotation
         .entries()
@@ -281,40 +307,35 @@ fn angles(definition: &Definition) -> BTreeSet<Symbol> {
         .collect()
 }
 
-fn precise(value: f64) -> Precise {
-    Precise::from_f64(value, BITS)
+fn normalised(x: &[f64]) -> Vec<Wide> {
+    let x: Vec<Wide> = x.iter().map(|x| Wide::from_f64(*x)).collect();
+    let square = x.iter().fold(Wide::ZERO, |sum, x| sum + *x * *x);
+    let scale = square.sqrt().recip();
+    x.into_iter().map(|x| x * scale).collect()
 }
 
-fn normalised(x: &[f64]) -> Vec<Precise> {
-    let x: Vec<Precise> = x.iter().map(|x| precise(*x)).collect();
-    let square = x.iter().fold(precise(0.0), |sum, x| sum + x * x);
-    let norm = square.sqrt();
-    x.iter().map(|x| x / &norm).collect()
+fn planar(direction: &[f64], offset: &[Wide]) -> Vec<Wide> {
+    let unit = normalised(direction);
+    let [c, s] = [unit[0], unit[1]];
+    bordered(&[&[c, -s], &[s, c]], offset)
 }
 
-fn planar(unit: &[Precise], offset: &[Precise]) -> Vec<Precise> {
-    let [c, s] = [&unit[0], &unit[1]];
-    bordered(&[&[c.clone(), -s], &[s.clone(), c.clone()]], offset)
-}
-
-/// The rotation `w² + … ` of a unit quaternion, each entry a sum of products.
-fn rotation(q: &[Precise], offset: &[Precise]) -> Vec<Precise> {
-    let [w, x, y, z] = [&q[0], &q[1], &q[2], &q[3]];
-    let twice = |a: &Precise, b: &Precise, c: &Precise, d: &Precise, sign: i64| {
-        let second = c * d * &c.same(sign);
-        (a * b + second).halved(-1)
-    };
-    let square = |a: &Precise, b: &Precise, c: &Precise| w * w + a * a - b * b - c * c;
+/// The rotation of a quaternion, which is divided by its square last: what cancels does so exactly, and every entry has all its digits.
+fn rotation(q: &[f64], offset: &[Wide]) -> Vec<Wide> {
+    let [w, x, y, z] = [q[0], q[1], q[2], q[3]].map(Wide::from_f64);
+    let scale = (w * w + x * x + y * y + z * z).recip();
+    let difference = |a: Wide, b: Wide| (a - b) * (a + b);
+    let diagonal = |a: Wide, b: Wide, c: Wide| (difference(w, b) + difference(a, c)) * scale;
+    let sum = |a: Wide, b: Wide, c: Wide, d: Wide| (a * b + c * d).halved(-1) * scale;
     let rows = [
-        [square(x, y, z), twice(x, y, w, z, -1), twice(x, z, w, y, 1)],
-        [twice(x, y, w, z, 1), square(y, x, z), twice(y, z, w, x, -1)],
-        [twice(x, z, w, y, -1), twice(y, z, w, x, 1), square(z, x, y)],
+        [diagonal(x, y, z), sum(x, y, -w, z), sum(x, z, w, y)],
+        [sum(x, y, w, z), diagonal(y, x, z), sum(y, z, -w, x)],
+        [sum(x, z, -w, y), sum(y, z, w, x), diagonal(z, x, y)],
     ];
     bordered(&[&rows[0], &rows[1], &rows[2]], offset)
 }
 
-fn bordered(rows: &[&[Precise]], offset: &[Precise]) -> Vec<Precise> {
-    let row =
-        |(i, row): (usize, &&[Precise])| [*row, offset.get(i..=i).unwrap_or_default()].concat();
+fn bordered(rows: &[&[Wide]], offset: &[Wide]) -> Vec<Wide> {
+    let row = |(i, row): (usize, &&[Wide])| [*row, offset.get(i..=i).unwrap_or_default()].concat();
     rows.iter().enumerate().flat_map(row).collect()
 }

@@ -1,31 +1,30 @@
 //! Every kernel of a joint against its definition.
 
 use super::compare::{Measured, Worst};
-use super::definition::{AtZero, Definition, slopes, values};
+use super::definition::Definition;
 use super::points::{Case, Points, Range};
+use super::program::Sheet;
 use super::tracked::larger;
 use super::{Grid, Tracked};
 use hamel::joint::Joint;
 use hamel::nalgebra::{SMatrix, SVector};
-use hamel_codegen::derived::{Derived, KernelKind};
-use hamel_codegen::expr::Expr;
+use hamel_codegen::derived::Derived;
 
 /// A joint to measure.
 struct Subject<'a, J> {
     joint: &'a J,
     definition: &'a Definition,
-    relations: &'a [Expr],
 }
 
-/// The worst errors of `count` cases in numbers of type `T`.
+/// The worst errors of `count` cases in numbers of type `T`; `progress` is told how many have been met.
 ///
 /// # Panics
 /// Where the joint of the library is not that of its spec.
 pub fn measure<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
     derived: &Derived,
-    seed: u64,
     count: usize,
+    progress: &dyn Fn(usize),
 ) -> Worst
 where
     T: Measured,
@@ -35,44 +34,33 @@ where
         .parameters()
         .map(|(_, value)| T::round(value))
         .collect();
-    let definition = Definition::new(derived.spec.clone(), &parameters);
-    let relations = derived.kernel(KernelKind::Residual);
-    let relations = relations.map_or(&[][..], |kernel| kernel.outputs[0].entries());
+    let definition = Definition::new(derived, &parameters);
     let subject = Subject {
         joint,
         definition: &definition,
-        relations,
     };
     let range = Range {
         smallest: T::SMALLEST,
         round: T::round,
     };
-    let mut points = Points::new(&definition, range, seed);
+    let mut points = Points::new(&definition, range, 0);
     let mut worst = Worst::default();
-    for _ in 0..count {
-        subject.measure_case::<T, N, K, S, C>(&points.case(S), &mut worst);
+    for done in 0..count {
+        progress(done);
+        subject.measure_case::<T, N, K, S, C>(&points.case(), &mut worst);
     }
     worst
 }
 
-/// A kernel that does not keep the bound yet: joint, kernel, and what it keeps instead, in ulp.
-pub type Shortfall = (&'static str, &'static str, f64);
-
-/// Holds every kernel to `bound` ulp, those of known shortfalls to theirs.
+/// Holds every kernel to `bound` ulp.
 ///
 /// # Panics
 /// With the kernels that exceed it, and where.
-pub fn check(name: &str, worst: &Worst, bound: f64, shortfalls: &[Shortfall]) {
-    let bound_of = |kernel: &str| {
-        let known = shortfalls
-            .iter()
-            .find(|(joint, other, _)| *joint == name && *other == kernel);
-        known.map_or(bound, |(_, _, own)| *own)
-    };
+pub fn check(name: &str, worst: &Worst, bound: f64) {
     let exceeding: Vec<String> = worst
         .errors
         .iter()
-        .filter(|(kernel, (error, _))| error.is_nan() || *error > bound_of(kernel))
+        .filter(|(_, (error, _))| error.is_nan() || *error > bound)
         .map(|(kernel, (error, place))| format!("{name}.{kernel}: {error:.1} ulp, {place}"))
         .collect();
     assert!(exceeding.is_empty(), "{}", exceeding.join("\n"));
@@ -86,6 +74,35 @@ fn column(values: &[f64]) -> Grid<Tracked> {
     Grid::column(values.iter().map(|value| Tracked::input(*value)).collect())
 }
 
+/// What kernels are held against.
+struct Against<'a> {
+    at: &'a Sheet<Tracked>,
+    worst: &'a mut Worst,
+}
+
+impl Against<'_> {
+    fn matrix<T: Measured, const R: usize, const C: usize>(
+        &mut self,
+        kernel: &'static str,
+        got: &SMatrix<T, R, C>,
+        place: &impl Fn() -> String,
+    ) {
+        self.worst.matrix(kernel, got, self.at.get(kernel), place);
+    }
+
+    fn slices<T: Measured, const R: usize, const C: usize>(
+        &mut self,
+        kernel: &'static str,
+        got: &[SMatrix<T, R, C>],
+        place: &impl Fn() -> String,
+    ) {
+        for (k, (slice, want)) in got.iter().zip(self.at.all(kernel)).enumerate() {
+            let place = || format!("slice {k}, {}", place());
+            self.worst.matrix(kernel, slice, want, &place);
+        }
+    }
+}
+
 impl<J> Subject<'_, J> {
     fn measure_case<T, const N: usize, const K: usize, const S: usize, const C: usize>(
         &self,
@@ -95,7 +112,9 @@ impl<J> Subject<'_, J> {
         T: Measured,
         J: Joint<N, K, S, C>,
     {
-        let at = self.definition.at_zero(&case.q);
+        let at = self
+            .definition
+            .kernels(&case.q, &case.v, &case.speeds, &case.wrench);
         self.velocity::<T, N, K, S, C>(case, &at, worst);
         self.gradients::<T, N, K, S, C>(case, &at, worst);
         self.speeds::<T, N, K, S, C>(case, &at, worst);
@@ -107,7 +126,7 @@ impl<J> Subject<'_, J> {
     fn velocity<T, const N: usize, const K: usize, const S: usize, const C: usize>(
         &self,
         case: &Case,
-        at: &AtZero,
+        at: &Sheet<Tracked>,
         worst: &mut Worst,
     ) where
         T: Measured,
@@ -116,75 +135,47 @@ impl<J> Subject<'_, J> {
         let (joint, q) = (self.joint, vector::<T, N>(&case.q));
         let place = || format!("Q = {:?}", case.q);
         let pose = joint.pose(&q);
-        worst.matrix("pose", &pose.rotation, &values(&at.rotation), &place);
-        worst.matrix("pose", &pose.translation, &values(&at.translation), &place);
-        worst.matrix(
-            "twist_map",
-            &joint.twist_map(&q),
-            &values(&at.twist_map),
-            &place,
-        );
-        worst.matrix(
-            "twist_map_child",
-            &joint.twist_map_child(&q),
-            &values(&at.twist_map_child),
-            &place,
-        );
-        worst.matrix(
-            "velocity_map",
-            &joint.velocity_map(&q),
-            &at.velocity_map,
-            &place,
-        );
-        worst.matrix(
-            "velocity_map_inverse",
-            &joint.velocity_map_inverse(&q),
-            &at.inverse,
-            &place,
-        );
+        let want: Vec<&Grid<Tracked>> = at.all("pose").collect();
+        worst.matrix("pose", &pose.rotation, want[0], &place);
+        worst.matrix("pose", &pose.translation, want[1], &place);
+        let mut hold = Against { at, worst };
+        hold.matrix("twist_map", &joint.twist_map(&q), &place);
+        hold.matrix("twist_map_child", &joint.twist_map_child(&q), &place);
+        hold.matrix("velocity_map", &joint.velocity_map(&q), &place);
+        let inverse = joint.velocity_map_inverse(&q);
+        hold.matrix("velocity_map_inverse", &inverse, &place);
         let v = vector::<T, K>(&case.v);
         let place = || format!("Q = {:?}, v = {:?}", case.q, case.v);
-        let exact = column(&case.v);
-        worst.matrix("gamma", &joint.gamma(&q, &v), &at.gamma(&exact), &place);
-        worst.matrix("j22", &joint.j22(&q, &v), &at.j22(&exact), &place);
-        worst.matrix(
-            "configuration_rate",
-            &joint.configuration_rate(&q, &v),
-            &at.configuration_rate(&exact),
-            &place,
-        );
+        hold.matrix("gamma", &joint.gamma(&q, &v), &place);
+        hold.matrix("j22", &joint.j22(&q, &v), &place);
+        let rate = joint.configuration_rate(&q, &v);
+        hold.matrix("configuration_rate", &rate, &place);
     }
 
     /// Derivatives along ϕ.
     fn gradients<T, const N: usize, const K: usize, const S: usize, const C: usize>(
         &self,
         case: &Case,
-        at: &AtZero,
+        at: &Sheet<Tracked>,
         worst: &mut Worst,
     ) where
         T: Measured,
         J: Joint<N, K, S, C>,
     {
         let (joint, q) = (self.joint, vector::<T, N>(&case.q));
+        let place = || format!("Q = {:?}", case.q);
+        let mut hold = Against { at, worst };
         let of_child = joint.twist_map_child_gradient(&q);
+        hold.slices("twist_map_child_gradient", &of_child, &place);
         let of_map = joint.velocity_map_gradient(&q);
-        for k in 0..K {
-            let place = || format!("slice {k}, Q = {:?}", case.q);
-            worst.matrix(
-                "twist_map_child_gradient",
-                &of_child[k],
-                &slopes(&at.twist_map_child, k),
-                &place,
-            );
-            worst.matrix("velocity_map_gradient", &of_map[k], &at.slopes[k], &place);
-        }
+        hold.slices("velocity_map_gradient", &of_map, &place);
     }
 
     /// Kernels of A and S̄, and those of c.
     fn speeds<T, const N: usize, const K: usize, const S: usize, const C: usize>(
         &self,
         case: &Case,
-        at: &AtZero,
+        at: &Sheet<Tracked>,
         worst: &mut Worst,
     ) where
         T: Measured,
@@ -197,36 +188,23 @@ impl<J> Subject<'_, J> {
                 case.q, case.speeds, case.wrench
             )
         };
-        let basis = joint.speed_basis(&q);
-        match &at.constraint {
-            Some(declared) if C > 0 => {
-                worst.matrix("constraint", &joint.constraint(&q), declared, &place)
-            }
-            _ => self.forbidden::<T, K, S, C>(&joint.constraint(&q), &basis, worst),
+        let (basis, a) = (joint.speed_basis(&q), joint.constraint(&q));
+        match at.find("constraint") {
+            Some(declared) => worst.matrix("constraint", &a, declared, &place),
+            None => self.forbidden::<T, K, S, C>(&a, &basis, worst),
         }
-        let Some(declared) = &at.speed_basis else {
-            return self.forbidden::<T, K, S, C>(&joint.constraint(&q), &basis, worst);
-        };
-        worst.matrix("speed_basis", &basis, &values(declared), &place);
-        for (k, slice) in joint.speed_basis_gradient(&q).iter().enumerate() {
-            worst.matrix("speed_basis_gradient", slice, &slopes(declared, k), &place);
+        if at.find("speed_basis").is_none() {
+            return self.forbidden::<T, K, S, C>(&a, &basis, worst);
         }
-        let rate = at.twist_rate(declared, &column(&case.speeds));
+        let mut hold = Against { at, worst };
+        hold.matrix("speed_basis", &basis, &place);
+        let slopes = joint.speed_basis_gradient(&q);
+        hold.slices("speed_basis_gradient", &slopes, &place);
         let speeds = vector::<T, S>(&case.speeds);
         let bias = joint.bias_acceleration(&q, &speeds);
-        worst.matrix(
-            "bias_acceleration",
-            &bias,
-            &rate.times(&column(&case.speeds)),
-            &place,
-        );
+        hold.matrix("bias_acceleration", &bias, &place);
         let dual = joint.bias_momentum(&q, &speeds, &vector::<T, 6>(&case.wrench));
-        worst.matrix(
-            "bias_momentum",
-            &dual,
-            &rate.transpose().times(&column(&case.wrench)),
-            &place,
-        );
+        hold.matrix("bias_momentum", &dual, &place);
     }
 
     /// AᵀS̄ = 0 where one of both is derived and so not unique: in ulp of the largest entries, of which both are rounded.
@@ -286,7 +264,7 @@ impl<J> Subject<'_, J> {
             &place,
         );
         let target: Vec<f64> = moved.iter().map(|x| x.wide()).collect();
-        let local = self.definition.local(&case.q, &target, &case.phi);
+        let local = self.definition.local(&at, &case.q, &target, &case.phi);
         worst.matrix("local", &joint.local(&q, &moved), &local, &place);
     }
 
@@ -301,7 +279,7 @@ impl<J> Subject<'_, J> {
     {
         let (joint, q) = (self.joint, vector::<T, N>(&case.q));
         let place = || format!("Q = {:?}", case.q);
-        let residual = self.definition.residual(self.relations, &case.q);
+        let residual = self.definition.residual(&case.q);
         worst.meet("residual", joint.residual(&q), &residual, &place);
         if let Some(least) = self.definition.singularity(&case.q) {
             worst.meet("singularity", joint.singularity(&q), &least, &place);

@@ -35,6 +35,14 @@ impl Table {
         }
     }
 
+    /// Whether errors of the joint at so many points are there.
+    pub fn holds(&self, joint: &str, number: &str, points: usize) -> bool {
+        let rows = self.rows.iter();
+        let found =
+            |((j, _, n), (_, count)): (&Key, &Entry)| j == joint && n == number && *count == points;
+        rows.into_iter().any(found)
+    }
+
     /// Writes the file.
     ///
     /// # Errors

@@ -5,7 +5,9 @@
 //! about z: placements turn them.
 
 mod model;
+mod reference;
 mod states;
 
 pub use model::{JointKind, JointLine, Model, ModelError};
+pub use reference::{Reference, numbers};
 pub use states::{States, convert};

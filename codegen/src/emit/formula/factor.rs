@@ -1,151 +1,161 @@
 //! From sums of terms to formulas: Horner's scheme, greedy on the factor that most terms share.
 
 use super::Node;
-use crate::expr::{Atom, Expr, Function, Monomial, Rational};
-use num_traits::{One, Signed};
+use super::numbered::{Numbered, Term};
+use crate::expr::{Atom, Expr, Function};
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
 
 /// The expression with common factors pulled out, terms in ascending order.
 pub fn factored(expression: &Expr) -> Node {
-    Node::sum(terms(expression).into_values())
+    let (numbered, terms) = Numbered::new(expression);
+    let atoms = numbered.atoms.iter().map(node_of_atom).collect();
+    Writer { numbered, atoms }.sum(terms)
 }
 
-/// What several terms can share.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// What several terms can share. The order decides between factors that equally many share: symbols go first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Factor {
     /// An atom in the numerator.
-    Atom(Atom),
+    Atom(usize),
     /// A parameter or π in the denominator.
-    Divisor(Atom),
+    Divisor(usize),
     /// A rational other than ±1.
-    Coefficient(Rational),
-}
-
-/// The terms after pulling out factors, each under the smallest monomial that went into it.
-fn terms(expression: &Expr) -> BTreeMap<Monomial, Node> {
-    let Some(factor) = most_shared(expression) else {
-        let single = |(monomial, coefficient): (&Monomial, &Rational)| {
-            (monomial.clone(), single_term(monomial, coefficient))
-        };
-        return expression.terms().map(single).collect();
-    };
-    let (mut inside, mut outside, mut first) = (Expr::zero(), Expr::zero(), None);
-    for (monomial, coefficient) in expression.terms() {
-        match factor.divide(monomial, coefficient) {
-            Some(quotient) => {
-                inside += &quotient;
-                first.get_or_insert_with(|| monomial.clone());
-            }
-            None => outside += &Expr::term(coefficient.clone(), monomial.clone()),
-        }
-    }
-    let mut terms = terms(&outside);
-    terms.insert(first.unwrap_or_default(), factor.times(factored(&inside)));
-    terms
-}
-
-/// The factor in most terms, in two at least; the largest coefficient last, so that symbols go first.
-fn most_shared(expression: &Expr) -> Option<Factor> {
-    let mut uses: BTreeMap<Factor, usize> = BTreeMap::new();
-    for (monomial, coefficient) in expression.terms() {
-        for (atom, power) in monomial.factors() {
-            let factor = if power > 0 {
-                Factor::Atom(atom.clone())
-            } else {
-                Factor::Divisor(atom.clone())
-            };
-            *uses.entry(factor).or_default() += 1;
-        }
-        if !coefficient.abs().is_one() {
-            *uses
-                .entry(Factor::Coefficient(coefficient.abs()))
-                .or_default() += 1;
-        }
-    }
-    let shared = uses.into_iter().filter(|(_, count)| *count >= 2);
-    let (factor, _) = shared.min_by_key(|(factor, count)| (Reverse(*count), factor.clone()))?;
-    Some(factor)
+    Size(usize),
 }
 
 impl Factor {
-    /// The term without this factor, where it has it.
-    fn divide(&self, monomial: &Monomial, coefficient: &Rational) -> Option<Expr> {
-        let same = |rest: Monomial| Expr::term(coefficient.clone(), rest);
+    /// Takes this factor out of the term; false where the term does not have it.
+    fn divide(self, term: &mut Term) -> bool {
         match self {
-            Self::Atom(atom) if monomial.power(atom) > 0 => without(monomial, atom).map(same),
-            Self::Divisor(atom) if monomial.power(atom) < 0 => {
-                Some(same(monomial.times(&Monomial::atom(atom.clone()))))
+            Self::Atom(atom) => term.power(atom) > 0 && term.multiply(atom, -1),
+            Self::Divisor(atom) => term.power(atom) < 0 && term.multiply(atom, 1),
+            Self::Size(size) => {
+                let has = term.size == size;
+                if has {
+                    term.size = Numbered::ONE;
+                }
+                has
             }
-            Self::Coefficient(size) if coefficient.abs() == *size => {
-                Some(Expr::term(coefficient.signum(), monomial.clone()))
-            }
-            _ => None,
-        }
-    }
-
-    fn times(&self, inside: Node) -> Node {
-        match self {
-            Self::Atom(atom) => times_atom(inside, atom),
-            Self::Divisor(atom) => inside.over(node_of_atom(atom)),
-            Self::Coefficient(size) => Node::product([Node::number(size), inside]),
         }
     }
 }
 
-fn without(monomial: &Monomial, atom: &Atom) -> Option<Monomial> {
-    let single = Monomial::atom(atom.clone());
-    match single.recip() {
-        Some(inverse) => Some(monomial.times(&inverse)),
-        None => monomial.divided_by(&single),
-    }
+/// An atom in a formula.
+enum Written {
+    Factor(Node),
+    /// A quotient is an atom of the ring; in a formula it divides.
+    Divisor(Node),
 }
 
-/// A quotient is an atom of the ring; in a formula it divides.
-fn times_atom(inside: Node, atom: &Atom) -> Node {
-    match reciprocal_of(atom) {
-        Some(divisor) => inside.over(divisor),
-        None => Node::product([node_of_atom(atom), inside]),
-    }
+/// Writes the terms of one expression.
+struct Writer {
+    numbered: Numbered,
+    atoms: Vec<Written>,
 }
 
-fn reciprocal_of(atom: &Atom) -> Option<Node> {
-    let Atom::Apply(application) = atom else {
-        return None;
-    };
-    match (application.function, application.arguments.as_slice()) {
-        (Function::Recip, [divisor]) => Some(factored(divisor)),
-        _ => None,
-    }
-}
-
-fn single_term(monomial: &Monomial, coefficient: &Rational) -> Node {
-    let mut above = vec![Node::number(coefficient)];
-    let mut below = vec![];
-    for (atom, power) in monomial.factors() {
-        let copies = power.unsigned_abs() as usize;
-        match (reciprocal_of(atom), power < 0) {
-            (Some(divisor), false) => below.extend(std::iter::repeat_n(divisor, copies)),
-            (Some(divisor), true) => above.extend(std::iter::repeat_n(divisor, copies)),
-            (None, true) => below.extend(std::iter::repeat_n(node_of_atom(atom), copies)),
-            (None, false) => above.extend(std::iter::repeat_n(node_of_atom(atom), copies)),
-        }
-    }
-    Node::product(above).over(Node::product(below))
-}
-
-fn node_of_atom(atom: &Atom) -> Node {
-    match atom {
-        Atom::Symbol(symbol) => Node::Symbol(symbol.clone()),
-        Atom::Apply(application) => {
-            match (application.function, application.arguments.as_slice()) {
-                (Function::Pi, _) => Node::Pi,
-                (Function::Recip, [divisor]) => Node::one().over(factored(divisor)),
-                (Function::Group, [sum]) => factored(sum),
-                (function, arguments) => {
-                    Node::Call(function, arguments.iter().map(factored).collect())
+impl Writer {
+    /// The sum; factors go in front in the place of the first term that had them.
+    fn sum(&self, mut terms: Vec<Term>) -> Node {
+        let mut written = vec![];
+        while let Some(factor) = self.most_shared(&terms) {
+            let (mut inside, mut outside, mut first) = (vec![], vec![], None);
+            for mut term in terms {
+                let whole = first.is_none().then(|| term.clone());
+                match factor.divide(&mut term) {
+                    true => {
+                        first = first.or(whole);
+                        inside.push(term);
+                    }
+                    false => outside.push(term),
                 }
             }
+            inside.sort();
+            if let Some(first) = first {
+                written.push((first, self.times(factor, self.sum(inside))));
+            }
+            terms = outside;
+        }
+        let single = |term: Term| {
+            let node = self.single_term(&term);
+            (term, node)
+        };
+        written.extend(terms.into_iter().map(single));
+        written.sort_by(|(a, _), (b, _)| a.cmp(b));
+        Node::sum(written.into_iter().map(|(_, node)| node))
+    }
+
+    /// The factor in most terms, in two at least.
+    fn most_shared(&self, terms: &[Term]) -> Option<Factor> {
+        let mut above = vec![0_usize; self.numbered.atoms.len()];
+        let mut below = above.clone();
+        let mut sizes = vec![0_usize; self.numbered.sizes.len()];
+        for term in terms {
+            for (atom, power) in term.factors() {
+                let counts = if power > 0 { &mut above } else { &mut below };
+                counts[atom] += 1;
+            }
+            sizes[term.size] += usize::from(term.size != Numbered::ONE);
+        }
+        let numbered = |counts: Vec<usize>, factor: fn(usize) -> Factor| {
+            let counted = counts.into_iter().enumerate();
+            counted.map(move |(number, count)| (Reverse(count), factor(number)))
+        };
+        // Atoms and divisors stand in one order, by their atoms within each.
+        let all = numbered(above, Factor::Atom)
+            .chain(numbered(below, Factor::Divisor))
+            .chain(numbered(sizes, Factor::Size));
+        all.filter(|(Reverse(count), _)| *count >= 2)
+            .min()
+            .map(|(_, factor)| factor)
+    }
+
+    fn times(&self, factor: Factor, inside: Node) -> Node {
+        match factor {
+            Factor::Atom(atom) => match &self.atoms[atom] {
+                Written::Factor(node) => Node::product([node.clone(), inside]),
+                Written::Divisor(divisor) => inside.over(divisor.clone()),
+            },
+            Factor::Divisor(atom) => match &self.atoms[atom] {
+                Written::Factor(node) => inside.over(node.clone()),
+                Written::Divisor(divisor) => Node::product([divisor.clone(), inside]),
+            },
+            Factor::Size(size) => Node::product([Node::number(&self.numbered.sizes[size]), inside]),
         }
     }
+
+    fn single_term(&self, term: &Term) -> Node {
+        let size = Node::number(&self.numbered.sizes[term.size]);
+        let mut above = vec![if term.negative { size.negated() } else { size }];
+        let mut below = vec![];
+        for (atom, power) in term.factors() {
+            let (node, divides) = match &self.atoms[atom] {
+                Written::Factor(node) => (node, false),
+                Written::Divisor(node) => (node, true),
+            };
+            let side = match divides ^ (power < 0) {
+                true => &mut below,
+                false => &mut above,
+            };
+            side.extend(std::iter::repeat_n(
+                node.clone(),
+                power.unsigned_abs() as usize,
+            ));
+        }
+        Node::product(above).over(Node::product(below))
+    }
+}
+
+fn node_of_atom(atom: &Atom) -> Written {
+    let application = match atom {
+        Atom::Symbol(symbol) => return Written::Factor(Node::Symbol(symbol.clone())),
+        Atom::Apply(application) => application,
+    };
+    Written::Factor(
+        match (application.function, application.arguments.as_slice()) {
+            (Function::Recip, [divisor]) => return Written::Divisor(factored(divisor)),
+            (Function::Pi, _) => Node::Pi,
+            (Function::Group, [sum]) => factored(sum),
+            (function, arguments) => Node::Call(function, arguments.iter().map(factored).collect()),
+        },
+    )
 }

@@ -7,8 +7,10 @@ mod count;
 mod divisor;
 mod factor;
 mod fused;
+mod numbered;
 mod pairs;
 mod reciprocal;
+mod shapes;
 mod share;
 #[cfg(test)]
 mod tests;
@@ -19,7 +21,7 @@ pub use fused::Chain;
 pub use share::{Binding, Program};
 
 use crate::expr::{Function, Rational, Symbol};
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 /// A formula.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

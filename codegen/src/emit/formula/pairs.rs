@@ -1,8 +1,9 @@
 //! Products that share two factors: the pair becomes a product of its own, which is then computed once.
 
 use super::Node;
+use rustc_hash::FxHashMap as HashMap;
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most pairs pulled out of one kernel: a bound on the work, far above what joints need.
 const MOST_PAIRS: usize = 400;
@@ -16,7 +17,7 @@ pub fn extract_pairs(formulas: &mut [Node]) {
         };
         search.pull_out(pair);
     }
-    let mut rewritten = HashMap::new();
+    let mut rewritten = HashMap::default();
     for formula in formulas {
         *formula = search.rewritten(formula, &mut rewritten);
     }
@@ -33,12 +34,19 @@ enum Factor {
     Pair(Pair),
 }
 
-/// How many products hold a pair.
+/// The products that hold a pair.
 #[derive(Default)]
 struct Uses {
-    all: usize,
-    /// Those with further factors.
+    all: BTreeSet<usize>,
+    /// How many of them have further factors.
     long: usize,
+}
+
+impl Uses {
+    /// Their number, where the pair is worth a product of its own: in two at least, one of them longer than the pair.
+    fn worth(&self) -> Option<usize> {
+        (self.all.len() >= 2 && self.long >= 1).then_some(self.all.len())
+    }
 }
 
 /// The distinct products of the formulas, as lists of numbered factors.
@@ -46,7 +54,9 @@ struct Search {
     factors: Vec<Factor>,
     products: Vec<Vec<usize>>,
     by_value: BTreeMap<Vec<Node>, usize>,
-    uses: BTreeMap<Pair, Uses>,
+    uses: HashMap<Pair, Uses>,
+    /// The pairs that are worth it, by the number of their products.
+    frequent: BTreeSet<(Reverse<usize>, Pair)>,
 }
 
 impl Search {
@@ -55,7 +65,8 @@ impl Search {
             factors: vec![],
             products: vec![],
             by_value: BTreeMap::new(),
-            uses: BTreeMap::new(),
+            uses: HashMap::default(),
+            frequent: BTreeSet::new(),
         };
         let mut distinct: BTreeSet<Vec<Node>> = BTreeSet::new();
         for formula in formulas {
@@ -103,29 +114,36 @@ impl Search {
         }
         for pair in pairs {
             let uses = self.uses.entry(pair).or_default();
+            let before = uses.worth();
             match add {
-                true => (uses.all, uses.long) = (uses.all + 1, uses.long + long),
-                false => (uses.all, uses.long) = (uses.all - 1, uses.long - long),
+                true => {
+                    uses.all.insert(product);
+                    uses.long += long;
+                }
+                false => {
+                    uses.all.remove(&product);
+                    uses.long -= long;
+                }
+            }
+            let after = uses.worth();
+            if before != after {
+                before.map(|count| self.frequent.remove(&(Reverse(count), pair)));
+                after.map(|count| self.frequent.insert((Reverse(count), pair)));
             }
         }
     }
 
-    /// The pair of factors, numbers aside, in most products; in two at least, one of them longer than the pair.
+    /// The pair of factors, numbers aside, in most products.
     fn most_frequent(&self) -> Option<Pair> {
-        let shared = self
-            .uses
-            .iter()
-            .filter(|(_, uses)| uses.all >= 2 && uses.long >= 1);
-        shared
-            .min_by_key(|(_, uses)| Reverse(uses.all))
-            .map(|(pair, _)| *pair)
+        self.frequent.first().map(|(_, pair)| *pair)
     }
 
     /// Makes the pair one factor wherever there are others beside it.
     fn pull_out(&mut self, pair: Pair) {
         self.factors.push(Factor::Pair(pair));
         let new = self.factors.len() - 1;
-        for product in 0..self.products.len() {
+        let holders = self.uses.get(&pair).map(|uses| uses.all.clone());
+        for product in holders.unwrap_or_default() {
             if let Some(shorter) = without(&self.products[product], pair, new) {
                 self.count(product, false);
                 self.products[product] = shorter;

@@ -3,12 +3,14 @@
 use super::divisor::shared_sums;
 use super::pairs::extract_pairs;
 use super::reciprocal::share_reciprocals;
+use super::shapes::{Shape, Shapes};
 use super::{Counts, Node, factored};
 use crate::derived::{Kernel, Primitive, Step};
 use crate::emit::names::{NameSet, describe};
 use crate::expr::{Expr, Function, Role, Symbol};
 use crate::matrix::Matrix;
-use std::collections::{BTreeMap, BTreeSet};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 /// First index of the symbols made here, above all that a derivation numbers itself.
 const FIRST_INDEX: usize = 0x8000;
@@ -94,12 +96,12 @@ impl Program {
     fn of_formulas(kernel: &Kernel, mut formulas: Vec<Node>, taken: &NameSet) -> Self {
         share_reciprocals(&mut formulas);
         extract_pairs(&mut formulas);
-        let mut sharing = Sharing::new(&formulas, taken.clone());
-        let mut remaining = formulas.iter();
+        let mut sharing = Sharing::new(taken.clone());
+        let mut remaining = sharing.numbered(&formulas).into_iter();
         for step in &kernel.steps {
             sharing.step(step, &mut remaining);
         }
-        let outputs = remaining.map(|node| sharing.rewrite(node)).collect();
+        let outputs = remaining.map(|formula| sharing.rewrite(formula)).collect();
         Self {
             bindings: sharing.bindings,
             outputs,
@@ -167,30 +169,37 @@ fn expressions(kernel: &Kernel) -> Vec<Expr> {
 
 /// Rewrites formulas in order, binding a shared part just before the first line that uses it.
 struct Sharing {
-    uses: BTreeMap<Node, usize>,
+    shapes: Shapes,
     /// What stands for a formula: the name that it is bound to, or what a name merely repeats.
-    names: BTreeMap<Node, Node>,
+    names: FxHashMap<usize, Node>,
     taken: NameSet,
     bindings: Vec<Binding>,
     count: usize,
 }
 
 impl Sharing {
-    fn new(formulas: &[Node], taken: NameSet) -> Self {
-        let mut uses = BTreeMap::new();
-        formulas
-            .iter()
-            .for_each(|formula| count_uses(formula, &mut uses));
+    fn new(taken: NameSet) -> Self {
         Self {
-            uses,
-            names: BTreeMap::new(),
+            shapes: Shapes::default(),
+            names: FxHashMap::default(),
             taken,
             bindings: vec![],
             count: 0,
         }
     }
 
-    fn step<'a>(&mut self, step: &Step, formulas: &mut impl Iterator<Item = &'a Node>) {
+    /// The formulas by number, and every place that uses a part of them counted.
+    fn numbered(&mut self, formulas: &[Node]) -> Vec<usize> {
+        let shapes = &mut self.shapes;
+        let numbers = formulas.iter().map(|formula| {
+            let number = shapes.number(formula);
+            shapes.count(number);
+            number
+        });
+        numbers.collect()
+    }
+
+    fn step(&mut self, step: &Step, formulas: &mut impl Iterator<Item = usize>) {
         match step {
             Step::Let(name, _) => {
                 let Some(formula) = formulas.next() else {
@@ -219,14 +228,15 @@ impl Sharing {
     }
 
     /// Binds a name of the derivation: later occurrences of its formula use it; a name for a name is not bound at all.
-    fn define(&mut self, name: &Symbol, formula: &Node, value: Node) {
+    fn define(&mut self, name: &Symbol, formula: usize, value: Node) {
         if matches!(value, Node::Symbol(_) | Node::Number(_)) {
-            self.names.insert(Node::Symbol(name.clone()), value);
+            let number = self.shapes.number(&Node::Symbol(name.clone()));
+            self.names.insert(number, value);
             return;
         }
-        if is_operation(formula) {
+        if self.shapes.is_operation(formula) {
             self.names
-                .entry(formula.clone())
+                .entry(formula)
                 .or_insert_with(|| Node::Symbol(name.clone()));
         }
         self.bindings.push(Binding::Value {
@@ -236,59 +246,92 @@ impl Sharing {
     }
 
     /// The formula with its shared parts replaced by names, but not itself bound: its caller names it.
-    fn rewrite_named(&mut self, node: &Node) -> Node {
-        match (self.names.get(node), node) {
+    fn rewrite_named(&mut self, formula: usize) -> Node {
+        match (self.names.get(&formula), self.angle(formula)) {
             (Some(known), _) => known.clone(),
-            (None, Node::Call(Function::Sin | Function::Cos, _)) => self.rewrite(node),
-            (None, _) => node.map_parts(&mut |part| self.rewrite(part)),
+            (None, Some(_)) => self.rewrite(formula),
+            (None, None) => self.with_parts_rewritten(formula),
         }
     }
 
     /// The formula with its shared parts replaced by names.
-    fn rewrite(&mut self, node: &Node) -> Node {
-        if let Some(known) = self.names.get(node) {
+    fn rewrite(&mut self, formula: usize) -> Node {
+        if let Some(known) = self.names.get(&formula) {
             return known.clone();
         }
-        if let Node::Call(Function::Sin | Function::Cos, arguments) = node
-            && let [angle] = arguments.as_slice()
-        {
-            return self.sin_cos(node, angle);
+        if let Some(angle) = self.angle(formula) {
+            return self.sin_cos(formula, angle);
         }
-        let value = node.map_parts(&mut |part| self.rewrite(part));
-        match is_operation(node) && self.uses.get(node).is_some_and(|uses| *uses > 1) {
-            true => self.bind(node, value),
+        let value = self.with_parts_rewritten(formula);
+        match self.shapes.is_operation(formula) && self.shapes.uses(formula) > 1 {
+            true => self.bind(formula, value),
             false => value,
         }
     }
 
-    fn bind(&mut self, node: &Node, value: Node) -> Node {
+    fn with_parts_rewritten(&mut self, formula: usize) -> Node {
+        match self.shapes.shape(formula).clone() {
+            Shape::Leaf(node) => node,
+            Shape::Sum(terms) => {
+                let terms = terms.into_iter();
+                Node::Sum(
+                    terms
+                        .map(|(minus, term)| (minus, self.rewrite(term)))
+                        .collect(),
+                )
+            }
+            Shape::Product(factors) => Node::Product(self.rewrite_all(factors)),
+            Shape::Quotient(above, below) => {
+                let above = self.rewrite(above);
+                Node::Quotient(Box::new(above), Box::new(self.rewrite(below)))
+            }
+            Shape::Negative(inner) => Node::Negative(Box::new(self.rewrite(inner))),
+            Shape::Call(function, arguments) => Node::Call(function, self.rewrite_all(arguments)),
+        }
+    }
+
+    fn rewrite_all(&mut self, formulas: Vec<usize>) -> Vec<Node> {
+        formulas
+            .into_iter()
+            .map(|formula| self.rewrite(formula))
+            .collect()
+    }
+
+    fn bind(&mut self, formula: usize, value: Node) -> Node {
         let name = self.fresh(&describe(&value));
         let symbol = Node::Symbol(name.clone());
-        self.names.insert(node.clone(), symbol.clone());
+        self.names.insert(formula, symbol.clone());
         self.bindings.push(Binding::Value { name, value });
         symbol
     }
 
+    /// The angle, where the formula is its sine or cosine.
+    fn angle(&self, formula: usize) -> Option<usize> {
+        match self.shapes.shape(formula) {
+            Shape::Call(Function::Sin | Function::Cos, arguments) => arguments.first().copied(),
+            _ => None,
+        }
+    }
+
     /// Binds sine and cosine of the angle together, as far as they are used.
-    fn sin_cos(&mut self, node: &Node, angle: &Node) -> Node {
+    fn sin_cos(&mut self, formula: usize, angle: usize) -> Node {
         let value = self.rewrite(angle);
         let text = describe(&value);
         let name = |sharing: &mut Self, function: Function, prefix: &str| {
-            let call = Node::Call(function, vec![angle.clone()]);
-            sharing.uses.contains_key(&call).then(|| {
-                let symbol = sharing.fresh(&format!("{prefix}_{text}"));
-                sharing.names.insert(call, Node::Symbol(symbol.clone()));
-                symbol
-            })
+            let call = sharing.shapes.known(&Shape::Call(function, vec![angle]))?;
+            let symbol = sharing.fresh(&format!("{prefix}_{text}"));
+            sharing.names.insert(call, Node::Symbol(symbol.clone()));
+            Some(symbol)
         };
         let sin = name(self, Function::Sin, "sin");
         let cos = name(self, Function::Cos, "cos");
+        let bound = self.names.get(&formula).cloned();
         self.bindings.push(Binding::SinCos {
             sin,
             cos,
             angle: value,
         });
-        self.names.get(node).unwrap_or(node).clone()
+        bound.unwrap_or_else(Node::zero)
     }
 
     fn fresh(&mut self, wish: &str) -> Symbol {
@@ -296,22 +339,4 @@ impl Sharing {
         self.count += 1;
         Symbol::new(Role::Intermediate, FIRST_INDEX + self.count, &name)
     }
-}
-
-/// Counts the places that use each part; the parts of a repeated part are counted once.
-fn count_uses(node: &Node, uses: &mut BTreeMap<Node, usize>) {
-    let count = uses.entry(node.clone()).or_default();
-    *count += 1;
-    if *count == 1 {
-        node.parts()
-            .into_iter()
-            .for_each(|part| count_uses(part, uses));
-    }
-}
-
-fn is_operation(node: &Node) -> bool {
-    matches!(
-        node,
-        Node::Sum(_) | Node::Product(_) | Node::Quotient(..) | Node::Call(..)
-    )
 }

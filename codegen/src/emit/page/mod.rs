@@ -54,7 +54,7 @@ pub fn html_page(derived: &Derived, accuracy: &Accuracy) -> tera::TeraResult<Str
 
 /// The drawing of a joint as a file of its own; nothing for a joint whose pose cannot be evaluated at home.
 pub fn drawing_file(derived: &Derived, label: &str) -> Option<String> {
-    let report = Report::new(derived);
+    let report = Report::brief(derived);
     let drawing = Drawing::new(derived, &report.freedoms)?;
     Some(format!("<!-- {} -->\n{}\n", header(label), drawing.sheet()))
 }

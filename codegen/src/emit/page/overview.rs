@@ -23,7 +23,7 @@ pub fn overview(
     pages: &str,
     accuracy: &Accuracy,
 ) -> tera::TeraResult<String> {
-    let report = |joint: &Derived| Report::new(joint).with_accuracy(accuracy);
+    let report = |joint: &Derived| Report::brief(joint).with_accuracy(accuracy);
     let mut reports: Vec<(Report, bool)> = joints
         .iter()
         .map(|joint| {

@@ -209,9 +209,13 @@ fn equations(
     kernel: &Kernel,
     name: &Math,
 ) -> Vec<Equation> {
-    let whole = whole_equations(derived, notation, kernel, name);
-    if !shared::is_long(&whole) || kernel.kind == KernelKind::Pose {
-        return whole;
+    let whole = |room| whole_equations(derived, notation, kernel, name, room);
+    let room = match kernel.kind {
+        KernelKind::Pose => usize::MAX,
+        _ => shared::LONGEST,
+    };
+    if let Some(equations) = whole(room) {
+        return equations;
     }
     let names: Vec<Math> = match kernel.outputs.len() {
         1 => vec![name.clone()],
@@ -219,25 +223,31 @@ fn equations(
             .map(|k| along(name, Math::integer(k)))
             .collect(),
     };
-    shared::equations(derived, notation, kernel, &names).unwrap_or(whole)
+    shared::equations(derived, notation, kernel, &names)
+        .or_else(|| whole(usize::MAX))
+        .unwrap_or_default()
 }
 
+/// The equations as they stand; nothing where their right sides have no room together.
 fn whole_equations(
     derived: &Derived,
     notation: &Notation,
     kernel: &Kernel,
     name: &Math,
-) -> Vec<Equation> {
+    mut room: usize,
+) -> Option<Vec<Equation>> {
+    let mut one = |matrix: &Matrix| {
+        let equation = notation.equation_within(name.clone(), matrix, &mut room)?;
+        Some(vec![equation])
+    };
     match (kernel.kind, kernel.outputs.as_slice()) {
-        (_, []) => vec![],
-        (KernelKind::Pose, [rotation, translation]) => {
-            vec![notation.equation(name.clone(), &homogeneous(rotation, translation))]
-        }
+        (_, []) => Some(vec![]),
+        (KernelKind::Pose, [rotation, translation]) => one(&homogeneous(rotation, translation)),
         (KernelKind::VelocityMapGradient | KernelKind::SpeedBasisGradient, slices) => {
-            gradient(derived, notation, name, slices)
+            gradient(derived, notation, name, slices, room)
         }
-        (_, [only]) => vec![notation.equation(name.clone(), only)],
-        _ => vec![],
+        (_, [only]) => one(only),
+        _ => Some(vec![]),
     }
 }
 
@@ -247,15 +257,16 @@ fn gradient(
     notation: &Notation,
     name: &Math,
     slices: &[Matrix],
-) -> Vec<Equation> {
+    mut room: usize,
+) -> Option<Vec<Equation>> {
+    let mut one = |name: Math, matrix: &Matrix| notation.equation_within(name, matrix, &mut room);
     let zero = Matrix::zeros(1, 1);
     if slices.iter().all(Matrix::is_zero) {
-        return vec![notation.equation(name.clone(), &zero)];
+        return Some(vec![one(name.clone(), &zero)?]);
     }
     if slices.len() <= FEW {
         let each = slices.iter().enumerate();
-        let each =
-            each.map(|(k, slice)| notation.equation(along(name, Math::integer(k + 1)), slice));
+        let each = each.map(|(k, slice)| one(along(name, Math::integer(k + 1)), slice));
         return each.collect();
     }
     let (k, first) = (
@@ -267,7 +278,7 @@ fn gradient(
         sum.plus(&slice.scale(&Expr::symbol(local)))
     });
     let term = Math::product([Math::Letter('ϕ').with_index(k.clone()), along(name, k)]);
-    vec![notation.equation(summed(term), &sum)]
+    Some(vec![one(summed(term), &sum)?])
 }
 
 /// The derivative along one ϕ.

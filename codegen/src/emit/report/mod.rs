@@ -76,6 +76,15 @@ pub struct Report {
 impl Report {
     /// The report of a joint.
     pub fn new(derived: &Derived) -> Self {
+        Self {
+            formulas: formulas::formulas(derived, &Notation::new(derived)),
+            counts: tables::counts(derived),
+            ..Self::brief(derived)
+        }
+    }
+
+    /// The report without formulas and counts, which take most of the time to make.
+    pub fn brief(derived: &Derived) -> Self {
         let spec = &derived.spec;
         let notation = Notation::new(derived);
         let coordinates = &derived.arguments.configuration;
@@ -100,12 +109,12 @@ impl Report {
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
             velocity_frame: velocity_frame(spec).to_owned(),
-            formulas: formulas::formulas(derived, &notation),
+            formulas: vec![],
             singularities: singularities(spec, &notation),
             claims: tables::claims(derived),
             finite: finite::rows(derived),
             accuracy: vec![],
-            counts: tables::counts(derived),
+            counts: vec![],
             imperceptible: tables::imperceptible(derived),
             spec: spec.source.clone(),
         }

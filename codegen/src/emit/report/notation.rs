@@ -78,17 +78,43 @@ impl Notation {
 
     /// `left = matrix`, short where the matrix is 0, I or a scalar.
     pub fn equation(&self, left: Math, matrix: &Matrix) -> Equation {
+        let mut room = usize::MAX;
+        let right = self.matrix(matrix, &mut room);
+        Equation {
+            left,
+            right: right.unwrap_or_else(|| Math::integer(0)),
+        }
+    }
+
+    /// The same where it has room: `room` then shrinks by the size of the right side.
+    pub fn equation_within(
+        &self,
+        left: Math,
+        matrix: &Matrix,
+        room: &mut usize,
+    ) -> Option<Equation> {
+        let right = self.matrix(matrix, room)?;
+        Some(Equation { left, right })
+    }
+
+    fn matrix(&self, matrix: &Matrix, room: &mut usize) -> Option<Math> {
         let is_square = matrix.rows() == matrix.columns();
-        let right = match matrix.entries() {
-            _ if matrix.is_zero() => Math::integer(0),
-            [only] => self.set(only),
-            _ if is_square && matrix.is_identity() => Math::Letter('I'),
-            entries => {
-                let entries = entries.iter().map(|entry| self.set(entry));
-                Math::Matrix(matrix.columns(), entries.collect())
-            }
+        let mut within = |part: Math| {
+            *room = room.checked_sub(part.size())?;
+            Some(part)
         };
-        Equation { left, right }
+        match matrix.entries() {
+            _ if matrix.is_zero() => within(Math::integer(0)),
+            [only] => within(self.set(only)),
+            _ if is_square && matrix.is_identity() => within(Math::Letter('I')),
+            entries => {
+                let entries = entries.iter().map(|entry| within(self.set(entry)));
+                Some(Math::Matrix(
+                    matrix.columns(),
+                    entries.collect::<Option<_>>()?,
+                ))
+            }
+        }
     }
 }
 

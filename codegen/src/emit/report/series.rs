@@ -7,7 +7,7 @@ use crate::derived::Derived;
 use crate::expr::{Expr, Rational};
 use crate::matrix::Matrix;
 use crate::model::Freedom;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 /// A product of factors known by name, and those of them that have to be shown.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -9,16 +9,7 @@ use crate::emit::rust::Method;
 use crate::expr::Symbol;
 
 /// Parts of a formula that a reader takes in as a whole: longer ones are written with names for what they share.
-const LONGEST: usize = 300;
-
-/// Whether the equations are too long to be read as they stand.
-pub fn is_long(equations: &[Equation]) -> bool {
-    equations
-        .iter()
-        .map(|equation| equation.right.size())
-        .sum::<usize>()
-        > LONGEST
-}
+pub const LONGEST: usize = 300;
 
 /// The values of a kernel, one for each of `names`, and after them w₁, w₂, … as they follow from each other; nothing for a
 /// kernel that calls the runtime.

@@ -9,7 +9,7 @@ use crate::emit::names::Names;
 use crate::emit::rust::Method;
 use crate::expr::Rational;
 use crate::model::Parameter;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 /// A parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -35,7 +35,7 @@ fn spaced(line: &str) -> String {
 
 /// The documentation of a joint's module.
 pub fn module(derived: &Derived) -> TokenStream {
-    let report = Report::new(derived);
+    let report = Report::brief(derived);
     let mut lines: Vec<String> = match report.docs.is_empty() {
         true => vec![report.summary.clone()],
         false => report.docs.clone(),

@@ -22,7 +22,7 @@ pub use docs::meaning;
 pub use index::{Index, index};
 pub use kernel::{Method, method_name};
 
-use super::names::type_name;
+use super::names::{Names, type_name};
 use crate::derived::Derived;
 use proc_macro2::{Ident, Literal, TokenStream, TokenTree};
 use quote::quote;
@@ -46,6 +46,14 @@ pub fn header(label: &str) -> String {
 pub fn file(derived: &Derived, label: &str) -> Result<String, Malformed> {
     let items = items(derived);
     text(&derived.spec.name.value, &header(label), items)
+}
+
+/// Simplifies the formulas of all kernels, which takes most of the time of writing: whoever writes them finds them simplified.
+pub(crate) fn simplify(derived: &Derived) {
+    let names = Names::new(derived);
+    for kernel in &derived.kernels {
+        Method::new(derived, kernel, &names);
+    }
 }
 
 /// The module of one joint with its braces, for a file that holds several.

@@ -242,8 +242,8 @@ fn number_literal(value: &Rational) -> TokenStream {
     let (above, below) = (value.numer(), value.denom());
     let is_dyadic = below
         .trailing_zeros()
-        .is_some_and(|zeros| *below == BigInt::one() << zeros);
-    if exact(above) && exact(below) && !is_dyadic {
+        .is_some_and(|zeros| below == BigInt::one() << zeros);
+    if exact(&above) && exact(&below) && !is_dyadic {
         let (above, below) = (float(above.to_f64()), float(below.to_f64()));
         return quote! { #above / #below };
     }

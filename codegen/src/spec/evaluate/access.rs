@@ -49,7 +49,7 @@ impl Evaluator<'_> {
         let integer = value
             .as_scalar()
             .and_then(Expr::as_rational)
-            .filter(num_rational::Ratio::is_integer);
+            .filter(crate::expr::Rational::is_integer);
         let position = integer
             .and_then(|number| number.to_integer().to_usize())
             .filter(|&n| n > 0);

@@ -4,7 +4,7 @@ use super::super::value::Value;
 use super::super::{Fallible, limits};
 use super::function::Call;
 use crate::expr::{Expr, Rational, evaluate_f64};
-use num_traits::{One, Signed, ToPrimitive};
+use num_traits::{One, ToPrimitive};
 
 /// Functions of one scalar.
 pub(super) fn of_one(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
@@ -97,7 +97,7 @@ pub(super) fn of_two(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
 fn power(call: &Call<'_>, x: &Expr, exponent: &Rational) -> Fallible<Expr> {
     let size = exponent.abs();
     let limit = Rational::from_integer(limits::LARGEST_POWER.into());
-    if size > limit || size.denom() > &limits::LARGEST_POWER.into() {
+    if size > limit || size.denom() > limits::LARGEST_POWER.into() {
         let message = format!(
             "the exponent {exponent}: numerators and denominators go up to {}",
             limits::LARGEST_POWER
@@ -110,7 +110,7 @@ fn power(call: &Call<'_>, x: &Expr, exponent: &Rational) -> Fallible<Expr> {
     let times = size.numer().to_u32().unwrap_or(0);
     let value = match size.denom() {
         one if one.is_one() => x.pow(times),
-        two if *two == 2.into() => x.sqrt().pow(times),
+        two if two == 2.into() => x.sqrt().pow(times),
         _ => (&x.ln() * &Expr::rational(size)).exp(),
     };
     match exponent.is_negative() {

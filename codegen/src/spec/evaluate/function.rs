@@ -10,7 +10,6 @@ use crate::expr::Expr;
 use crate::manifold::Kind;
 use crate::matrix::Matrix;
 use crate::model::PoseExpr;
-use num_rational::Ratio;
 use num_traits::ToPrimitive;
 use std::ops::Range;
 
@@ -181,7 +180,10 @@ fn unknown(name: &Name) -> Diagnostic {
 /// `I(n)` and `O(m, n)`.
 fn constant(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
     let size = |value: &Value| {
-        let number = value.as_scalar()?.as_rational().filter(Ratio::is_integer)?;
+        let number = value
+            .as_scalar()?
+            .as_rational()
+            .filter(crate::expr::Rational::is_integer)?;
         number
             .to_integer()
             .to_usize()

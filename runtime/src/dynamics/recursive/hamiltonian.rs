@@ -16,15 +16,24 @@ impl Recursive {
         }
     }
 
-    /// p̄̇ from twists that belong to `speeds`, own inertias and `S̄ᵀτ` in the workspace.
+    /// p̄̇ from twists that belong to `speeds`, own inertias, and what acts, in the workspace.
     pub(super) fn momentum_rates_at(&mut self, q: &[f64], speeds: &[f64], rates: &mut [f64]) {
+        self.prepare_rates();
+        self.gather_rates(q, speeds, rates);
+    }
+
+    /// The momentum of each body alone into its wrench, the external wrench on it into its rate, which is not needed here.
+    pub(super) fn prepare_rates(&mut self) {
         let gravity = *self.mechanism.gravity();
         self.set_momenta();
         for (node, external) in self.nodes.iter_mut().zip(&self.external) {
-            // The rate is not needed here: its place holds the composite external wrench.
             let weight = weight(&gravity, node.rigid.mass, &node.rigid.first_moment);
             node.motion.rate = weight + external;
         }
+    }
+
+    /// Inward, after [`Recursive::prepare_rates`]: the composites, and p̄̇ from them.
+    pub(super) fn gather_rates(&mut self, q: &[f64], speeds: &[f64], rates: &mut [f64]) {
         for (index, link) in self.links.iter().enumerate().rev() {
             let (before, rest) = self.nodes.split_at_mut(index);
             let own = &rest[0];
@@ -83,7 +92,7 @@ impl Recursive {
     }
 
     /// Potential energy in gravity at the placements of the workspace, zero at the world's origin, J.
-    fn potential_energy_here(&self) -> f64 {
+    pub(super) fn potential_energy_here(&self) -> f64 {
         let gravity = self.mechanism.gravity();
         let work = self.nodes.iter().map(|node| {
             let moment = node.rigid.first_moment + node.motion.placement.origin * node.rigid.mass;

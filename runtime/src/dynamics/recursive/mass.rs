@@ -253,7 +253,7 @@ impl Recursive {
     }
 
     /// `X_kᵀ F` for all speeds k from `body` to the root, and up to the length of the row.
-    fn fill_row(&self, row: &mut [f64], mut body: usize, momentum: &Vector6<f64>) {
+    pub(super) fn fill_row(&self, row: &mut [f64], mut body: usize, momentum: &Vector6<f64>) {
         let (mut moment, force) = split(momentum);
         let own = self.rungs[body].start..row.len();
         self.fill_block(row, own, true, &moment, &force);

@@ -8,14 +8,19 @@
 //!
 //! After construction nothing allocates.
 
+mod coupling;
 mod elements;
 mod hamiltonian;
 mod inverse;
+mod jacobian;
 mod link;
+mod lu;
 mod mass;
+mod readings;
 mod sweeps;
 
 pub use mass::MassMatrix;
+pub use readings::{Frame, Readings};
 
 use super::{Dynamics, DynamicsError};
 use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
@@ -24,6 +29,7 @@ use crate::steps::Pivot;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
+use coupling::Coupling;
 use link::{Link, Node, Rung};
 use nalgebra::Vector6;
 
@@ -54,6 +60,7 @@ pub struct Recursive {
     external: Vec<Vector6<f64>>,
     /// Prescribed rates of driven joints, one entry a speed; zero for the others.
     driven: Vec<f64>,
+    coupling: Option<Coupling>,
 }
 
 impl Recursive {
@@ -78,6 +85,7 @@ impl Recursive {
             inputs: vec![0.0; freedoms],
             external: vec![Vector6::zeros(); count],
             driven: vec![0.0; speeds],
+            coupling: Coupling::new(&mechanism),
             mechanism,
         }
         .classified()
@@ -89,6 +97,7 @@ impl Recursive {
         self.acted_on =
             !self.mechanism.elements().is_empty() || self.links.iter().any(Link::turns_rotors);
         self.plain = !self.acted_on
+            && self.coupling.is_none()
             && self.mechanism.drives().is_empty()
             && self.mechanism.bodies().iter().all(holonomic);
         self
@@ -136,9 +145,25 @@ impl Recursive {
     }
 }
 
+impl Recursive {
+    /// Runs `task` with the workspace of the constraints, if there are any.
+    fn with_coupling<R>(&mut self, task: impl FnOnce(&mut Self, &mut Coupling) -> R) -> Option<R> {
+        let mut coupling = self.coupling.take()?;
+        let result = task(self, &mut coupling);
+        self.coupling = Some(coupling);
+        Some(result)
+    }
+}
+
 impl Dynamics for Recursive {
     fn mechanism(&self) -> &Arc<Mechanism> {
         &self.mechanism
+    }
+
+    fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
+        self.check(q, &[("speeds", speeds.len())])?;
+        self.with_coupling(|dynamics, coupling| dynamics.complete(q, speeds, coupling))
+            .unwrap_or(Ok(()))
     }
 
     fn accelerations(
@@ -153,6 +178,12 @@ impl Dynamics for Recursive {
         if self.plain {
             self.advance(q, speeds, None);
             return self.solve(efforts, rates);
+        }
+        let coupled = self.with_coupling(|dynamics, coupling| {
+            dynamics.coupled_accelerations(q, speeds, efforts, rates, coupling)
+        });
+        if let Some(result) = coupled {
+            return result;
         }
         self.set_driven_rates(efforts);
         let driven = core::mem::take(&mut self.driven);
@@ -174,6 +205,12 @@ impl Dynamics for Recursive {
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("speeds", speeds.len()), ("momenta", momenta.len())])?;
+        let coupled = self.with_coupling(|dynamics, coupling| {
+            dynamics.coupled_momenta(q, speeds, momenta, coupling)
+        });
+        if let Some(result) = coupled {
+            return result;
+        }
         self.weigh(q);
         self.set_twists(speeds);
         self.set_momenta();
@@ -190,6 +227,12 @@ impl Dynamics for Recursive {
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("momenta", momenta.len()), ("speeds", speeds.len())])?;
+        let coupled = self.with_coupling(|dynamics, coupling| {
+            dynamics.coupled_speeds(q, momenta, speeds, coupling)
+        });
+        if let Some(result) = coupled {
+            return result;
+        }
         self.weigh(q);
         if self.mechanism.drives().is_empty() {
             return self.solve(momenta, speeds);
@@ -219,7 +262,12 @@ impl Dynamics for Recursive {
         tau.fill(0.0);
         efforts(speeds, &mut tau);
         self.act(q, speeds, Some(&tau));
-        self.momentum_rates_at(q, speeds, rates);
+        let coupled = self.with_coupling(|dynamics, coupling| {
+            dynamics.coupled_rates(q, speeds, rates, coupling);
+        });
+        if coupled.is_none() {
+            self.momentum_rates_at(q, speeds, rates);
+        }
         self.set_driven_rates(&tau);
         self.copy_driven(&self.driven, rates);
         self.inputs = tau;

@@ -88,20 +88,36 @@ pub(super) fn hold(matrix: &mut DMatrix<f64>, side: &mut DVector<f64>, known: &[
     }
 }
 
-/// The speeds of driven joints, each with its entry of `values` (one a speed).
-pub(super) fn driven(mechanism: &Mechanism, values: &[f64]) -> Vec<(usize, f64)> {
-    let ranges = mechanism
+/// The driven among the independent speeds, each with its entry of `values` (one a speed of the tree).
+pub(super) fn driven(
+    mechanism: &Mechanism,
+    expansion: &Expansion,
+    values: &[f64],
+) -> Vec<(usize, f64)> {
+    let speeds = mechanism
         .drives()
         .iter()
-        .map(|drive| mechanism.bodies()[drive.body].ranges().speeds.clone());
-    ranges.flatten().map(|i| (i, values[i])).collect()
+        .flat_map(|drive| mechanism.bodies()[drive.body].ranges().speeds.clone());
+    place(expansion, speeds.map(|speed| (speed, values[speed])))
 }
 
-/// The same for values with one entry a freedom: S̄ is the identity for driven joints.
-pub(super) fn driven_freedoms(mechanism: &Mechanism, values: &[f64]) -> Vec<(usize, f64)> {
+/// The same for values with one entry a freedom: prescribed accelerations are the first of a joint's.
+pub(super) fn driven_freedoms(
+    mechanism: &Mechanism,
+    expansion: &Expansion,
+    values: &[f64],
+) -> Vec<(usize, f64)> {
     let pairs = mechanism.drives().iter().flat_map(|drive| {
         let ranges = mechanism.bodies()[drive.body].ranges();
         ranges.speeds.clone().zip(ranges.freedoms.clone())
     });
-    pairs.map(|(i, k)| (i, values[k])).collect()
+    place(expansion, pairs.map(|(speed, k)| (speed, values[k])))
+}
+
+/// From speeds of the tree to places among the independent ones; driven speeds are independent.
+fn place(expansion: &Expansion, speeds: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
+    let position = |speed: usize| expansion.independent.iter().position(|&i| i == speed);
+    speeds
+        .filter_map(|(speed, value)| Some((position(speed)?, value)))
+        .collect()
 }

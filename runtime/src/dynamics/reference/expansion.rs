@@ -26,12 +26,14 @@ pub struct Expansion {
     pub velocity_map_inverse: DMatrix<f64>,
     /// ∂S/∂ϕ, K slices of K×K.
     pub velocity_map_gradient: Vec<DMatrix<f64>>,
-    /// A = blockdiag A_i, K×C.
+    /// A = blockdiag A_i, K×C, and beside it the constraints that couple joints.
     pub constraint: DMatrix<f64>,
-    /// S̄ = blockdiag S̄_i, size K×S.
+    /// S̄, K×S: blockdiag S̄_i; where constraints couple joints, its range is what they leave, in the independent speeds.
     pub speed_basis: DMatrix<f64>,
     /// ∂S̄/∂ϕ, K slices of K×S.
     pub speed_basis_gradient: Vec<DMatrix<f64>>,
+    /// The independent among the speeds of the joints: all of them where no constraint couples joints.
+    pub independent: Vec<usize>,
 }
 
 impl Expansion {
@@ -50,13 +52,18 @@ impl Expansion {
             constraint: DMatrix::zeros(freedoms, layout.constraints),
             speed_basis: DMatrix::zeros(freedoms, speeds),
             speed_basis_gradient: vec![DMatrix::zeros(freedoms, speeds); freedoms],
+            independent: (0..speeds)
+                .filter(|speed| !mechanism.dependent_speeds().contains(speed))
+                .collect(),
         };
         for body in mechanism.bodies() {
             expansion.add_velocity_maps(body, body.configuration(q));
             expansion.add_constraint(body, body.configuration(q));
         }
-        expansion.add_bodies(mechanism, &Tree::new(mechanism, q, &expansion.velocity_map));
+        let tree = Tree::new(mechanism, q, &expansion.velocity_map);
+        expansion.add_bodies(mechanism, &tree);
         expansion.add_armature(mechanism);
+        expansion.couple(mechanism, &tree);
         Ok(expansion)
     }
 

@@ -3,6 +3,7 @@
 //! Index patterns follow the paper, with its errata set right: (26) contracts momentum with the rows of S and velocity with
 //! S⁻¹; after (36), `p = M S̄ M̄⁻¹ p̄`. Cost grows with the cube of the number of freedoms, and matrices are allocated.
 
+mod coupling;
 mod equipment;
 mod expansion;
 mod factor;
@@ -39,7 +40,8 @@ impl Reference {
         Expansion::new(&self.mechanism, q)
     }
 
-    /// λ at `q` and v̄ under efforts τ, (37): the constraints act on the joints with efforts Aλ.
+    /// λ at `q` and v̄ under efforts τ, (37): the constraints act on the joints with efforts Aλ. Those of the joints come first, then those
+    /// that couple joints. For a mechanism without drives.
     ///
     /// # Errors
     /// A singular mass matrix; dependent constraints; a wrong size.
@@ -50,10 +52,12 @@ impl Reference {
         efforts: &[f64],
     ) -> Result<DVector<f64>, DynamicsError> {
         let layout = self.mechanism.layout();
-        let speeds = vector("speeds", layout.speeds, speeds)?;
+        let speeds = sized("speeds", layout.speeds, speeds)?;
         let efforts = vector("efforts", layout.freedoms, efforts)?;
-        self.expansion(q)?
-            .constraint_force(&self.mechanism, &speeds, &efforts)
+        let expansion = self.expansion(q)?;
+        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
+        let reduced = expansion.select(speeds);
+        expansion.constraint_force(&self.mechanism, &reduced, &(efforts + elements.efforts))
     }
 }
 
@@ -67,9 +71,46 @@ fn vector(
     Ok(DVector::from_column_slice(slice))
 }
 
+/// A slice of the right size.
+fn sized<'a>(
+    quantity: &'static str,
+    expected: usize,
+    slice: &'a [f64],
+) -> Result<&'a [f64], StateError> {
+    check_size(WHOLE, quantity, expected, slice.len())?;
+    Ok(slice)
+}
+
+impl Reference {
+    /// v̄ of the joints, and the independent among it, from p̄.
+    fn solve_speeds(
+        &self,
+        expansion: &Expansion,
+        q: &[f64],
+        momenta: &[f64],
+    ) -> Result<(DVector<f64>, DVector<f64>), DynamicsError> {
+        let known = driven(&self.mechanism, expansion, momenta);
+        let reduced = expansion.select(momenta);
+        let reduced = expansion.solve_speeds(&self.mechanism, &reduced, &known)?;
+        let speeds = expansion.whole_speeds(&self.mechanism, q, &reduced);
+        Ok((speeds, reduced))
+    }
+}
+
 impl Dynamics for Reference {
     fn mechanism(&self) -> &Arc<Mechanism> {
         &self.mechanism
+    }
+
+    fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
+        sized("speeds", self.mechanism.layout().speeds, speeds)?;
+        let expansion = self.expansion(q)?;
+        let reduced = expansion.select(speeds);
+        let whole = expansion.whole_speeds(&self.mechanism, q, &reduced);
+        for &speed in self.mechanism.dependent_speeds() {
+            speeds[speed] = whole[speed];
+        }
+        Ok(())
     }
 
     fn accelerations(
@@ -80,15 +121,17 @@ impl Dynamics for Reference {
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
         let layout = self.mechanism.layout();
-        let speeds = vector("speeds", layout.speeds, speeds)?;
+        let speeds = sized("speeds", layout.speeds, speeds)?;
         let efforts = vector("efforts", layout.freedoms, efforts)?;
-        check_size(WHOLE, "rates", layout.speeds, rates.len())?;
+        sized("rates", layout.speeds, rates)?;
         let expansion = self.expansion(q)?;
-        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds.as_slice())?;
-        let known = driven_freedoms(&self.mechanism, efforts.as_slice());
+        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
+        let known = driven_freedoms(&self.mechanism, &expansion, efforts.as_slice());
         let efforts = efforts + elements.efforts;
-        let solution = expansion.solve_accelerations(&self.mechanism, &speeds, &efforts, &known)?;
-        rates.copy_from_slice(solution.as_slice());
+        let reduced = expansion.select(speeds);
+        let solution =
+            expansion.solve_accelerations(&self.mechanism, &reduced, &efforts, &known)?;
+        expansion.scatter(&solution, rates);
         Ok(())
     }
 
@@ -99,13 +142,14 @@ impl Dynamics for Reference {
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
         let size = self.mechanism.layout().speeds;
-        let speeds = vector("speeds", size, speeds)?;
-        check_size(WHOLE, "momenta", size, momenta.len())?;
-        let mut product = self.expansion(q)?.reduced_mass_matrix() * &speeds;
-        for (index, speed) in driven(&self.mechanism, speeds.as_slice()) {
+        let speeds = sized("speeds", size, speeds)?;
+        sized("momenta", size, momenta)?;
+        let expansion = self.expansion(q)?;
+        let mut product = expansion.reduced_mass_matrix() * expansion.select(speeds);
+        for (index, speed) in driven(&self.mechanism, &expansion, speeds) {
             product[index] = speed;
         }
-        momenta.copy_from_slice(product.as_slice());
+        expansion.scatter(&product, momenta);
         Ok(())
     }
 
@@ -116,9 +160,10 @@ impl Dynamics for Reference {
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
         let size = self.mechanism.layout().speeds;
-        let momenta = vector("momenta", size, momenta)?;
-        check_size(WHOLE, "speeds", size, speeds.len())?;
-        let solution = self.expansion(q)?.speeds(&self.mechanism, &momenta)?;
+        let momenta = sized("momenta", size, momenta)?;
+        sized("speeds", size, speeds)?;
+        let expansion = self.expansion(q)?;
+        let (solution, _) = self.solve_speeds(&expansion, q, momenta)?;
         speeds.copy_from_slice(solution.as_slice());
         Ok(())
     }
@@ -132,30 +177,31 @@ impl Dynamics for Reference {
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
         let layout = self.mechanism.layout();
-        let momenta = vector("momenta", layout.speeds, momenta)?;
-        check_size(WHOLE, "speeds", layout.speeds, speeds.len())?;
-        check_size(WHOLE, "rates", layout.speeds, rates.len())?;
+        let momenta = sized("momenta", layout.speeds, momenta)?;
+        sized("speeds", layout.speeds, speeds)?;
+        sized("rates", layout.speeds, rates)?;
         let expansion = self.expansion(q)?;
-        let v = expansion.speeds(&self.mechanism, &momenta)?;
-        speeds.copy_from_slice(v.as_slice());
+        let (whole, reduced) = self.solve_speeds(&expansion, q, momenta)?;
+        speeds.copy_from_slice(whole.as_slice());
         let mut tau = vec![0.0; layout.freedoms];
         efforts(speeds, &mut tau);
-        let known = driven_freedoms(&self.mechanism, &tau);
+        let known = driven_freedoms(&self.mechanism, &expansion, &tau);
         let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
         let tau = DVector::from_vec(tau) + elements.efforts;
-        rates.copy_from_slice(expansion.reduced_momentum_rate(&v, &tau).as_slice());
+        let mut solution = expansion.reduced_momentum_rate(&reduced, &tau);
         for (index, rate) in known {
-            rates[index] = rate;
+            solution[index] = rate;
         }
+        expansion.scatter(&solution, rates);
         Ok(())
     }
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
-        let momenta = vector("momenta", self.mechanism.layout().speeds, momenta)?;
+        let momenta = sized("momenta", self.mechanism.layout().speeds, momenta)?;
         let expansion = self.expansion(q)?;
-        let v = expansion.speeds(&self.mechanism, &momenta)?;
-        let elements = ElementForces::new(&self.mechanism, &expansion, q, v.as_slice())?;
-        let kinetic = 0.5 * v.dot(&(expansion.reduced_mass_matrix() * &v));
+        let (whole, reduced) = self.solve_speeds(&expansion, q, momenta)?;
+        let elements = ElementForces::new(&self.mechanism, &expansion, q, whole.as_slice())?;
+        let kinetic = 0.5 * reduced.dot(&(expansion.reduced_mass_matrix() * &reduced));
         Ok(kinetic + expansion.potential + elements.energy)
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Where every S̄ is the identity, these are the equations of Theorem 2.
 
-use super::equipment::{driven, hold};
+use super::equipment::hold;
 use super::factor::{Space, factor};
 use super::holonomic::{combine, from_columns};
 use super::{DynamicsError, Expansion};
@@ -64,7 +64,7 @@ impl Expansion {
         Ok(factor(mechanism, Space::Speeds, mass)?.solve(&forces))
     }
 
-    /// `v̄ = M̄⁻¹ p̄`; entries of driven joints are speeds in both.
+    /// `v̄ = M̄⁻¹ p̄`.
     ///
     /// # Errors
     /// A singular mass matrix.
@@ -73,9 +73,18 @@ impl Expansion {
         mechanism: &Mechanism,
         momenta: &DVector<f64>,
     ) -> Result<DVector<f64>, DynamicsError> {
+        self.solve_speeds(mechanism, momenta, &[])
+    }
+
+    /// [`Expansion::speeds`] where some v̄ are known.
+    pub(super) fn solve_speeds(
+        &self,
+        mechanism: &Mechanism,
+        momenta: &DVector<f64>,
+        known: &[(usize, f64)],
+    ) -> Result<DVector<f64>, DynamicsError> {
         let (mut mass, mut momenta) = (self.reduced_mass_matrix(), momenta.clone());
-        let known = driven(mechanism, momenta.as_slice());
-        hold(&mut mass, &mut momenta, &known);
+        hold(&mut mass, &mut momenta, known);
         Ok(factor(mechanism, Space::Speeds, mass)?.solve(&momenta))
     }
 

@@ -3,8 +3,10 @@
 use super::forces::{Acting, Spring, Stiffness};
 use crate::description::{BodyDescription, SceneDescription};
 use crate::forces::{PointSpring, WrenchAxes, WrenchDescription};
+use hamel::dynamics::{Dynamics, DynamicsError, Recursive};
 use hamel::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, RotationSpring,
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, PointConstraint,
+    RotationSpring,
 };
 use hamel::mechanism::{Mechanism, MechanismError};
 use std::sync::Arc;
@@ -24,6 +26,40 @@ pub(super) fn equip(
         }
     }
     mechanism.with_elements(elements)?.with_drives(drives)
+}
+
+/// The mechanism with the constraints that couple its joints, independent at `q`.
+pub(super) fn couple(
+    mechanism: Mechanism,
+    description: &SceneDescription,
+    q: &[f64],
+) -> Result<Mechanism, Vec<MechanismError>> {
+    if description.constraints.is_empty() {
+        return Ok(mechanism);
+    }
+    let constraints = description.constraints.iter();
+    let constraints = constraints.map(|constraint| PointConstraint {
+        name: constraint.name.value.clone(),
+        body: constraint.body,
+        point: constraint.point,
+        direction: constraint.direction,
+    });
+    mechanism.with_constraints(constraints.collect(), q)
+}
+
+/// The speeds of joints that constraints make depend on others, where the scene leaves them at rest.
+///
+/// A scene that gives such a speed is taken at its word: whoever simulates checks it.
+pub(super) fn complete(
+    mechanism: &Arc<Mechanism>,
+    q: &[f64],
+    speeds: &mut [f64],
+) -> Result<(), DynamicsError> {
+    let dependent = mechanism.dependent_speeds();
+    if dependent.is_empty() || dependent.iter().any(|&speed| speeds[speed] != 0.0) {
+        return Ok(());
+    }
+    Recursive::new(Arc::clone(mechanism)).complete_speeds(q, speeds)
 }
 
 fn elements(

@@ -1,10 +1,9 @@
 //! What acts at joints and on bodies, on its way into the mechanism.
 
 use super::state::Stand;
-use crate::description::{InitialDescription, Motion, SceneDescription};
+use crate::description::{InitialDescription, Motion};
 use crate::diagnostics::Diagnostic;
 use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
-use crate::notice::{Notice, Notices};
 use crate::read::Sink;
 use crate::source::{Located, Span};
 use hamel::elements::Law;
@@ -161,14 +160,4 @@ fn motion(
         return Err(error.help("leave `velocity`, `speeds` and `twist` out of its `initial`"));
     }
     Ok(motion.value.clone())
-}
-
-/// What of the scene is not simulated.
-pub(super) fn left_out(description: &SceneDescription) -> Vec<Notice> {
-    let mut notices = Notices::default();
-    for constraint in &description.constraints {
-        let name = format!("constraint `{}`", constraint.name.value);
-        notices.add("elements [[constraint]] are not simulated", name);
-    }
-    notices.into_vec()
 }

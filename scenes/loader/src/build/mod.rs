@@ -20,7 +20,6 @@ pub(crate) fn scene(
     states: Vec<State>,
     sink: &mut Sink,
 ) -> Option<Scene> {
-    let notices = forces::left_out(description);
     let mut configuration = Vec::new();
     let mut speeds = Vec::new();
     let mut bodies = Vec::with_capacity(states.len());
@@ -41,20 +40,25 @@ pub(crate) fn scene(
     }
     let mechanism = Mechanism::new(description.gravity, bodies)
         .and_then(|mechanism| equip::equip(mechanism, description, &acting))
+        .and_then(|mechanism| equip::couple(mechanism, description, &configuration))
         .map_err(|errors| {
             let errors = errors.into_iter();
             errors.for_each(|error| sink.push(Diagnostic::without_place(error.to_string())));
         })
         .ok()?;
+    let mechanism = Arc::new(mechanism);
     mechanism.set_driven_speeds(0.0, &mut speeds);
+    equip::complete(&mechanism, &configuration, &mut speeds)
+        .map_err(|error| sink.push(Diagnostic::without_place(error.to_string())))
+        .ok()?;
     Some(Scene {
         name: description.name.clone(),
         description: description.description.clone(),
-        mechanism: Arc::new(mechanism),
+        mechanism,
         configuration,
         speeds,
         frames: description.frames.clone(),
         settings: description.settings,
-        notices,
+        notices: Vec::new(),
     })
 }

@@ -1,12 +1,14 @@
 //! Which shared sums to pull out: one at a time, the one that saves most.
 
-use super::cube::{Cube, Term, combined, common};
+use super::cube::{Cubes, Term};
 use super::numbers::Numbers;
 use super::pool::Pool;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
-/// Most pairs of terms looked at in one kernel: a bound on the work, half a second. Sums that would exceed it are left alone.
-const MOST_PAIRS: usize = 150_000;
+/// Most pairs of terms looked at in one kernel: a bound on the work, a twentieth of a second. Sums that would exceed it are left alone.
+const MOST_PAIRS: usize = 40_000;
 
 /// Most shared sums pulled out of one kernel: a bound on the work, far above what joints need.
 const MOST_DIVISORS: usize = 4000;
@@ -16,7 +18,7 @@ pub fn extract(pool: &mut Pool) {
     let mut search = Search::new(pool);
     for _ in 0..MOST_DIVISORS {
         let Some(best) = search.best() else { break };
-        let Some(variable) = pool.divisor(search.divisors[best].terms.clone()) else {
+        let Some(variable) = pool.divisor(search.divisors[best].terms) else {
             break;
         };
         search.replace(pool, best, variable);
@@ -49,22 +51,32 @@ struct Occurrence {
 
 struct Search {
     divisors: Vec<Divisor>,
-    known: HashMap<[Term; 2], usize>,
+    known: FxHashMap<[Term; 2], usize>,
     /// Whether each term of each sum is still there.
     alive: Vec<Vec<bool>>,
     /// Divisors of the pairs that each term of each sum is in.
     pairs: Vec<Vec<Vec<(usize, usize)>>>,
     budget: usize,
+    /// Gains and divisors; those whose gain has changed since stand there once more.
+    gains: BinaryHeap<(i64, Reverse<usize>)>,
+}
+
+impl Divisor {
+    /// Operations that pulling it out saves, where that is worth it.
+    fn gain(&self) -> Option<i64> {
+        (self.live > 1 && self.saved > self.cost).then(|| self.saved - self.cost)
+    }
 }
 
 impl Search {
     fn new(pool: &mut Pool) -> Self {
         let mut search = Self {
             divisors: vec![],
-            known: HashMap::new(),
+            known: FxHashMap::default(),
             alive: vec![],
             pairs: vec![],
             budget: MOST_PAIRS,
+            gains: BinaryHeap::new(),
         };
         for sum in 0..pool.sums.len() {
             search.alive.push(vec![]);
@@ -94,30 +106,31 @@ impl Search {
     }
 
     fn add_pair(&mut self, pool: &mut Pool, sum: usize, terms: [usize; 2]) {
-        let Pool { sums, numbers, .. } = pool;
-        let [a, b] = terms.map(|term| &sums[sum][term]);
-        let (divisor, quotient) = divided(numbers, a, b);
-        let after = quotient.multiplications(1);
-        let saved = a.multiplications(0) + b.multiplications(0) + 1 - after;
-        let at = self.divisor(divisor);
+        let [a, b] = terms.map(|term| pool.sums[sum][term]);
+        let (divisor, quotient) = divided(&mut pool.numbers, &mut pool.cubes, a, b);
+        let cubes = &pool.cubes;
+        let after = cubes.multiplications(quotient, 1);
+        let saved = cubes.multiplications(a, 0) + cubes.multiplications(b, 0) + 1 - after;
+        let at = self.divisor(cubes, divisor);
         let divisor = &mut self.divisors[at];
         divisor.saved += saved;
         divisor.live += 1;
         divisor.occurrences.push(Occurrence { sum, terms, saved });
         let occurrence = divisor.occurrences.len() - 1;
+        self.offer(at);
         for term in terms {
             self.pairs[sum][term].push((at, occurrence));
         }
     }
 
-    fn divisor(&mut self, terms: [Term; 2]) -> usize {
+    fn divisor(&mut self, cubes: &Cubes, terms: [Term; 2]) -> usize {
         let next = self.divisors.len();
-        let at = *self.known.entry(terms.clone()).or_insert(next);
+        let at = *self.known.entry(terms).or_insert(next);
         if at == next {
             self.divisors.push(Divisor {
                 cost: 1 + terms
+                    .map(|term| cubes.multiplications(term, 0))
                     .iter()
-                    .map(|term| term.multiplications(0))
                     .sum::<i64>(),
                 terms,
                 saved: 0,
@@ -129,13 +142,19 @@ impl Search {
     }
 
     /// The divisor that saves most, the first found among equals.
-    fn best(&self) -> Option<usize> {
-        let candidates = self.divisors.iter().enumerate();
-        let useful =
-            candidates.filter(|(_, divisor)| divisor.live > 1 && divisor.saved > divisor.cost);
-        useful
-            .max_by_key(|(at, divisor)| (divisor.saved - divisor.cost, std::cmp::Reverse(*at)))
-            .map(|(at, _)| at)
+    fn best(&mut self) -> Option<usize> {
+        while let Some((gain, Reverse(at))) = self.gains.pop() {
+            if self.divisors[at].gain() == Some(gain) {
+                return Some(at);
+            }
+        }
+        None
+    }
+
+    /// Puts a divisor in line where it is worth it.
+    fn offer(&mut self, at: usize) {
+        let gain = self.divisors[at].gain();
+        self.gains.extend(gain.map(|gain| (gain, Reverse(at))));
     }
 
     /// Replaces the occurrences of a divisor by its variable; of two that share a term only the first.
@@ -145,10 +164,10 @@ impl Search {
             if !terms.iter().all(|term| self.alive[sum][*term]) {
                 continue;
             }
-            let [a, b] = terms.map(|term| pool.sums[sum][term].clone());
+            let [a, b] = terms.map(|term| pool.sums[sum][term]);
             terms.iter().for_each(|term| self.remove_term(sum, *term));
-            let (_, mut quotient) = divided(&mut pool.numbers, &a, &b);
-            quotient.cube = combined(&quotient.cube, &vec![(variable, 1)], 1);
+            let (_, mut quotient) = divided(&mut pool.numbers, &mut pool.cubes, a, b);
+            quotient.cube = pool.cubes.times(quotient.cube, variable);
             pool.sums[sum].push(quotient);
             let term = pool.sums[sum].len() - 1;
             self.add_term(pool, sum, term);
@@ -159,8 +178,8 @@ impl Search {
 
     fn remove_term(&mut self, sum: usize, term: usize) {
         self.alive[sum][term] = false;
-        for (divisor, occurrence) in std::mem::take(&mut self.pairs[sum][term]) {
-            let divisor = &mut self.divisors[divisor];
+        for (at, occurrence) in std::mem::take(&mut self.pairs[sum][term]) {
+            let divisor = &mut self.divisors[at];
             let Some(occurrence) = divisor.occurrences.get(occurrence) else {
                 continue;
             };
@@ -168,21 +187,28 @@ impl Search {
             if other.is_some_and(|other| self.alive[sum][*other]) {
                 divisor.saved -= occurrence.saved;
                 divisor.live -= 1;
+                self.offer(at);
             }
         }
     }
 }
 
 /// The sum of both terms as a product of a divisor and a term.
-fn divided(numbers: &mut Numbers, a: &Term, b: &Term) -> ([Term; 2], Term) {
-    let cube: Cube = common(&a.cube, &b.cube);
-    let [a, b] = [a, b].map(|term| (combined(&term.cube, &cube, -1), term.coefficient));
-    let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
+fn divided(numbers: &mut Numbers, cubes: &mut Cubes, a: Term, b: Term) -> ([Term; 2], Term) {
+    let divided = cubes.divided(a.cube, b.cube);
+    let mut parts = [
+        (divided.parts[0], a.coefficient),
+        (divided.parts[1], b.coefficient),
+    ];
+    if divided.descending {
+        parts.reverse();
+    }
+    let [a, b] = parts;
     let pair = numbers.pair(a.1, b.1);
     let [first, second] = pair.parts;
     let part = |cube, coefficient| Term { cube, coefficient };
     (
         [part(a.0, first), part(b.0, second)],
-        part(cube, pair.content),
+        part(divided.common, pair.content),
     )
 }

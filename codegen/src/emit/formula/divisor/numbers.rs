@@ -1,8 +1,8 @@
 //! Coefficients by number: each distinct rational is kept once, and each pair is compared once.
 
 use crate::expr::Rational;
-use num_traits::{One, Signed};
-use std::collections::HashMap;
+use num_traits::One;
+use rustc_hash::FxHashMap;
 
 /// The number of 1.
 pub const ONE: u32 = 0;
@@ -13,8 +13,8 @@ pub const MINUS_ONE: u32 = 1;
 /// The distinct coefficients of a kernel.
 pub struct Numbers {
     values: Vec<Rational>,
-    numbers: HashMap<Rational, u32>,
-    pairs: HashMap<[u32; 2], Pair>,
+    numbers: FxHashMap<Rational, u32>,
+    pairs: FxHashMap<[u32; 2], Pair>,
 }
 
 /// Two coefficients as multiples of a common content.
@@ -31,8 +31,8 @@ impl Numbers {
     pub fn new() -> Self {
         let mut numbers = Self {
             values: vec![],
-            numbers: HashMap::new(),
-            pairs: HashMap::new(),
+            numbers: FxHashMap::default(),
+            pairs: FxHashMap::default(),
         };
         numbers.number(&Rational::one());
         numbers.number(&-Rational::one());
@@ -63,7 +63,7 @@ impl Numbers {
         }
         let [first, second] = [a, b].map(|number| self.value(number).clone());
         // Both are multiples of the content by the numerator and the denominator of their ratio.
-        let content = &first / Rational::from_integer((&first / &second).numer().abs());
+        let content = &first / Rational::from_integer((&first / &second).abs().numer());
         let pair = Pair {
             parts: [
                 self.number(&(first / &content)),

@@ -1,10 +1,10 @@
 //! The sums of one kernel as lists of terms, the arguments of functions among them.
 
 use super::super::{Node, factored};
-use super::cube::{Cube, Term};
+use super::cube::{Cube, Cubes, Term};
 use super::numbers::Numbers;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Role, Symbol};
-use num_traits::{One, Signed};
+use num_traits::One;
 use std::collections::BTreeMap;
 
 /// First index of the symbols that stand for variables here, above all others.
@@ -32,6 +32,8 @@ pub struct Pool {
     pub sums: Vec<Vec<Term>>,
     /// Their coefficients.
     pub numbers: Numbers,
+    /// Their products.
+    pub cubes: Cubes,
     by_value: BTreeMap<Expr, usize>,
     meanings: Vec<Meaning>,
     variables: BTreeMap<Atom, u16>,
@@ -45,6 +47,7 @@ impl Pool {
         let mut pool = Self {
             sums: vec![],
             numbers: Numbers::new(),
+            cubes: Cubes::default(),
             by_value: BTreeMap::new(),
             meanings: vec![],
             variables: BTreeMap::new(),
@@ -87,8 +90,9 @@ impl Pool {
     }
 
     fn term(&mut self, coefficient: &Rational, monomial: &Monomial) -> Term {
+        let cube = self.cube(monomial);
         Term {
-            cube: self.cube(monomial),
+            cube: self.cubes.number(cube),
             coefficient: self.numbers.number(coefficient),
         }
     }
@@ -102,7 +106,7 @@ impl Pool {
         let variable = self.add(Meaning::Sum(sum));
         let one = Rational::one();
         let mut term = self.term(&if negative { -one } else { one }, outside);
-        term.cube.push((variable, 1));
+        term.cube = self.cubes.times(term.cube, variable);
         term
     }
 
@@ -182,10 +186,8 @@ impl Writer<'_> {
 
     fn terms(&mut self, terms: &[Term]) -> Node {
         let terms = terms.iter().map(|term| {
-            let factors = term
-                .cube
-                .iter()
-                .map(|&(variable, power)| self.power(variable, power));
+            let cube = self.pool.cubes.cube(term.cube).iter();
+            let factors = cube.map(|&(variable, power)| self.power(variable, power));
             let monomial = factors.fold(Monomial::one(), |product, factor| product.times(&factor));
             Expr::term(self.pool.numbers.value(term.coefficient).clone(), monomial)
         });

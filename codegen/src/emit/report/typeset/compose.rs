@@ -71,8 +71,8 @@ fn quotient(above: &Node, below: &Node, symbol: &impl Fn(&Symbol) -> Math) -> Ma
     let (above, below) = match factors.split_first() {
         Some((Node::Number(value), rest)) if !value.denom().is_one() => {
             let part = |part| Node::Number(Rational::from_integer(part));
-            let above = std::iter::once(part(value.numer().clone())).chain(rest.iter().cloned());
-            let below = Node::product([part(value.denom().clone()), below.clone()]);
+            let above = std::iter::once(part(value.numer())).chain(rest.iter().cloned());
+            let below = Node::product([part(value.denom()), below.clone()]);
             (Node::product(above), below)
         }
         _ => (above.clone(), below.clone()),

@@ -76,7 +76,7 @@ fn script(base: &Math, below: Option<&Math>, above: Option<&Math>) -> String {
 fn matrix(columns: usize, entries: &[Math]) -> String {
     let cell = |entry: &Math| match entry {
         // Zeros step back, so that the pattern of the others is seen.
-        Math::Number(value) if *value.numer() == 0.into() => {
+        Math::Number(value) if value.numer() == 0.into() => {
             "<mtd class=\"zero\"><mn>0</mn></mtd>".to_owned()
         }
         _ => format!("<mtd>{}</mtd>", written(entry)),

@@ -1,0 +1,36 @@
+//! The parts of a derivation, as the error names them that stops one of them for taking too much work.
+
+use crate::model::JointSpec;
+use std::ops::Range;
+
+/// Φ to second order in ϕ.
+pub const MOTION: &str = "Phi, to second order in phi";
+/// J, from H.
+pub const TWIST: &str = "the twist of H, to first order in phi";
+/// X, in both frames.
+pub const TWIST_MAP: &str = "X";
+/// S from X and J.
+pub const VELOCITY_MAP: &str = "S, the solution of X S = J";
+/// A and S̄.
+pub const CONSTRAINT: &str = "A and S_bar";
+/// What is proved.
+pub const PROOF: &str = "the proof";
+/// The kernels.
+pub const KERNELS: &str = "the kernels";
+/// How they are written.
+pub const FORMULAS: &str = "the formulas of the kernels";
+
+/// The statement of the spec that a part starts from; the joint's name for those that start from all.
+pub fn span(spec: &JointSpec, task: &str) -> Range<usize> {
+    let pose = || spec.pose.span.clone();
+    match task {
+        MOTION => (spec.retract.as_ref()).map_or(spec.freedoms.span.clone(), |r| r.span.clone()),
+        TWIST => pose(),
+        TWIST_MAP | VELOCITY_MAP => (spec.twist_map.as_ref()).map_or_else(pose, |x| x.span.clone()),
+        CONSTRAINT => {
+            let declared = spec.constraint.as_ref().or(spec.speed_basis.as_ref());
+            declared.map_or_else(pose, |matrix| matrix.span.clone())
+        }
+        _ => spec.name.span.clone(),
+    }
+}

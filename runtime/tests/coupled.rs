@@ -1,0 +1,230 @@
+//! Constraints that couple joints: both forms of the dynamics agree on them, they hold exactly, and they do no work.
+
+mod common;
+
+use common::random::Random;
+use common::trees::{configuration, trees};
+use hamel::dynamics::{Dynamics, Recursive, Reference};
+use hamel::elements::PointConstraint;
+use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
+use hamel::mechanism::Mechanism;
+use nalgebra::DVector;
+use std::sync::Arc;
+
+/// Rounding of the trees, times the condition of the constraints, whose pivots are above 1e-3 here.
+const ROUNDING: f64 = 1e-10;
+
+/// Tolerance 1e-12 a step, some hundred steps.
+const DRIFT: f64 = 1e-8;
+
+struct Case {
+    mechanism: Arc<Mechanism>,
+    q: Vec<f64>,
+    speeds: Vec<f64>,
+    efforts: Vec<f64>,
+}
+
+/// Trees with one constraint on their last body, and one more on their first where they have speeds enough.
+fn cases() -> Vec<Case> {
+    let trees = trees().into_iter().enumerate();
+    let cases = trees.filter_map(|(seed, tree)| {
+        let mut random = Random::new(700 + seed as u64);
+        let q = configuration(&mut random, &tree);
+        let count = tree.bodies().len();
+        let mut bodies = vec![count - 1];
+        if count > 1 && tree.layout().speeds > 3 {
+            bodies.push(0);
+        }
+        if tree.layout().speeds <= bodies.len() {
+            return None;
+        }
+        let constraints = bodies.iter().map(|&body| PointConstraint {
+            name: format!("edge {body}"),
+            body,
+            point: random.vector(),
+            direction: random.vector(),
+        });
+        let constraints: Vec<_> = constraints.collect();
+        let mechanism = (*tree).clone().with_constraints(constraints, &q);
+        let mechanism = Arc::new(mechanism.expect("independent"));
+        let mut speeds = random.vec(tree.layout().speeds);
+        Recursive::new(Arc::clone(&mechanism))
+            .complete_speeds(&q, &mut speeds)
+            .expect("determined");
+        Some(Case {
+            efforts: random.vec(tree.layout().freedoms),
+            mechanism,
+            q,
+            speeds,
+        })
+    });
+    cases.collect()
+}
+
+fn same(found: &[f64], expected: &[f64], what: &str) {
+    let (found, expected) = (
+        DVector::from_column_slice(found),
+        DVector::from_column_slice(expected),
+    );
+    let error = (&found - &expected).amax() / expected.amax().max(1.0);
+    assert!(error < ROUNDING, "{what}: {error:e}");
+}
+
+fn readings(dynamics: &mut dyn Dynamics, case: &Case) -> Vec<f64> {
+    let (q, v, tau) = (&case.q, &case.speeds, &case.efforts);
+    let mut completed = v.clone();
+    for &speed in case.mechanism.dependent_speeds() {
+        completed[speed] = 0.0;
+    }
+    dynamics
+        .complete_speeds(q, &mut completed)
+        .expect("determined");
+    let mut all = completed;
+    let mut out = vec![0.0; v.len()];
+    dynamics
+        .accelerations(q, v, tau, &mut out)
+        .expect("regular");
+    all.extend(&out);
+    let mut momenta = vec![0.0; v.len()];
+    dynamics.momenta(q, v, &mut momenta).expect("sizes fit");
+    all.extend(&momenta);
+    let mut speeds = vec![0.0; v.len()];
+    let mut efforts = |_: &[f64], into: &mut [f64]| into.copy_from_slice(tau);
+    dynamics
+        .momentum_rates(q, &momenta, &mut efforts, &mut speeds, &mut out)
+        .expect("regular");
+    all.extend(&speeds);
+    all.extend(&out);
+    all.push(dynamics.hamiltonian(q, &momenta).expect("regular"));
+    all
+}
+
+#[test]
+fn theorem_3_in_full_is_the_recursion() {
+    let cases = cases();
+    assert!(cases.len() > 8, "most trees can take a constraint");
+    for case in cases {
+        let found = readings(&mut Recursive::new(Arc::clone(&case.mechanism)), &case);
+        let expected = readings(&mut Reference::new(Arc::clone(&case.mechanism)), &case);
+        same(
+            &found,
+            &expected,
+            &format!("{:?}", case.mechanism.dependent_speeds()),
+        );
+    }
+}
+
+#[test]
+fn constraint_forces_agree() {
+    for case in cases() {
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let mut rates = vec![0.0; case.speeds.len()];
+        dynamics
+            .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
+            .expect("regular");
+        let mut forces = vec![0.0; case.mechanism.constraints().len()];
+        dynamics
+            .coupling_force(&case.q, &case.speeds, &rates, &case.efforts, &mut forces)
+            .expect("sizes fit");
+        let expected = Reference::new(Arc::clone(&case.mechanism))
+            .constraint_force(&case.q, &case.speeds, &case.efforts)
+            .expect("regular");
+        let own = expected.len() - forces.len();
+        same(&forces, &expected.as_slice()[own..], "λ");
+    }
+}
+
+#[test]
+fn constraints_hold_and_do_no_work() {
+    let mut finished = 0;
+    for case in cases() {
+        let initial = State {
+            time: 0.0,
+            configuration: case.q.clone(),
+            speeds: case.speeds.clone(),
+        };
+        let before = case
+            .mechanism
+            .kinematics(&case.q, &case.speeds)
+            .expect("sizes");
+        for form in [Form::Lagrangian, Form::Hamiltonian] {
+            let options = Options {
+                form,
+                method: Method::dormand_prince(1e-12),
+                t_end: 0.2,
+                samples: Vec::new(),
+            };
+            let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+            let solution = integrate(
+                &mut dynamics,
+                &initial,
+                &options,
+                &mut no_inputs,
+                &mut no_observer,
+            );
+            // Some random constraints reach a configuration where they do not determine their speeds.
+            let Ok(solution) = solution else { continue };
+            finished += 1;
+            let (q, v) = (&solution.state.configuration, &solution.state.speeds);
+            let after = case.mechanism.kinematics(q, v).expect("sizes");
+            let drift = (after.energy() - before.energy()).abs() / before.kinetic_energy().max(1.0);
+            assert!(drift < DRIFT, "{form:?}: {drift:e}");
+            for constraint in case.mechanism.constraints() {
+                let body = &after.bodies[constraint.body];
+                let (angular, linear) = hamel::spatial::split(&body.twist);
+                let velocity = linear + angular.cross(&constraint.point);
+                let slip = velocity.dot(&constraint.direction).abs();
+                assert!(
+                    slip < 1e-12 * (1.0 + velocity.norm()),
+                    "{form:?}: slip {slip:e}"
+                );
+            }
+        }
+    }
+    assert!(finished > 10, "only {finished} runs came to their end");
+}
+
+#[test]
+fn dependent_constraints_and_violations_are_named() {
+    let tree = &trees()[1];
+    let edge = |name: &str| PointConstraint {
+        name: name.into(),
+        body: 0,
+        point: nalgebra::Vector3::new(0.1, 0.2, 0.3),
+        direction: nalgebra::Vector3::new(0.5, 0.6, 0.7),
+    };
+    let errors = (**tree)
+        .clone()
+        .with_constraints(vec![edge("one"), edge("two")], &tree.home())
+        .expect_err("the same twice");
+    let text = errors[0].to_string();
+    assert!(text.contains("depends on the other constraints"), "{text}");
+
+    let case = &cases()[0];
+    let mut speeds = case.speeds.clone();
+    speeds[case.mechanism.dependent_speeds()[0]] += 0.5;
+    let initial = State {
+        time: 0.0,
+        configuration: case.q.clone(),
+        speeds,
+    };
+    let options = Options {
+        form: Form::Lagrangian,
+        method: Method::dormand_prince(1e-6),
+        t_end: 0.1,
+        samples: Vec::new(),
+    };
+    let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+    let error = integrate(
+        &mut dynamics,
+        &initial,
+        &options,
+        &mut no_inputs,
+        &mut no_observer,
+    )
+    .expect_err("violated");
+    assert!(
+        error.to_string().contains("the speeds violate it by 5"),
+        "{error}"
+    );
+}

@@ -1,0 +1,77 @@
+//! A random chain, ready to be timed.
+
+use cpu_time::ThreadTime;
+use hamel::dynamics::{Dynamics, Recursive};
+use hamel_tests::random;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::hint::black_box;
+
+/// States that calls take in turn.
+const STATES: usize = 4;
+
+struct State {
+    q: Vec<f64>,
+    speeds: Vec<f64>,
+    efforts: Vec<f64>,
+}
+
+/// A chain with states of its own.
+pub struct Chain {
+    dynamics: Recursive,
+    states: Vec<State>,
+    rates: Vec<f64>,
+}
+
+impl Chain {
+    /// `count` bodies on joints of a type of the library.
+    pub fn new(joint: &str, count: usize) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(count as u64);
+        let registry = hamel_joints::registry();
+        let entry = registry.get(joint).expect("a joint of the library");
+        let joint = (entry.build)(&[]).expect("it has no parameters");
+        let mechanism = random::chain(&mut random, &joint, count);
+        let layout = *mechanism.layout();
+        let states = (0..STATES).map(|_| State {
+            q: random::configuration(&mut random, &mechanism),
+            speeds: random::numbers(&mut random, layout.speeds),
+            efforts: random::numbers(&mut random, layout.freedoms),
+        });
+        Self {
+            states: states.collect(),
+            rates: vec![0.0; layout.speeds],
+            dynamics: Recursive::new(mechanism),
+        }
+    }
+
+    /// How many there are.
+    pub fn bodies(&self) -> usize {
+        self.dynamics.mechanism().bodies().len()
+    }
+
+    /// How many calls take about `time` ns, which warms up as well.
+    pub fn calls(&mut self, time: f64) -> usize {
+        let mut calls = 16;
+        loop {
+            let each = self.time(calls);
+            if each * calls as f64 > 0.2 * time {
+                return (time / each) as usize + 1;
+            }
+            calls *= 2;
+        }
+    }
+
+    /// Nanoseconds of one forward dynamics, over `calls` of them.
+    pub fn time(&mut self, calls: usize) -> f64 {
+        let start = ThreadTime::now();
+        for call in 0..calls {
+            let State { q, speeds, efforts } = &self.states[call % STATES];
+            let solved = self
+                .dynamics
+                .accelerations(q, speeds, efforts, &mut self.rates);
+            solved.expect("every body has mass");
+            black_box(&self.rates);
+        }
+        start.elapsed().as_nanos() as f64 / calls as f64
+    }
+}

@@ -1,0 +1,218 @@
+//! After construction nothing allocates: every method of the recursive form and of its mass matrix, and steps of the integrators.
+
+use allocation_counter::measure;
+use hamel::dynamics::{Dynamics, Frame, MassMatrix, Recursive};
+use hamel::integrate::{
+    Form, Method, Options, State, Statistics, integrate, no_inputs, no_observer,
+};
+use hamel::nalgebra::Vector6;
+use hamel_tests::random::{Case, cases, library};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Allocations by what was called; the counter itself is seen to count.
+#[derive(Default)]
+struct Counts(BTreeMap<&'static str, u64>);
+
+impl Counts {
+    fn of(&mut self, call: &'static str, work: impl FnOnce()) {
+        *self.0.entry(call).or_default() += measure(work).count_total;
+    }
+
+    fn assert_none(&self, calls: usize) {
+        assert!(measure(|| drop(std::hint::black_box(vec![0_u8; 9]))).count_total > 0);
+        assert_eq!(self.0.len(), calls);
+        let some: Vec<_> = self.0.iter().filter(|(_, count)| **count > 0).collect();
+        assert!(some.is_empty(), "allocations: {some:?}");
+    }
+}
+
+/// Trees of all types of the library, up to 12 joints each.
+fn trees() -> Vec<Case> {
+    cases(&library(), 12, 48).collect()
+}
+
+#[test]
+fn equations_of_motion_do_not_allocate() {
+    let mut counts = Counts::default();
+    for case in trees() {
+        let (q, v) = (case.q.as_slice(), case.speeds.as_slice());
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let (mut a, mut b) = (vec![0.0; v.len()], vec![0.0; v.len()]);
+        counts.of("accelerations", || {
+            let solved = dynamics.accelerations(q, v, &case.efforts, &mut a);
+            solved.expect("every body has mass");
+        });
+        counts.of("momenta", || {
+            dynamics.momenta(q, v, &mut a).expect("sizes fit")
+        });
+        counts.of("speeds", || {
+            let solved = dynamics.speeds(q, v, &mut a);
+            solved.expect("every body has mass");
+        });
+        let mut efforts = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&case.efforts);
+        counts.of("momentum_rates", || {
+            let solved = dynamics.momentum_rates(q, v, &mut efforts, &mut a, &mut b);
+            solved.expect("every body has mass");
+        });
+        counts.of("hamiltonian", || {
+            dynamics.hamiltonian(q, v).expect("every body has mass");
+        });
+    }
+    counts.assert_none(5);
+}
+
+#[test]
+fn inverse_dynamics_and_wrenches_do_not_allocate() {
+    let mut counts = Counts::default();
+    for case in trees() {
+        let (q, v) = (case.q.as_slice(), case.speeds.as_slice());
+        let layout = *case.mechanism.layout();
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let mut reduced = vec![0.0; v.len()];
+        let mut efforts = vec![0.0; layout.freedoms];
+        let mut forces = vec![0.0; layout.constraints];
+        counts.of("set_configuration", || {
+            dynamics.set_configuration(q).expect("sizes fit");
+        });
+        counts.of("bias_forces", || {
+            dynamics.bias_forces(q, v, &mut reduced).expect("sizes fit");
+        });
+        counts.of("inverse_dynamics", || {
+            let found = dynamics.inverse_dynamics(q, v, &case.rates, &mut reduced);
+            found.expect("sizes fit");
+        });
+        counts.of("joint_wrench", || {
+            dynamics.joint_wrench(0).expect("a body");
+        });
+        counts.of("joint_efforts", || {
+            dynamics.joint_efforts(q, &mut efforts).expect("sizes fit");
+        });
+        counts.of("constraint_force", || {
+            let found = dynamics.constraint_force(q, &case.efforts, &mut forces);
+            found.expect("independent");
+        });
+    }
+    counts.assert_none(6);
+}
+
+#[test]
+fn mass_matrices_do_not_allocate() {
+    let mut counts = Counts::default();
+    for case in trees() {
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let mut mass = MassMatrix::new(&case.mechanism);
+        let mut x = case.speeds.clone();
+        counts.of("inverse_mass_matrix", || {
+            let found = dynamics.inverse_mass_matrix(&case.q, &mut mass);
+            found.expect("every body has mass");
+        });
+        counts.of("mass_matrix", || {
+            dynamics.mass_matrix(&case.q, &mut mass).expect("sizes fit");
+        });
+        counts.of("factorize", || {
+            mass.factorize(&case.mechanism)
+                .expect("every body has mass");
+        });
+        counts.of("solve", || mass.solve(&mut x).expect("sizes fit"));
+        counts.of("entry, size", || {
+            std::hint::black_box(mass.entry(mass.size() - 1, 0));
+        });
+    }
+    counts.assert_none(5);
+}
+
+#[test]
+fn readings_do_not_allocate() {
+    let mut counts = Counts::default();
+    for case in trees() {
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let size = case.speeds.len();
+        let last = case.mechanism.bodies().len() - 1;
+        let (mut matrix, mut efforts) = (vec![0.0; 6 * size], vec![0.0; size]);
+        counts.of("centroidal_map", || {
+            let filled = dynamics.centroidal_map(&case.q, &mut matrix);
+            filled.expect("sizes fit");
+        });
+        counts.of("readings", || {
+            dynamics.readings(&case.q, &case.speeds).expect("sizes fit");
+        });
+        let readings = dynamics.readings(&case.q, &case.speeds).expect("sizes fit");
+        counts.of("poses, energies and momentum", || {
+            readings.pose(last).expect("a body");
+            let sums = (readings.kinetic_energy(), readings.potential_energy());
+            std::hint::black_box((sums, readings.mass(), readings.momentum_com()));
+        });
+        for frame in [Frame::Body, Frame::World, Frame::WorldAligned] {
+            counts.of("twist", || {
+                readings.twist(last, frame).expect("a body");
+            });
+            counts.of("jacobian", || {
+                let filled = readings.jacobian(last, frame, &mut matrix);
+                filled.expect("sizes fit");
+            });
+            counts.of("products with the Jacobian", || {
+                let twist = readings.jacobian_product(last, frame, &case.speeds);
+                let wrench: Vector6<f64> = twist.expect("sizes fit");
+                let made = readings.jacobian_transpose_product(last, frame, &wrench, &mut efforts);
+                made.expect("sizes fit");
+            });
+        }
+    }
+    counts.assert_none(6);
+}
+
+/// Allocations and steps of a whole integration.
+fn integration(case: &Case, form: Form, method: Method, t_end: f64) -> (u64, Statistics) {
+    let initial = State {
+        time: 0.0,
+        configuration: case.q.clone(),
+        speeds: case.speeds.clone(),
+    };
+    let options = Options {
+        form,
+        method,
+        t_end,
+        samples: vec![],
+    };
+    let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+    let mut statistics = Statistics::default();
+    let info = measure(|| {
+        let solution = integrate(
+            &mut dynamics,
+            &initial,
+            &options,
+            &mut no_inputs,
+            &mut no_observer,
+        );
+        statistics = solution.expect("short and smooth").statistics;
+    });
+    (info.count_total, statistics)
+}
+
+/// An integration of more steps allocates no more: what there is belongs to its beginning and its result.
+#[test]
+fn accepted_steps_do_not_allocate() {
+    let step = 1.0 / 1024.0;
+    let controlled = Method::DormandPrince {
+        tolerance: 1e-3,
+        max_step: step,
+        first_step: Some(step),
+    };
+    let mut compared = 0;
+    for case in trees() {
+        for form in [Form::Lagrangian, Form::Hamiltonian] {
+            for method in [Method::Rk4 { dt: step }, controlled] {
+                let (few, first) = integration(&case, form, method, 4.0 * step);
+                let (many, second) = integration(&case, form, method, 12.0 * step);
+                // A refused step says why, in words that it allocates.
+                if first.rejected + second.rejected == 0 {
+                    assert!(second.steps >= first.steps + 8);
+                    assert_eq!(few, many, "case {}, {form:?}, {method:?}", case.seed);
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 150, "{compared} of 192 comparisons");
+}
