@@ -67,7 +67,10 @@ fn info() -> String {
         true => "with fused multiply-add",
         false => "baseline instructions",
     };
-    format!("hamel {}, interpreted tree, {fused}", env!("CARGO_PKG_VERSION"))
+    format!(
+        "hamel {}, interpreted tree, {fused}",
+        env!("CARGO_PKG_VERSION")
+    )
 }
 
 impl Loaded {

@@ -95,7 +95,9 @@ fn newton_euler_is_euler_lagrange() {
             .inverse_dynamics(&case.q, &case.speeds, &case.rates, &mut reduced)
             .expect("sizes fit");
         let mut found = vec![0.0; case.efforts.len()];
-        recursion.joint_efforts(&case.q, &mut found).expect("sizes fit");
+        recursion
+            .joint_efforts(&case.q, &mut found)
+            .expect("sizes fit");
         let error = difference(&found, expected.as_slice()) / size(expected.as_slice());
         worst.meet(error, case.seed);
     }

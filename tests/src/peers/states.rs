@@ -88,6 +88,9 @@ pub mod convert {
     pub fn order(model: &Model) -> Vec<usize> {
         let count = model.sizes().1;
         let places: Vec<f64> = (0..count).map(|i| i as f64).collect();
-        swap(model, &places).into_iter().map(|i| i as usize).collect()
+        swap(model, &places)
+            .into_iter()
+            .map(|i| i as usize)
+            .collect()
     }
 }

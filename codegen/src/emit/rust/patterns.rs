@@ -14,7 +14,11 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let pose = |output: usize| value(derived, KernelKind::Pose, output);
     let rotation = rows(pose(0), 3, 3);
     let translation = row(pose(1), 3);
-    let twist_map = rows(value(derived, KernelKind::TwistMapChild, 0), 6, shape.freedoms);
+    let twist_map = rows(
+        value(derived, KernelKind::TwistMapChild, 0),
+        6,
+        shape.freedoms,
+    );
     let basis = value(derived, KernelKind::SpeedBasis, 0);
     let basis = rows(basis, shape.freedoms, shape.speeds);
     quote! {
