@@ -18,6 +18,9 @@ use std::sync::Arc;
 /// What is asked for, in floors.
 const ALLOWED: f64 = 100.0;
 
+/// The table of turns about one axis, which is no motion of bodies in space.
+const TURNS: &str = "million_turns";
+
 const FORMS: [Form; 2] = [Form::Lagrangian, Form::Hamiltonian];
 
 fn folder() -> PathBuf {
@@ -49,7 +52,7 @@ fn cases() -> Vec<String> {
     let json = paths.filter(|path| path.extension().is_some_and(|end| end == "json"));
     let mut names: Vec<String> = json
         .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
-        .filter(|name| name != "turns")
+        .filter(|name| name != TURNS)
         .collect();
     names.sort();
     names
@@ -205,7 +208,7 @@ fn hamiltonian_form_reaches_the_references() {
 /// An angle that counts turns is held to a rounding of itself.
 #[test]
 fn angles_stay_exact_over_millions_of_turns() {
-    let table = reference("turns");
+    let table = reference(TURNS);
     let scenes = ["turns_0", "turns_1", "million_turns", "turns_3"];
     for (name, row) in scenes.iter().zip(list(&table["rows"])) {
         let scene = scene(name);

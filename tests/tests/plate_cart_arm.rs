@@ -9,7 +9,8 @@ use serde_json::Value;
 
 const REFERENCE: &str = include_str!("data/plate_cart_arm.json");
 
-/// What is asked for in every quantity of a step of fixed size, and of the literal form with the scene's settings.
+/// What is asked for in every quantity. The scene's tolerance is 1e-12 a step; its 4 s take some 500 steps, and errors grow
+/// 35-fold on the way (the `conditioning` of the reference).
 const ALLOWED: f64 = 1e-9;
 
 fn numbers(value: &Value) -> Vec<f64> {
