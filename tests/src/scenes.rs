@@ -22,11 +22,13 @@ pub fn load(name: &str) -> Scene {
     Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// Every scene of the folder, in the order of their names: a new file enters by itself.
+/// Every scene of the folder, in the order of their names: a new file enters by itself. Not those with a reference of their own in
+/// `data/motions`: the test `motions` holds them to that, fast and driven ones among them.
 ///
 /// # Panics
 /// Where one does not load.
 pub fn all() -> Vec<Scene> {
+    let references = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/motions");
     let entries = std::fs::read_dir(folder()).expect("the scenes are beside this crate");
     let paths = entries.map(|entry| entry.expect("a folder entry").path());
     let scenes = paths.filter(|path| {
@@ -35,6 +37,7 @@ pub fn all() -> Vec<Scene> {
     });
     let names = scenes.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()));
     let mut names: Vec<String> = names.collect();
+    names.retain(|name| !references.join(format!("{name}.json")).exists());
     names.sort();
     names.iter().map(|name| load(name)).collect()
 }

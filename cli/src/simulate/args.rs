@@ -11,6 +11,8 @@ Examples:
       the same motion from the port-Hamiltonian form, up to 10 s
   hamel simulate scenes/ball_pendulum.toml --method rk4 --dt 1e-3 --csv swing.csv
       with fixed steps, trajectory to swing.csv
+  hamel simulate scenes/heavy_top.toml --method dop853 --tol 1e-15
+      as accurate as doubles allow: order 8, and sums that lose no rounding
   hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
       the state at three times, as JSON on stdout
   hamel simulate anymal.urdf --floating-base --t-end 0.5
@@ -42,11 +44,11 @@ pub struct Args {
     #[arg(long, value_enum)]
     pub form: Option<FormName>,
 
-    /// Integration method: rk4 has fixed steps, dopri5 controls its step
+    /// Integration method: rk4 has fixed steps, dopri5 and dop853 control theirs
     #[arg(long, value_enum)]
     pub method: Option<MethodName>,
 
-    /// Tolerance of one step of dopri5: absolute in angle, relative in rates; implies dopri5
+    /// Tolerance of one step of dopri5 or dop853, 1e-15 at least: absolute in angle, relative in rates; implies dopri5 where the method is rk4
     #[arg(
         long,
         value_name = "TOLERANCE",
@@ -111,4 +113,6 @@ pub enum MethodName {
     Rk4,
     /// Dormand–Prince 5(4) on the joints' manifolds, step control
     Dopri5,
+    /// Dormand–Prince 8(5,3) on the joints' manifolds, step control: for tolerances below 1e-8 or so
+    Dop853,
 }

@@ -37,25 +37,41 @@ fn method(scene: Method, args: &Args) -> Result<Method, Failure> {
         (Some(MethodName::Dopri5), Some(_), _) => {
             return refuse("--dt means nothing to dopri5, whose accuracy is --tol".into());
         }
-        (named, None, None) => named,
-        (_, Some(_), _) => Some(MethodName::Rk4),
-        (_, _, Some(_)) => Some(MethodName::Dopri5),
+        (Some(MethodName::Dop853), Some(_), _) => {
+            return refuse("--dt means nothing to dop853, whose accuracy is --tol".into());
+        }
+        (Some(named), _, _) => named,
+        (None, Some(_), _) => MethodName::Rk4,
+        (None, None, Some(_)) => controlled(scene),
+        (None, None, None) => return Ok(scene),
     };
-    Ok(match (named, scene) {
-        (None, _) => scene,
-        (Some(MethodName::Rk4), Method::Rk4 { dt: own }) => Method::Rk4 {
-            dt: dt.unwrap_or(own),
+    let (own_dt, own_tol) = accuracy(scene);
+    let tol = tol.or(own_tol).unwrap_or(Settings::DEFAULT_TOL);
+    Ok(match named {
+        MethodName::Rk4 => Method::Rk4 {
+            dt: dt.or(own_dt).unwrap_or(Settings::DEFAULT_DT),
         },
-        (Some(MethodName::Rk4), _) => Method::Rk4 {
-            dt: dt.unwrap_or(Settings::DEFAULT_DT),
-        },
-        (Some(MethodName::Dopri5), Method::DormandPrince { tolerance, .. }) => {
-            Method::dormand_prince(tol.unwrap_or(tolerance))
-        }
-        (Some(MethodName::Dopri5), _) => {
-            Method::dormand_prince(tol.unwrap_or(Settings::DEFAULT_TOL))
-        }
+        MethodName::Dopri5 => Method::dormand_prince(tol),
+        MethodName::Dop853 => Method::dormand_prince_8(tol),
     })
+}
+
+/// What a tolerance alone asks for: the scene's own method where that controls its step.
+const fn controlled(scene: Method) -> MethodName {
+    match scene {
+        Method::Rk4 { .. } | Method::DormandPrince { .. } => MethodName::Dopri5,
+        Method::DormandPrince8 { .. } => MethodName::Dop853,
+    }
+}
+
+/// The step or the tolerance that the scene asks for.
+const fn accuracy(scene: Method) -> (Option<f64>, Option<f64>) {
+    match scene {
+        Method::Rk4 { dt } => (Some(dt), None),
+        Method::DormandPrince { tolerance, .. } | Method::DormandPrince8 { tolerance, .. } => {
+            (None, Some(tolerance))
+        }
+    }
 }
 
 fn tolerance(tol: f64) -> Result<f64, Failure> {
@@ -113,6 +129,7 @@ mod tests {
     #[test]
     fn an_accuracy_implies_its_method_and_the_scene_fills_the_rest() {
         let (rk4, dopri5) = (Method::Rk4 { dt: 0.5 }, Method::dormand_prince(1e-5));
+        let dop853 = Method::dormand_prince_8(1e-12);
         let default_dt = Settings::DEFAULT_DT;
         for (scene, options, wanted) in [
             (rk4, "", rk4),
@@ -126,6 +143,9 @@ mod tests {
                 Method::dormand_prince(Settings::DEFAULT_TOL),
             ),
             (dopri5, "--method dopri5", dopri5),
+            (dopri5, "--method dop853", Method::dormand_prince_8(1e-5)),
+            (dop853, "--tol 1e-15", Method::dormand_prince_8(1e-15)),
+            (dop853, "--dt 0.1", Method::Rk4 { dt: 0.1 }),
             (
                 rk4,
                 "--method dopri5 --tol 1e-7",
@@ -142,6 +162,7 @@ mod tests {
         for options in [
             "--method rk4 --tol 1e-6",
             "--method dopri5 --dt 0.1",
+            "--method dop853 --dt 0.1",
             "--dt 0.1 --tol 1e-6",
             "--dt 0",
             "--dt -1",

@@ -76,7 +76,9 @@ impl Summary<'_> {
         write!(f, "{bodies}, {freedoms}, {speeds}; {form} form; ")?;
         match settings.method {
             Method::Rk4 { dt } => writeln!(f, "rk4 with steps of {dt:?} s")?,
-            Method::DormandPrince { tolerance, .. } => writeln!(f, "dopri5 to {tolerance:e}")?,
+            Method::DormandPrince { tolerance, .. } | Method::DormandPrince8 { tolerance, .. } => {
+                writeln!(f, "{} to {tolerance:e}", settings.method_name())?;
+            }
         }
         writeln!(f, "state at {} s:", self.last.t)
     }

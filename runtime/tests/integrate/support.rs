@@ -26,6 +26,15 @@ pub fn fixed_steps(step: f64) -> Method {
     }
 }
 
+/// The same of order 8.
+pub fn fixed_steps_8(step: f64) -> Method {
+    Method::DormandPrince8 {
+        tolerance: 0.1,
+        max_step: step,
+        first_step: Some(step),
+    }
+}
+
 pub fn start(mechanism: &Mechanism, seed: u64) -> State {
     let mut random = Random::new(seed);
     State {

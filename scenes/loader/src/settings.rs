@@ -6,7 +6,7 @@ use hamel::integrate::{Form, Method};
 pub(crate) const FORM_NAMES: [&str; 2] = ["lagrangian", "hamiltonian"];
 
 /// Names of the integration methods, as scene files and the command line write them.
-pub(crate) const METHOD_NAMES: [&str; 2] = ["rk4", "dopri5"];
+pub(crate) const METHOD_NAMES: [&str; 3] = ["rk4", "dopri5", "dop853"];
 
 /// Settings of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,11 +28,11 @@ impl Settings {
     pub const DEFAULT_SAMPLE_STEP: f64 = 0.01;
     /// Step of `rk4` where a scene gives none, s.
     pub const DEFAULT_DT: f64 = 1e-3;
-    /// Tolerance of `dopri5` where a scene gives none.
+    /// Tolerance of `dopri5` and `dop853` where a scene gives none.
     pub const DEFAULT_TOL: f64 = 1e-10;
-    /// Least tolerance of `dopri5`: a few roundings.
+    /// Least tolerance of `dopri5` and `dop853`: a few roundings.
     pub const LEAST_TOL: f64 = 1e-15;
-    /// Largest tolerance of `dopri5`: beyond it a step says nothing.
+    /// Largest tolerance of `dopri5` and `dop853`: beyond it a step says nothing.
     pub const LARGEST_TOL: f64 = 0.1;
 
     /// Name of the form, as scene files and the command line write it.
@@ -48,6 +48,7 @@ impl Settings {
         match self.method {
             Method::Rk4 { .. } => "rk4",
             Method::DormandPrince { .. } => "dopri5",
+            Method::DormandPrince8 { .. } => "dop853",
         }
     }
 }

@@ -38,15 +38,21 @@ fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<Method> {
     let rk4 = Method::Rk4 {
         dt: dt.unwrap_or(Settings::DEFAULT_DT),
     };
-    let dopri5 = Method::dormand_prince(tol.unwrap_or(Settings::DEFAULT_TOL));
-    match name {
-        Some("rk4") => unused(table, "tol", "rk4", "its accuracy is `dt`", sink).map(|()| rk4),
-        Some(_) => unused(table, "dt", "dopri5", "its accuracy is `tol`", sink).map(|()| dopri5),
+    let tol = tol.unwrap_or(Settings::DEFAULT_TOL);
+    let (key, method, advice) = match name {
+        Some("rk4") => ("tol", rk4, "its accuracy is `dt`"),
+        Some("dop853") => ("dt", Method::dormand_prince_8(tol), "its accuracy is `tol`"),
+        Some(_) => ("dt", Method::dormand_prince(tol), "its accuracy is `tol`"),
         None => {
             let found = table.at_most_one(&["dt", "tol"], sink)?;
-            Some(if found.0 == 0 { rk4 } else { dopri5 })
+            return Some(if found.0 == 0 {
+                rk4
+            } else {
+                Method::dormand_prince(tol)
+            });
         }
-    }
+    };
+    unused(table, key, name.unwrap_or_default(), advice, sink).map(|()| method)
 }
 
 /// Refuses a key that means nothing to the method chosen.

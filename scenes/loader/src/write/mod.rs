@@ -47,6 +47,9 @@ fn settings(out: &mut String, settings: &Settings) {
     let accuracy = match settings.method {
         Method::Rk4 { dt } => format!("dt = {}", number(dt)),
         Method::DormandPrince { tolerance, .. } => format!("tol = {}", number(tolerance)),
+        Method::DormandPrince8 { tolerance, .. } => {
+            format!("method = \"dop853\"\ntol = {}", number(tolerance))
+        }
     };
     let (t_end, step) = (number(settings.t_end), number(settings.sample_step));
     let form = text(settings.form_name());

@@ -1,0 +1,234 @@
+//! Motions from scene files against reference values of 24 digits, in both forms, to a multiple of what doubles allow.
+//!
+//! A new case is a scene file with a reference beside it, in `data/motions/`. The floor of a case is `max(1, c) ε/2`: c, its
+//! `conditioning`, is the change of the final state per unit relative change of the initial velocities, and ε/2 what one rounding does
+//! to them. No method in doubles can be expected to fall below it.
+
+use hamel::dynamics::Recursive;
+use hamel::integrate::{Form, Options, Solution, State, integrate, no_inputs, no_observer};
+use hamel::mechanism::BodyState;
+use hamel::nalgebra::{Matrix3, Vector3};
+use hamel_scene::Scene;
+use hamel_tests::figures::{Largest, attitude_error, vector_error};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What is asked for, in floors.
+const ALLOWED: f64 = 100.0;
+
+/// The table of turns about one axis, which is no motion of bodies in space.
+const TURNS: &str = "million_turns";
+
+const FORMS: [Form; 2] = [Form::Lagrangian, Form::Hamiltonian];
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data/motions")
+}
+
+/// The scene of a case: beside its reference, or among the scenes of the project.
+fn scene(name: &str) -> Scene {
+    let file = format!("{name}.toml");
+    let own = folder().join(&file);
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let path = if own.exists() {
+        own
+    } else {
+        shared.join(&file)
+    };
+    Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn reference(name: &str) -> Value {
+    let text = fs::read_to_string(folder().join(format!("{name}.json"))).expect("a reference");
+    serde_json::from_str(&text).expect("the file is JSON")
+}
+
+/// Names of all references of motions.
+fn cases() -> Vec<String> {
+    let entries = fs::read_dir(folder()).expect("the references are beside this test");
+    let paths = entries.map(|entry| entry.expect("a folder entry").path());
+    let json = paths.filter(|path| path.extension().is_some_and(|end| end == "json"));
+    let mut names: Vec<String> = json
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .filter(|name| name != TURNS)
+        .collect();
+    names.sort();
+    names
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().expect("a list")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+fn vector(body: &Value, key: &str) -> Vector3<f64> {
+    Vector3::from_iterator(list(&body[key]).iter().map(number))
+}
+
+/// The motion as the scene says, but for the form.
+fn run(scene: &Scene, form: Form, samples: Vec<f64>) -> Solution {
+    let initial = State {
+        time: 0.0,
+        configuration: scene.configuration.clone(),
+        speeds: scene.speeds.clone(),
+    };
+    let options = Options {
+        form,
+        method: scene.settings.method,
+        t_end: samples.last().copied().expect("a sample time"),
+        samples,
+    };
+    let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+    integrate(
+        &mut dynamics,
+        &initial,
+        &options,
+        &mut no_inputs,
+        &mut no_observer,
+    )
+    .unwrap_or_else(|error| panic!("{}: {error}", scene.name))
+}
+
+/// Errors of a body in attitude, position, velocity and angular velocity: an angle, and parts of max(1, size).
+fn errors(found: &BodyState, expected: &Value) -> [f64; 4] {
+    let rotation = list(&expected["rotation_body_to_world_rowmajor"]);
+    let rotation = Matrix3::from_row_iterator(rotation.iter().map(number));
+    [
+        attitude_error(&rotation, &found.pose.rotation),
+        vector_error(&found.position_com, &vector(expected, "position_com")),
+        vector_error(&found.velocity_com, &vector(expected, "velocity_com_world")),
+        vector_error(
+            &found.angular_velocity_body(),
+            &vector(expected, "angular_velocity_body"),
+        ),
+    ]
+}
+
+/// The largest errors of one case in one form, in floors.
+struct Multiples {
+    floor: f64,
+    laws: [Largest; 4],
+    energy: Largest,
+}
+
+impl Multiples {
+    fn new(floor: f64) -> Self {
+        Self {
+            floor,
+            laws: ["attitude", "position", "velocity", "angular velocity"].map(Largest::new),
+            energy: Largest::new("energy"),
+        }
+    }
+
+    /// Takes the state at one sample; bodies that the reference does not know, such as a driven table, have no figures.
+    fn meet(&mut self, scene: &Scene, state: &State, names: &[Value], sample: &Value) {
+        let kinematics = scene
+            .mechanism
+            .kinematics(&state.configuration, &state.speeds)
+            .expect("sizes fit");
+        for (name, expected) in names.iter().zip(list(&sample["bodies"])) {
+            let name = name.as_str().expect("a name");
+            let mut bodies = scene.mechanism.bodies().iter();
+            let index = bodies.position(|body| body.name() == name);
+            let body = &kinematics.bodies[index.expect("the scene has the body")];
+            let place = format!("{name} at {} s", state.time);
+            for (largest, error) in self.laws.iter_mut().zip(errors(body, expected)) {
+                largest.meet(error / self.floor, &place);
+            }
+        }
+    }
+
+    /// Takes the energy, springs included, as a part of the larger of its initial value and the initial kinetic energy.
+    fn meet_energy(&mut self, scene: &Scene, samples: &[State], energy: f64) {
+        let start = scene
+            .mechanism
+            .kinematics(&scene.configuration, &scene.speeds)
+            .expect("sizes fit");
+        let unit = energy.abs().max(start.kinetic_energy());
+        for state in samples {
+            let kinematics = scene
+                .mechanism
+                .kinematics(&state.configuration, &state.speeds)
+                .expect("sizes fit");
+            let error = (kinematics.energy() - energy).abs() / unit;
+            self.energy.meet(error / self.floor, state.time);
+        }
+    }
+}
+
+fn check(name: &str, form: Form) {
+    let (scene, reference) = (scene(name), reference(name));
+    let samples = list(&reference["samples"]);
+    let times = samples.iter().map(|sample| number(&sample["t"])).collect();
+    let solution = run(&scene, form, times);
+    let floor = number(&reference["conditioning"]).max(1.0) * 0.5 * f64::EPSILON;
+    println!(
+        "{name}, {form:?}: {:?}, floor {floor:.1e}; errors in floors:",
+        solution.statistics
+    );
+    let mut multiples = Multiples::new(floor);
+    for (state, sample) in solution.samples.iter().zip(samples) {
+        multiples.meet(&scene, state, list(&reference["bodies"]), sample);
+    }
+    for largest in &multiples.laws {
+        largest.assert_within(ALLOWED);
+    }
+    if let Some(energy) = reference["total_energy"].as_f64() {
+        multiples.meet_energy(&scene, &solution.samples, energy);
+        multiples.energy.assert_within(ALLOWED);
+    }
+}
+
+/// All cases are tried before the first that fails is told, so that the figures of all are seen.
+fn check_all(form: Form) {
+    let names = cases();
+    assert!(names.len() >= 11, "only {names:?}");
+    let failed: Vec<String> = names
+        .into_iter()
+        .filter(|name| std::panic::catch_unwind(|| check(name, form)).is_err())
+        .collect();
+    assert!(failed.is_empty(), "{form:?}: {failed:?}");
+}
+
+#[test]
+fn lagrangian_form_reaches_the_references() {
+    check_all(Form::Lagrangian);
+}
+
+#[test]
+fn hamiltonian_form_reaches_the_references() {
+    check_all(Form::Hamiltonian);
+}
+
+/// An angle that counts turns is held to a rounding of itself.
+#[test]
+fn angles_stay_exact_over_millions_of_turns() {
+    let table = reference(TURNS);
+    let scenes = ["turns_0", "turns_1", "million_turns", "turns_3"];
+    for (name, row) in scenes.iter().zip(list(&table["rows"])) {
+        let scene = scene(name);
+        for form in FORMS {
+            let solution = run(&scene, form, vec![number(&row["t"])]);
+            let (angle, rate) = (solution.state.configuration[0], solution.state.speeds[0]);
+            let floor = number(&row["angle"]).abs().max(1.0) * 0.5 * f64::EPSILON;
+            let (sin, cos) = (number(&row["sin"]), number(&row["cos"]));
+            // The sine and cosine of the difference to the reference.
+            let ahead = (angle.sin() * cos - angle.cos() * sin)
+                .atan2(angle.cos() * cos + angle.sin() * sin);
+            println!("{name}, {form:?}: {:?}", solution.statistics);
+            let mut largest = ["angle", "wrapped angle", "rate"].map(Largest::new);
+            largest[0].meet((angle - number(&row["angle"])).abs() / floor, name);
+            largest[1].meet(ahead.abs() / floor, name);
+            let rate_error = (rate / number(&row["rate"]) - 1.0).abs();
+            largest[2].meet(rate_error / (0.5 * f64::EPSILON), name);
+            largest
+                .iter()
+                .for_each(|largest| largest.assert_within(ALLOWED));
+        }
+    }
+}
