@@ -1,8 +1,10 @@
 //! Gröbner bases of the relations of a manifold, by Buchberger's algorithm.
 
-use crate::expr::{Expr, Rational, budget};
+use crate::expr::{Expr, Monomial, Rational, budget};
 use num_traits::One;
 use std::borrow::Borrow;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A relation whose leading coefficient is a sum of parameters cannot be solved for its leading monomial.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,31 +16,32 @@ pub struct NotMonic {
 /// The reduced Gröbner basis of the ideal of `relations`.
 pub fn groebner_basis(relations: &[Expr]) -> Result<Vec<Expr>, NotMonic> {
     let basis = interreduce(relations.to_vec())?;
-    let pairs = pairs_up_to(basis.len());
+    let mut pairs = Pairs::default();
+    (0..basis.len()).for_each(|place| pairs.add(&basis, place));
     completed(basis, pairs)
 }
 
 /// The reduced Gröbner basis of the ideal of a basis and further relations.
 pub fn extended(basis: &[Expr], relations: &[Expr]) -> Result<Vec<Expr>, NotMonic> {
     let mut all = basis.to_vec();
-    let mut pairs = vec![];
+    let mut pairs = Pairs::default();
     for relation in relations {
         let reduced = reduce(relation, &all);
         if !reduced.is_zero() {
-            pairs.extend((0..all.len()).map(|i| (i, all.len())));
             all.push(monic(reduced)?);
+            pairs.add(&all, all.len() - 1);
         }
     }
     completed(all, pairs)
 }
 
 /// Buchberger's algorithm: reduces S-polynomials until all reduce to zero.
-fn completed(mut basis: Vec<Expr>, mut pairs: Vec<(usize, usize)>) -> Result<Vec<Expr>, NotMonic> {
-    while let Some((i, j)) = take_smallest(&mut pairs, &basis) {
+fn completed(mut basis: Vec<Expr>, mut pairs: Pairs) -> Result<Vec<Expr>, NotMonic> {
+    while let Some(Reverse((multiple, i, j))) = pairs.0.pop() {
         if budget::is_exhausted() {
             break;
         }
-        let Some(s) = s_polynomial(&basis[i], &basis[j]) else {
+        let Some(s) = s_polynomial(&basis[i], &basis[j], &multiple) else {
             continue;
         };
         let remainder = reduce(&s, &basis);
@@ -47,8 +50,8 @@ fn completed(mut basis: Vec<Expr>, mut pairs: Vec<(usize, usize)>) -> Result<Vec
             if found.is_one() {
                 return Ok(vec![found]);
             }
-            pairs.extend((0..basis.len()).map(|k| (k, basis.len())));
             basis.push(found);
+            pairs.add(&basis, basis.len() - 1);
         }
     }
     interreduce(basis)
@@ -88,30 +91,30 @@ fn weight(number: &Rational) -> u64 {
     8 * number.excess()
 }
 
-fn pairs_up_to(count: usize) -> Vec<(usize, usize)> {
-    (0..count)
-        .flat_map(|j| (0..j).map(move |i| (i, j)))
-        .collect()
-}
+/// Pairs of elements of a basis, by Buchberger's normal strategy: that with the smallest common multiple first.
+#[derive(Default)]
+struct Pairs(BinaryHeap<Reverse<(Monomial, usize, usize)>>);
 
-/// Buchberger's normal strategy: the pair with the smallest common multiple first.
-fn take_smallest(pairs: &mut Vec<(usize, usize)>, basis: &[Expr]) -> Option<(usize, usize)> {
-    let multiple = |&(i, j): &(usize, usize)| {
-        let (a, b) = (basis[i].leading()?.0, basis[j].leading()?.0);
-        Some(a.lcm(b))
-    };
-    budget::spend(pairs.len() as u64 / 4);
-    let position = (0..pairs.len()).min_by_key(|&n| multiple(&pairs[n]))?;
-    Some(pairs.swap_remove(position))
-}
-
-/// `None` where the leading monomials are coprime: the pair then reduces to zero (Buchberger's first criterion).
-fn s_polynomial(f: &Expr, g: &Expr) -> Option<Expr> {
-    let (lf, lg) = (f.leading()?.0, g.leading()?.0);
-    if lf.is_coprime(lg) {
-        return None;
+impl Pairs {
+    /// Adds the pairs of an element with those before it, but for coprime leading monomials: these reduce to zero (Buchberger's first
+    /// criterion).
+    fn add(&mut self, basis: &[Expr], place: usize) {
+        budget::spend(place as u64);
+        let leading = |n: usize| basis[n].leading().map(|(monomial, _)| monomial);
+        let Some(new) = leading(place) else {
+            return;
+        };
+        for other in 0..place {
+            if let Some(old) = leading(other).filter(|old| !old.is_coprime(new)) {
+                self.0.push(Reverse((old.lcm(new), other, place)));
+            }
+        }
     }
-    let multiple = lf.lcm(lg);
+}
+
+/// The difference of both, each scaled to the common multiple of their leading monomials.
+fn s_polynomial(f: &Expr, g: &Expr, multiple: &Monomial) -> Option<Expr> {
+    let (lf, lg) = (f.leading()?.0, g.leading()?.0);
     let one = Rational::one();
     let mut s = f.scaled(&one, &multiple.divided_by(lf)?);
     s.add_scaled(&-one, &multiple.divided_by(lg)?, g);
