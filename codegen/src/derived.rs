@@ -81,6 +81,8 @@ pub enum Structure {
 pub enum Primitive {
     /// 3×3 rotation matrix to its rotation vector (3 outputs): `Scalar::rotation_vector`.
     RotationVector,
+    /// Quaternion (w, x, y, z) to the rotation vector of its rotation (3 outputs): `Scalar::quaternion_vector`.
+    QuaternionVector,
     /// 3×3 matrix near SO(3) to the nearest rotation matrix (9 outputs, row by row): `spatial::nearest_rotation`.
     NearestRotation,
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 type Counts = [usize; 5];
 
 /// Functions that count as calls; those of one angle, sine and cosine, are one.
-const CALLS: [&str; 9] = [
+const CALLS: [&str; 10] = [
     "sin_cos",
     "sqrt",
     "exp",
@@ -19,6 +19,7 @@ const CALLS: [&str; 9] = [
     "stumpff",
     "dexp_inverse",
     "rotation_vector",
+    "quaternion_vector",
     "nearest_rotation",
 ];
 

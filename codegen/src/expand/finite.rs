@@ -99,7 +99,11 @@ fn logarithm(kind: Kind, m: &Matrix, prefix: &str, steps: &mut Steps) -> Option<
         Kind::Real(size) => (0..size).map(|i| m.at(i, size).clone()).collect(),
         Kind::S1 | Kind::So2 => vec![steps.bind(&named("angle"), m.at(1, 0).atan2(m.at(0, 0)))],
         Kind::So3 => rotation_vector(m.clone(), prefix, steps),
-        Kind::S3 => rotation_vector(algebra::rotation_of_quaternion(&m.column(0)), prefix, steps),
+        // Not by its rotation matrix: differences of products there lose the digits of small components.
+        Kind::S3 => {
+            let quaternion = Matrix::column_vector(m.column(0));
+            named_vector(Primitive::QuaternionVector, quaternion, prefix, steps)
+        }
         Kind::Se2 => {
             let angle = steps.bind(&named("angle"), m.at(1, 0).atan2(m.at(0, 0)));
             let t = steps.bind_matrix(&named("t"), &m.block(0, 2, 2, 1));
@@ -132,12 +136,18 @@ fn logarithm(kind: Kind, m: &Matrix, prefix: &str, steps: &mut Steps) -> Option<
 }
 
 fn rotation_vector(rotation: Matrix, prefix: &str, steps: &mut Steps) -> Vec<Expr> {
+    named_vector(Primitive::RotationVector, rotation, prefix, steps)
+}
+
+fn named_vector(
+    primitive: Primitive,
+    argument: Matrix,
+    prefix: &str,
+    steps: &mut Steps,
+) -> Vec<Expr> {
     let names = ["r1", "r2", "r3"].map(|name| format!("{prefix}{name}"));
-    steps.call(
-        Primitive::RotationVector,
-        rotation,
-        &names.each_ref().map(String::as_str),
-    )
+    let names = names.each_ref().map(String::as_str);
+    steps.call(primitive, argument, &names)
 }
 
 /// `D⁻¹ u` with `D = Σ (−ad_ϕ)ⁿ/(n+1)!`: `u + ½ [ϕ, u] + G [ϕ, [ϕ, u]] + …`; `None` where no closed form fits.

@@ -523,7 +523,7 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
     ///
-    /// 3-vector, rad. Operations: 56 additions, 68 multiplications (17 of each fused), 1 function call.
+    /// 3-vector, rad. Operations: 12 additions, 16 multiplications (12 of each fused), 1 function call.
     ///
     /// From line 9 `config`, line 10 `basis`.
     fn local<T: Scalar>(
@@ -533,170 +533,45 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
     ) -> SVector<T, 3> {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
         let [q_w_target, q_x_target, q_y_target, q_z_target]: [T; 4] = (*target).into();
-        let one = T::one();
-        let two = T::from_f64(2.0);
-        let four = T::from_f64(4.0);
-        let q_w_target_q_y_target = q_w_target * q_y_target;
-        let q_x_target_q_z_target = q_x_target * q_z_target;
-        let sum_of_q_w_target_q_y_target = q_w_target_q_y_target - q_x_target_q_z_target;
-        let q_w_q_y = q_w * q_y;
-        let q_x_q_z = q_x * q_z;
-        let q_w_q_y_minus_q_x_q_z = q_w_q_y - q_x_q_z;
-        let q_w_target_q_z_target = q_w_target * q_z_target;
-        let q_x_target_q_y_target = q_x_target * q_y_target;
-        let sum_of_q_w_target_q_z_target = q_w_target_q_z_target + q_x_target_q_y_target;
-        let q_w_q_z = q_w * q_z;
-        let q_x_q_y = q_x * q_y;
-        let q_w_q_z_plus_q_x_q_y = q_w_q_z + q_x_q_y;
-        let q_y_target_squared = q_y_target * q_y_target;
-        let q_z_target_squared = q_z_target * q_z_target;
-        let sum_of_q_y_target_squared = q_y_target_squared + q_z_target_squared;
-        let q_w_squared = q_w * q_w;
-        let q_x_squared = q_x * q_x;
-        let q_w_squared_plus_q_x_squared = q_w_squared + q_x_squared;
-        let q_w_target_squared = q_w_target * q_w_target;
-        let q_x_target_squared = q_x_target * q_x_target;
-        let sum_of_q_w_target_squared = q_w_target_squared + q_x_target_squared;
-        let q_y_squared = q_y * q_y;
-        let q_z_squared = q_z * q_z;
-        let q_y_squared_plus_q_z_squared = q_y_squared + q_z_squared;
-        let sum_of_q_w_target_q_z_target_2 = q_w_target_q_z_target
-            - q_x_target_q_y_target;
-        let sum_of_q_w_squared_plus_q_x_squared = q_w_squared_plus_q_x_squared
-            - q_y_squared_plus_q_z_squared;
-        let sum_of_q_w_target_squared_2 = q_w_target_squared - q_x_target_squared;
-        let sum_of_q_y_target_squared_2 = q_y_target_squared - q_z_target_squared;
-        let sum_of_sum_of_q_w_target_squared_2 = sum_of_q_w_target_squared_2
-            + sum_of_q_y_target_squared_2;
-        let q_w_target_q_x_target = q_w_target * q_x_target;
-        let q_y_target_q_z_target = q_y_target * q_z_target;
-        let sum_of_q_w_target_q_x_target = q_w_target_q_x_target + q_y_target_q_z_target;
-        let sum_of_q_w_target_q_y_target_2 = q_w_target_q_y_target
-            + q_x_target_q_z_target;
-        let sum_of_sum_of_q_w_target_squared_2_2 = sum_of_q_w_target_squared_2
-            - sum_of_q_y_target_squared_2;
-        let sum_of_q_w_target_q_x_target_2 = q_w_target_q_x_target
-            - q_y_target_q_z_target;
-        let q_w_q_x = q_w * q_x;
-        let q_y_q_z = q_y * q_z;
-        let q_w_q_x_plus_q_y_q_z = q_w_q_x + q_y_q_z;
-        let q_w_squared_plus_q_y_squared = q_w_squared + q_y_squared;
-        let q_x_squared_plus_q_z_squared = q_x_squared + q_z_squared;
-        let sum_of_q_w_squared_plus_q_y_squared = q_w_squared_plus_q_y_squared
-            - q_x_squared_plus_q_z_squared;
-        let q_w_q_z_minus_q_x_q_y = q_w_q_z - q_x_q_y;
-        let sum_of_sum_of_q_y_target_squared = sum_of_q_y_target_squared
-            - sum_of_q_w_target_squared;
-        let q_x_squared_plus_q_y_squared = q_x_squared + q_y_squared;
-        let q_w_squared_plus_q_z_squared = q_w_squared + q_z_squared;
-        let sum_of_q_x_squared_plus_q_y_squared = q_x_squared_plus_q_y_squared
-            - q_w_squared_plus_q_z_squared;
-        let q_w_q_y_plus_q_x_q_z = q_w_q_y + q_x_q_z;
-        let q_w_q_x_minus_q_y_q_z = q_w_q_x - q_y_q_z;
-        let rotation = from_rows([
-            [
-                four
+        let [r1, r2, r3]: [T; 3] = T::quaternion_vector([
+                q_w
                     .mul_add(
-                        sum_of_q_w_target_q_y_target
+                        q_w_target,
+                        q_x
                             .mul_add(
-                                q_w_q_y_minus_q_x_q_z,
-                                sum_of_q_w_target_q_z_target * q_w_q_z_plus_q_x_q_y,
-                            ),
-                        two
-                            .mul_add(
-                                -sum_of_q_y_target_squared
-                                    .mul_add(
-                                        q_w_squared_plus_q_x_squared,
-                                        sum_of_q_w_target_squared * q_y_squared_plus_q_z_squared,
-                                    ),
-                                one,
+                                q_x_target,
+                                q_y.mul_add(q_y_target, q_z * q_z_target),
                             ),
                     ),
-                -(four * sum_of_q_w_target_q_x_target)
+                q_w
                     .mul_add(
-                        q_w_q_y_minus_q_x_q_z,
-                        two
-                            * (sum_of_q_w_target_q_z_target_2
-                                * sum_of_q_w_squared_plus_q_x_squared
-                                - q_w_q_z_plus_q_x_q_y * sum_of_sum_of_q_w_target_squared_2),
-                    ),
-                two
-                    * (sum_of_q_w_target_q_y_target_2
-                        * sum_of_q_w_squared_plus_q_x_squared
-                        - q_w_q_y_minus_q_x_q_z * sum_of_sum_of_q_w_target_squared_2_2)
-                    - four * sum_of_q_w_target_q_x_target_2 * q_w_q_z_plus_q_x_q_y,
-            ],
-            [
-                two
-                    * sum_of_q_w_target_q_z_target
-                        .mul_add(
-                            sum_of_q_w_squared_plus_q_y_squared,
-                            q_w_q_z_minus_q_x_q_y * sum_of_sum_of_q_y_target_squared,
-                        ) - four * sum_of_q_w_target_q_y_target * q_w_q_x_plus_q_y_q_z,
-                four
-                    .mul_add(
-                        sum_of_q_w_target_q_z_target_2
+                        q_x_target,
+                        q_x
                             .mul_add(
-                                q_w_q_z_minus_q_x_q_y,
-                                sum_of_q_w_target_q_x_target * q_w_q_x_plus_q_y_q_z,
-                            ),
-                        two
-                            .mul_add(
-                                -q_x_squared_plus_q_z_squared
-                                    .mul_add(
-                                        q_w_target_squared + q_y_target_squared,
-                                        q_w_squared_plus_q_y_squared
-                                            * (q_x_target_squared + q_z_target_squared),
-                                    ),
-                                one,
+                                -q_w_target,
+                                q_y.mul_add(-q_z_target, q_z * q_y_target),
                             ),
                     ),
-                -(four * sum_of_q_w_target_q_y_target_2)
+                q_w
                     .mul_add(
-                        q_w_q_z_minus_q_x_q_y,
-                        two
-                            * (sum_of_q_w_target_q_x_target_2
-                                * sum_of_q_w_squared_plus_q_y_squared
-                                - q_w_q_x_plus_q_y_q_z
-                                    * sum_of_sum_of_q_w_target_squared_2_2),
-                    ),
-            ],
-            [
-                two
-                    * (sum_of_q_w_target_q_y_target * sum_of_q_x_squared_plus_q_y_squared
-                        - q_w_q_y_plus_q_x_q_z * sum_of_sum_of_q_y_target_squared)
-                    - four * sum_of_q_w_target_q_z_target * q_w_q_x_minus_q_y_q_z,
-                -(four * sum_of_q_w_target_q_z_target_2)
-                    .mul_add(
-                        q_w_q_y_plus_q_x_q_z,
-                        two
-                            * sum_of_q_w_target_q_x_target
-                                .mul_add(
-                                    sum_of_q_x_squared_plus_q_y_squared,
-                                    q_w_q_x_minus_q_y_q_z * sum_of_sum_of_q_w_target_squared_2,
-                                ),
-                    ),
-                four
-                    .mul_add(
-                        sum_of_q_w_target_q_y_target_2
+                        q_y_target,
+                        q_y
                             .mul_add(
-                                q_w_q_y_plus_q_x_q_z,
-                                sum_of_q_w_target_q_x_target_2 * q_w_q_x_minus_q_y_q_z,
-                            ),
-                        two
-                            .mul_add(
-                                -q_x_squared_plus_q_y_squared
-                                    .mul_add(
-                                        q_w_target_squared + q_z_target_squared,
-                                        q_w_squared_plus_q_z_squared
-                                            * (q_x_target_squared + q_y_target_squared),
-                                    ),
-                                one,
+                                -q_w_target,
+                                q_z.mul_add(-q_x_target, q_x * q_z_target),
                             ),
                     ),
-            ],
-        ]);
-        let [r1, r2, r3]: [T; 3] = T::rotation_vector(&rotation).into();
+                q_w
+                    .mul_add(
+                        q_z_target,
+                        q_x
+                            .mul_add(
+                                -q_y_target,
+                                q_z.mul_add(-q_w_target, q_y * q_x_target),
+                            ),
+                    ),
+            ])
+            .into();
         SVector::from([r1, r2, r3])
     }
 

@@ -107,6 +107,15 @@ impl<T: Scalar> One for Dual<T> {
     }
 }
 
+/// The rotation vector r of a rotation that turns with ω in its own axes: its rate is `dexp⁻¹_r ω`, which is
+/// `ω + ½ r × ω + G(r²) r × (r × ω)`.
+fn turning<T: Scalar>(r: Vector3<T>, omega: Vector3<T>) -> Vector3<Dual<T>> {
+    let turn = r.cross(&omega);
+    let square = r.x * r.x + r.y * r.y + r.z * r.z;
+    let derivative = omega + turn * T::from_f64(0.5) + r.cross(&turn) * square.dexp_inverse(0);
+    Vector3::from_fn(|i, _| Dual::new(r[i], derivative[i]))
+}
+
 impl<T: Scalar> Scalar for Dual<T> {
     type Mask = T::Mask;
 
@@ -174,16 +183,24 @@ impl<T: Scalar> Scalar for Dual<T> {
         )
     }
 
-    /// The derivative is `dexp⁻¹_r ω` with `ω~ = Rᵀ Ṙ`: `ω + ½ r × ω + G(r²) r × (r × ω)`.
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self> {
         let value = rotation.map(|entry| entry.value);
         let rate = rotation.map(|entry| entry.derivative);
-        let r = T::rotation_vector(&value);
         let omega = vee(&(value.transpose() * rate));
-        let turn = r.cross(&omega);
-        let square = r.x * r.x + r.y * r.y + r.z * r.z;
-        let derivative = omega + turn * T::from_f64(0.5) + r.cross(&turn) * square.dexp_inverse(0);
-        Vector3::from_fn(|i, _| Self::new(r[i], derivative[i]))
+        turning(T::rotation_vector(&value), omega)
+    }
+
+    fn quaternion_vector(quaternion: [Self; 4]) -> Vector3<Self> {
+        let [w, x, y, z] = quaternion.map(|entry| entry.value);
+        let [dw, dx, dy, dz] = quaternion.map(|entry| entry.derivative);
+        let (v, dv) = (Vector3::new(x, y, z), Vector3::new(dx, dy, dz));
+        // ω = 2 vec(q̄ q̇) / |q|².
+        let turn = dv * w - v * dw - v.cross(&dv);
+        let square = w * w + x * x + y * y + z * z;
+        turning(
+            T::quaternion_vector([w, x, y, z]),
+            turn * (T::from_f64(2.0) / square),
+        )
     }
 
     fn less(self, other: Self) -> Self::Mask {

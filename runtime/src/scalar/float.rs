@@ -70,6 +70,11 @@ macro_rules! implement_scalar {
             }
 
             #[inline]
+            fn quaternion_vector(quaternion: [Self; 4]) -> Vector3<Self> {
+                rotation::quaternion_vector(quaternion)
+            }
+
+            #[inline]
             fn less(self, other: Self) -> bool {
                 self < other
             }

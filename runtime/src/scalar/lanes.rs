@@ -143,6 +143,10 @@ impl Scalar for F64x4 {
         rotation::rotation_vector(rotation)
     }
 
+    fn quaternion_vector(quaternion: [Self; 4]) -> Vector3<Self> {
+        rotation::quaternion_vector(quaternion)
+    }
+
     #[inline]
     fn less(self, other: Self) -> Mask4 {
         Mask4(self.0.simd_lt(other.0))

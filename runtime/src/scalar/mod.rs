@@ -76,6 +76,10 @@ pub trait Scalar:
     /// Rotation vector `r` with `exp(r~) = rotation` and `|r| ≤ π`, accurate at every angle.
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self>;
 
+    /// Rotation vector, `|r| ≤ π`, of the rotation by the quaternion `(w, x, y, z)`, accurate at every angle; neither the length of the
+    /// quaternion, which is not 0, nor its sign matters.
+    fn quaternion_vector(quaternion: [Self; 4]) -> Vector3<Self>;
+
     /// Whether `self < other`, lane by lane.
     fn less(self, other: Self) -> Self::Mask;
 

@@ -1,4 +1,4 @@
-//! Rotation vector of a rotation matrix, for any scalar that is not a series.
+//! Rotation vector of a rotation matrix or a quaternion, for any scalar that is not a series.
 
 use super::Scalar;
 use nalgebra::{Matrix3, Vector3};
@@ -11,7 +11,11 @@ const SMALL: f64 = 1e-17;
 /// Of the four rows of the matrix `4 q qᵀ`, each linear in R, the one with the largest diagonal entry is taken; it needs
 /// no normalisation, since the angle is that of a point in the plane.
 pub(super) fn rotation_vector<T: Scalar>(r: &Matrix3<T>) -> Vector3<T> {
-    let [w, x, y, z] = largest_quaternion_row(r);
+    quaternion_vector(largest_quaternion_row(r))
+}
+
+/// See [`Scalar::quaternion_vector`].
+pub(super) fn quaternion_vector<T: Scalar>([w, x, y, z]: [T; 4]) -> Vector3<T> {
     let zero = T::zero();
     let flip = w.less(zero);
     let [w, x, y, z] = [w, x, y, z].map(|entry| T::select(flip, -entry, entry));

@@ -203,6 +203,48 @@ fn rotation_vector_in_single_precision() {
     }
 }
 
+/// Each component relative to itself, at quaternions of any length and sign: five roundings of 1.1e-16 each, and those of the test.
+#[test]
+fn quaternion_vector_returns_every_angle() {
+    for axis in directions() {
+        for angle in [0.0, 1e-300, 1e-20, 1e-9, 1e-4, 1.0, 3.0, 3.14] {
+            for length in [1.0, -1.0, 1e-3] {
+                let r = axis * angle;
+                let (sin, cos) = (0.5 * angle).sin_cos();
+                let [x, y, z] = (axis * sin * length).into();
+                let found = f64::quaternion_vector([cos * length, x, y, z]);
+                for i in 0..3 {
+                    assert!((found[i] - r[i]).abs() <= 1e-15 * r[i].abs());
+                }
+            }
+        }
+    }
+}
+
+/// The quaternion of exp(r + ε d) has the vector r + ε d, to second order, whatever its length does.
+#[test]
+fn quaternion_vector_is_differentiated() {
+    for axis in directions() {
+        for angle in [0.0, 1e-8, 0.3, 1.6, 3.0] {
+            let (r, direction) = (axis * angle, Vector3::new(0.4, -0.2, 0.9));
+            let along = Vector3::from_fn(|i, _| {
+                Dual::new(Dual::new(r[i], direction[i]), Dual::new(direction[i], 0.0))
+            });
+            let quarter = along.dot(&along) * Dual::from_f64(0.25);
+            let length = Dual::new(Dual::new(1.0, 0.3), Dual::new(0.3, -0.7));
+            let scale = quarter.stumpff(1) * Dual::from_f64(0.5) * length;
+            let [x, y, z] = (along * scale).into();
+            let found = Dual::quaternion_vector([quarter.stumpff(0) * length, x, y, z]);
+            for i in 0..3 {
+                // A few roundings of entries of order 1, of second differences of order 10.
+                assert!((found[i].value.derivative - direction[i]).abs() < 1e-14);
+                assert!((found[i].derivative.value - direction[i]).abs() < 1e-14);
+                assert!(found[i].derivative.derivative.abs() < 1e-12);
+            }
+        }
+    }
+}
+
 /// d log(exp(r + ε d)) = d, to first and second order, at small and large angles.
 #[test]
 fn rotation_vector_is_differentiated() {

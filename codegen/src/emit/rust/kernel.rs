@@ -267,7 +267,10 @@ impl<'a> Method<'a> {
                 argument,
                 outputs,
             } => {
-                let argument = writer.rows(argument, 3);
+                let argument = match primitive {
+                    Primitive::QuaternionVector => writer.list(argument),
+                    _ => writer.rows(argument, 3),
+                };
                 let names: Vec<TokenStream> = outputs
                     .iter()
                     .map(|symbol| self.pattern_of(symbol))
@@ -307,6 +310,9 @@ fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> 
                 let [#(#names),*]: [T; #size] = T::rotation_vector(&rotation).into();
             }
         }
+        Primitive::QuaternionVector => quote! {
+            let [#(#names),*]: [T; 3] = T::quaternion_vector(#argument).into();
+        },
         Primitive::NearestRotation => {
             // Nested arrays of a matrix are its columns.
             let columns = (0..3).map(|j| {

@@ -217,6 +217,12 @@ impl<'a> Writer<'a> {
         quote! { from_rows([#(#rows),*]) }
     }
 
+    /// The entries as an array.
+    pub fn list(&self, entries: &[Node]) -> TokenStream {
+        let entries = entries.iter().map(|entry| self.formula(entry));
+        quote! { [#(#entries),*] }
+    }
+
     /// The formula, in parentheses where it binds less tightly than `level`.
     fn at_least(&self, node: &Node, level: Level) -> TokenStream {
         let own = match node {
