@@ -1,7 +1,6 @@
 //! Geometric Jacobians, speeds to twists, and their products with vectors; the map from speeds to the momentum about the centre of mass.
 
 use super::Recursive;
-use super::inverse::MOST_FREEDOMS;
 use super::readings::{Frame, Readings, read};
 use crate::mechanism::{StateError, WHOLE, check_size};
 use crate::spatial::fused::{apply, dot};
@@ -120,20 +119,18 @@ impl Recursive {
         check_size(WHOLE, "centroidal map", 6 * speeds, out.len())?;
         self.weigh(q);
         let center = Readings { recursive: self }.center_of_mass();
-        for (index, link) in self.links.iter().enumerate().rev() {
-            let own = &self.nodes[index];
-            let (placement, composite) = (own.motion.placement, own.rigid);
-            let mut momenta = [Vector6::zeros(); MOST_FREEDOMS];
-            let momenta = &mut momenta[..link.speeds.len()];
-            let columns = &self.columns[link.speeds.clone()];
-            link.joint.momenta(&composite, columns, momenta);
-            for (speed, momentum) in link.speeds.clone().zip(momenta) {
-                let seen = shift_wrench(momentum, &(placement.origin - center));
-                out[6 * speed..6 * speed + 6].copy_from_slice(seen.as_slice());
-            }
-            if let Some(parent) = link.parent {
-                let carried = composite.shifted(&placement.offset);
-                self.nodes[parent].rigid = self.nodes[parent].rigid.combine(&carried);
+        self.compose();
+        for (link, node) in self.links.iter().zip(&self.nodes) {
+            let speeds = link.speeds.clone();
+            let (columns, momenta) = (
+                &self.columns[speeds.clone()],
+                &mut self.momenta[speeds.clone()],
+            );
+            link.joint.momenta(&node.rigid, columns, momenta);
+            let out = out[6 * speeds.start..6 * speeds.end].chunks_exact_mut(6);
+            for (out, momentum) in out.zip(momenta) {
+                let seen = shift_wrench(momentum, &(node.motion.placement.origin - center));
+                out.copy_from_slice(seen.as_slice());
             }
         }
         Ok(())

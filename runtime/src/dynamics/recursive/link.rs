@@ -71,6 +71,13 @@ impl Link {
             last: false,
         }
     }
+
+    /// The body's own inertia in world axes, once it has been placed; no wrench.
+    #[inline(always)]
+    pub(super) fn turn(&self, node: &mut Node) {
+        node.rigid = self.inertia.rotated(&node.motion.placement.rotation);
+        node.wrench = Vector6::zeros();
+    }
 }
 
 /// The little that a walk from a body to the root needs of each body on its way.

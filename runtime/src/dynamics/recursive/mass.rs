@@ -184,26 +184,34 @@ impl Recursive {
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
         self.check(q, &[("rows of the mass matrix", mass.size)])?;
         self.weigh(q);
-        for (index, link) in self.links.iter().enumerate().rev() {
-            // By reference: a copy would wait for the stores that the child has just made.
-            let own = &self.nodes[index].rigid;
-            let mut momenta = [Vector6::zeros(); MOST_FREEDOMS];
-            let momenta = &mut momenta[..link.speeds.len()];
-            let columns = &self.columns[link.speeds.clone()];
-            link.joint.momenta(own, columns, momenta);
-            for (speed, momentum) in link.speeds.clone().zip(momenta) {
+        self.compose();
+        // In sweeps of their own, so that none loads what has just been stored.
+        for (link, node) in self.links.iter().zip(&self.nodes) {
+            let speeds = link.speeds.clone();
+            let (columns, momenta) = (&self.columns[speeds.clone()], &mut self.momenta[speeds]);
+            link.joint.momenta(&node.rigid, columns, momenta);
+        }
+        for (index, link) in self.links.iter().enumerate() {
+            for speed in link.speeds.clone() {
                 let row = &mut mass.rows[speed * mass.size..=speed * mass.size + speed];
-                self.fill_row(row, index, momentum);
+                self.fill_row(row, index, &self.momenta[speed]);
             }
             for (speed, armature) in link.speeds.clone().zip(&link.armature) {
                 mass.rows[speed * mass.size + speed] += armature;
             }
+        }
+        Ok(())
+    }
+
+    /// Inward, after [`Recursive::weigh`]: the rigid inertia of each body and of all that hangs on it.
+    pub(super) fn compose(&mut self) {
+        for (index, link) in self.links.iter().enumerate().rev() {
             if let Some(parent) = link.parent {
-                let carried = own.shifted(&self.nodes[index].motion.placement.offset);
+                let own = &self.nodes[index];
+                let carried = own.rigid.shifted(&own.motion.placement.offset);
                 self.nodes[parent].rigid = self.nodes[parent].rigid.combine(&carried);
             }
         }
-        Ok(())
     }
 
     /// M̄⁻¹ at `q` into `inverse`, column by column with the factors of the articulated inertias.
@@ -256,33 +264,35 @@ impl Recursive {
     pub(super) fn fill_row(&self, row: &mut [f64], mut body: usize, momentum: &Vector6<f64>) {
         let (mut moment, force) = split(momentum);
         let own = self.rungs[body].start..row.len();
-        self.fill_block(row, own, true, &moment, &force);
+        self.fill_block(row, body, own, &moment, &force);
         while let Some(parent) = self.rungs[body].parent {
             let offset = &self.nodes[body].motion.placement.offset;
             moment = add_cross(&moment, offset, &force);
-            let rung = &self.rungs[parent];
-            if rung.turns_once {
-                let (angular, _) = split(&self.columns[rung.start]);
-                row[rung.start] = dot(&angular, &moment);
-            } else {
-                self.fill_block(row, rung.start..rung.end, rung.slides, &moment, &force);
-            }
+            let speeds = self.rungs[parent].start..self.rungs[parent].end;
+            self.fill_block(row, parent, speeds, &moment, &force);
             body = parent;
         }
     }
 
     /// `X_kᵀ F` for the speeds k of one joint.
+    #[inline(always)]
     fn fill_block(
         &self,
         row: &mut [f64],
+        body: usize,
         speeds: Range<usize>,
-        slides: bool,
         moment: &Vector3<f64>,
         force: &Vector3<f64>,
     ) {
+        let rung = &self.rungs[body];
+        if rung.turns_once {
+            let (angular, _) = split(&self.columns[rung.start]);
+            row[rung.start] = dot(&angular, moment);
+            return;
+        }
         for (entry, column) in row[speeds.clone()].iter_mut().zip(&self.columns[speeds]) {
             let (angular, linear) = split(column);
-            *entry = match slides {
+            *entry = match rung.slides {
                 true => dot(&angular, moment) + dot(&linear, force),
                 false => dot(&angular, moment),
             };

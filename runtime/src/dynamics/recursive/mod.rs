@@ -47,6 +47,8 @@ pub struct Recursive {
     nodes: Vec<Node>,
     /// X̄, one column a speed.
     columns: Vec<Vector6<f64>>,
+    /// Composite momenta of the columns, one a speed.
+    momenta: Vec<Vector6<f64>>,
     inertias: Vec<ArticulatedInertia<f64>>,
     pivots: Vec<Pivot<f64>>,
     loads: Vec<f64>,
@@ -77,6 +79,7 @@ impl Recursive {
             nodes: vec![world.clone(); count],
             world,
             columns: vec![Vector6::zeros(); speeds],
+            momenta: vec![Vector6::zeros(); speeds],
             inertias: vec![ArticulatedInertia::zero(); count],
             pivots: vec![Pivot::zero(); speeds],
             loads: vec![0.0; speeds],

@@ -37,8 +37,13 @@ impl Recursive {
             let q = &q[link.configuration.clone()];
             let columns = &mut self.columns[link.speeds.clone()];
             link.joint.stand(q, &link.frame, from, to, columns);
-            own.rigid = link.inertia.rotated(&to.rotation);
-            own.wrench = Vector6::zeros();
+            // The body before: to load what a joint has just stored is to wait for it.
+            if let Some(last) = index.checked_sub(1) {
+                self.links[last].turn(&mut self.nodes[last]);
+            }
+        }
+        if let (Some(link), Some(node)) = (self.links.last(), self.nodes.last_mut()) {
+            link.turn(node);
         }
     }
 
