@@ -115,7 +115,11 @@ impl Stepper {
         let mut worst = (0.0, 0);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
             let ranges = body.ranges();
-            let local = ranges.freedoms.clone().map(|i| sum(&|rates| rates.phi[i]));
+            // No sum resolves a part of a step that is longer than 1 better than relative to it.
+            let local = ranges
+                .freedoms
+                .clone()
+                .map(|i| sum(&|rates| rates.phi[i]) / self.phi[i].abs().max(1.0));
             let rates = ranges.speeds.clone().map(|i| {
                 let scale = self.y[i].abs().max(self.next_y[i].abs()).max(self.units[i]);
                 sum(&|rates| rates.y[i]) / scale
