@@ -105,12 +105,14 @@ impl Stepper {
     /// The largest `unit · Σ weights · rates`, in units of ϕ and y, and the joint that has it.
     fn largest(&self, flow: &Flow<'_>, unit: f64, weights: &[f64]) -> (f64, usize) {
         let sum = |entry: &dyn Fn(&Rates) -> f64| {
-            let terms = weights.iter().zip(&self.stages);
-            (unit
-                * terms
-                    .map(|(weight, rates)| weight * entry(rates))
-                    .sum::<f64>())
-            .abs()
+            let (mut sum, mut size) = (0.0_f64, 0.0);
+            for (weight, rates) in weights.iter().zip(&self.stages) {
+                let term = weight * entry(rates);
+                sum += term;
+                size += term.abs();
+            }
+            // What rounding makes of terms that cancel is no error of the step.
+            unit * (sum.abs() - 2.0 * f64::EPSILON * size).max(0.0)
         };
         let mut worst = (0.0, 0);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
