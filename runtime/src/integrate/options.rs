@@ -24,7 +24,7 @@ pub enum Method {
     },
     /// Dormand and Prince's pair of order 5(4) with step control.
     DormandPrince {
-        /// Error allowed a step: absolute in ϕ, relative in speeds (to max(1 SI unit, |v̄|)) and in momenta (to the
+        /// Error allowed a step: absolute in ϕ (relative to a ϕ above 1), relative in speeds (to max(1 SI unit, |v̄|)) and in momenta (to the
         /// momentum of such speeds).
         tolerance: f64,
         /// Longest step, s; infinity for none.

@@ -105,17 +105,23 @@ impl Stepper {
     /// The largest `unit · Σ weights · rates`, in units of ϕ and y, and the joint that has it.
     fn largest(&self, flow: &Flow<'_>, unit: f64, weights: &[f64]) -> (f64, usize) {
         let sum = |entry: &dyn Fn(&Rates) -> f64| {
-            let terms = weights.iter().zip(&self.stages);
-            (unit
-                * terms
-                    .map(|(weight, rates)| weight * entry(rates))
-                    .sum::<f64>())
-            .abs()
+            let (mut sum, mut size) = (0.0_f64, 0.0);
+            for (weight, rates) in weights.iter().zip(&self.stages) {
+                let term = weight * entry(rates);
+                sum += term;
+                size += term.abs();
+            }
+            // What rounding makes of terms that cancel is no error of the step.
+            unit * (sum.abs() - 2.0 * f64::EPSILON * size).max(0.0)
         };
         let mut worst = (0.0, 0);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
             let ranges = body.ranges();
-            let local = ranges.freedoms.clone().map(|i| sum(&|rates| rates.phi[i]));
+            // No sum resolves a part of a step that is longer than 1 better than relative to it.
+            let local = ranges
+                .freedoms
+                .clone()
+                .map(|i| sum(&|rates| rates.phi[i]) / self.phi[i].abs().max(1.0));
             let rates = ranges.speeds.clone().map(|i| {
                 let scale = self.y[i].abs().max(self.next_y[i].abs()).max(self.units[i]);
                 sum(&|rates| rates.y[i]) / scale
