@@ -11,6 +11,8 @@ pub trait Measured: Scalar {
     const NAME: &'static str;
     /// One unit in the last place of 1.
     const ULP: f64;
+    /// The smallest number with all its digits.
+    const NORMAL: f64;
     /// The smallest positive number: nothing is more accurate than this.
     const TINY: f64;
     /// Decimal exponent of the smallest arguments: their products still are numbers.
@@ -24,6 +26,7 @@ pub trait Measured: Scalar {
 impl Measured for f64 {
     const NAME: &'static str = "f64";
     const ULP: f64 = f64::EPSILON;
+    const NORMAL: f64 = f64::MIN_POSITIVE;
     const TINY: f64 = 5e-324;
     const SMALLEST: f64 = -300.0;
     fn round(value: f64) -> f64 {
@@ -37,6 +40,7 @@ impl Measured for f64 {
 impl Measured for f32 {
     const NAME: &'static str = "f32";
     const ULP: f64 = f32::EPSILON as f64;
+    const NORMAL: f64 = f32::MIN_POSITIVE as f64;
     const TINY: f64 = 1.401_298_464_324_817e-45;
     const SMALLEST: f64 = -36.0;
     fn round(value: f64) -> f64 {

@@ -1,7 +1,8 @@
 //! How accurate compiled kernels are: against their definitions in 256 bits, in units of the last place.
 //!
 //! The reference is made from the spec alone: H, Φ, X, A and S̄ as it declares them, and the defining equations (17), (23), (28)
-//! and (31), by exact truncated polynomials in ϕ, read once into a [`Program`] that is run at every point. Nothing that the generator derives enters.
+//! and (31), by exact truncated polynomials in ϕ, read once into a [`Program`] that is run at every point. Nothing that the generator
+//! derives enters.
 //!
 //! **Unit.** A kernel's entry is measured in ulp of the largest summand of its definition: [`Tracked`] carries that size along. A
 //! value found by solving a system is measured against how far relative errors of one ulp in the system's entries move it. A

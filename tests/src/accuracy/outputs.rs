@@ -135,6 +135,7 @@ fn with_cases<J, const N: usize, const K: usize, const S: usize, const C: usize>
     let definition = Definition::new(derived, &parameters);
     let range = Range {
         smallest: -300.0,
+        normal: f64::MIN_POSITIVE,
         round: |value| value,
     };
     let mut points = Points::new(&definition, range, 99);

@@ -46,6 +46,8 @@ pub struct Case {
 pub struct Range {
     /// Decimal exponent of the smallest numbers.
     pub smallest: f64,
+    /// The smallest number with all its digits.
+    pub normal: f64,
     /// Rounds to the type.
     pub round: fn(f64) -> f64,
 }
@@ -80,7 +82,7 @@ impl<'a> Points<'a> {
         let (exact, q) = loop {
             let exact = self.configuration(extreme);
             let q: Vec<f64> = exact.iter().map(|x| self.rounded(*x)).collect();
-            if self.is_allowed(&q) {
+            if self.is_relative(&exact) && self.is_allowed(&q) {
                 break (exact, q);
             }
         };
@@ -96,6 +98,13 @@ impl<'a> Points<'a> {
             speeds: self.numbers(self.definition.speeds()),
             wrench: self.numbers(6),
         }
+    }
+
+    /// Whether every scalar of Q is rounded relatively: one below the normal numbers would leave the manifold by more than an ulp of
+    /// what its relations add up, and a kernel that uses them would not know.
+    fn is_relative(&self, exact: &[Wide]) -> bool {
+        let kept = |x: &Wide| x.is_zero() || x.abs().to_f64() >= self.range.normal;
+        exact.iter().all(kept)
     }
 
     fn rounded(&self, value: Wide) -> f64 {

@@ -41,6 +41,7 @@ where
     };
     let range = Range {
         smallest: T::SMALLEST,
+        normal: T::NORMAL,
         round: T::round,
     };
     let mut points = Points::new(&definition, range, 0);
