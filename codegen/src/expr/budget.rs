@@ -16,7 +16,7 @@ thread_local! {
 pub struct Exhausted {
     /// The bound, in term operations.
     pub limit: u64,
-    /// What was being worked on, as [`begin`] named it.
+    /// What was being worked on, as `begin` named it.
     pub task: &'static str,
 }
 

@@ -18,6 +18,7 @@ pub use drive::{Drive, Law};
 pub use error::ElementError;
 pub use joint::{JointDamper, JointEffort};
 pub use spring::{JointSpring, RotationSpring};
+pub(crate) use view::MotionList;
 pub use view::{Action, Motions, View};
 
 use crate::mechanism::Mechanism;

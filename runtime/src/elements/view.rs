@@ -5,6 +5,7 @@ use crate::mechanism::Mechanism;
 use crate::spatial::fused::{add_cross, apply, cross};
 use crate::spatial::{Pose, split};
 use crate::steps::Placement;
+use alloc::vec::Vec;
 use core::fmt::Debug;
 use nalgebra::{Vector3, Vector6};
 
@@ -14,6 +15,20 @@ pub trait Motions {
     fn placement(&self, body: usize) -> &Placement<f64>;
     /// Its twist.
     fn twist(&self, body: usize) -> &Vector6<f64>;
+}
+
+/// Placements and twists in a list of their own.
+#[derive(Clone, Debug)]
+pub(crate) struct MotionList(pub(crate) Vec<(Placement<f64>, Vector6<f64>)>);
+
+impl Motions for MotionList {
+    fn placement(&self, body: usize) -> &Placement<f64> {
+        &self.0[body].0
+    }
+
+    fn twist(&self, body: usize) -> &Vector6<f64> {
+        &self.0[body].1
+    }
 }
 
 /// A mechanism at one state.

@@ -2,7 +2,7 @@
 
 use super::check::{WHOLE, check_size};
 use super::{Body, Mechanism, StateError};
-use crate::elements::{Motions, View};
+use crate::elements::{MotionList, View};
 use crate::spatial::{Pose, SpatialInertia, join, split};
 use crate::steps::Placement;
 use alloc::vec::Vec;
@@ -56,35 +56,21 @@ impl BodyState {
 }
 
 /// The joint-child frames behind the states of bodies, as elements see them.
-struct JointFrames(Vec<(Placement<f64>, Vector6<f64>)>);
-
-impl JointFrames {
-    fn new(bodies: &[Body], states: &[BodyState]) -> Self {
-        let frames = bodies.iter().zip(states).map(|(body, state)| {
-            let pose = state.pose.compose(&body.child_placement().inverse());
-            let placement = Placement {
-                rotation: pose.rotation,
-                origin: pose.translation,
-                // Elements see no parents.
-                offset: Vector3::zeros(),
-            };
-            let twist = body.child_placement().act_twist(&state.twist);
-            let (angular, linear) = split(&twist);
-            let turned = join(&(pose.rotation * angular), &(pose.rotation * linear));
-            (placement, turned)
-        });
-        Self(frames.collect())
-    }
-}
-
-impl Motions for JointFrames {
-    fn placement(&self, body: usize) -> &Placement<f64> {
-        &self.0[body].0
-    }
-
-    fn twist(&self, body: usize) -> &Vector6<f64> {
-        &self.0[body].1
-    }
+fn joint_frames(bodies: &[Body], states: &[BodyState]) -> MotionList {
+    let frames = bodies.iter().zip(states).map(|(body, state)| {
+        let pose = state.pose.compose(&body.child_placement().inverse());
+        let placement = Placement {
+            rotation: pose.rotation,
+            origin: pose.translation,
+            // Elements see no parents.
+            offset: Vector3::zeros(),
+        };
+        let twist = body.child_placement().act_twist(&state.twist);
+        let (angular, linear) = split(&twist);
+        let turned = join(&(pose.rotation * angular), &(pose.rotation * linear));
+        (placement, turned)
+    });
+    MotionList(frames.collect())
 }
 
 /// All bodies at one state of a mechanism.
@@ -166,7 +152,7 @@ impl Mechanism {
     }
 
     fn element_energy(&self, q: &[f64], speeds: &[f64], bodies: &[BodyState]) -> f64 {
-        let motions = JointFrames::new(&self.bodies, bodies);
+        let motions = joint_frames(&self.bodies, bodies);
         let view = View {
             mechanism: self,
             configuration: q,

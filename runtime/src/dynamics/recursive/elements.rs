@@ -3,11 +3,10 @@
 use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
 use super::link::Node;
-use crate::elements::{Action, Motions, View};
+use crate::elements::{Action, MotionList, Motions, View};
 use crate::mechanism::StateError;
 use crate::steps::Placement;
 use alloc::sync::Arc;
-use alloc::vec::Vec;
 use nalgebra::Vector6;
 
 /// The nodes as elements see them.
@@ -28,18 +27,13 @@ impl Recursive {
     ///
     /// # Errors
     /// When a vector has the wrong size.
-    pub(crate) fn motions(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-    ) -> Result<Vec<(Placement<f64>, Vector6<f64>)>, StateError> {
+    pub(crate) fn motions(&mut self, q: &[f64], speeds: &[f64]) -> Result<MotionList, StateError> {
         self.check(q, &[("speeds", speeds.len())])?;
         self.weigh(q);
         self.set_twists(speeds);
         let motions = self.nodes.iter().map(|node| &node.motion);
-        Ok(motions
-            .map(|motion| (motion.placement, motion.twist))
-            .collect())
+        let pairs = motions.map(|motion| (motion.placement, motion.twist));
+        Ok(MotionList(pairs.collect()))
     }
 
     /// What elements exert at the placements and twists of the nodes: wrenches into `external`, `S̄ᵀ` of their efforts and of `efforts` into

@@ -3,28 +3,13 @@
 use super::tree::Tree;
 use super::{Expansion, StateError};
 use crate::dynamics::Recursive;
-use crate::elements::{Action, Motions, View};
+use crate::elements::{Action, View};
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::apply_transposed;
 use crate::spatial::{join, split};
-use crate::steps::Placement;
 use alloc::sync::Arc;
 use alloc::vec;
-use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector, Vector6};
-
-/// Where elements see the bodies: from the recursive form, whose kinematics are tested against others.
-struct Seen(Vec<(Placement<f64>, Vector6<f64>)>);
-
-impl Motions for Seen {
-    fn placement(&self, body: usize) -> &Placement<f64> {
-        &self.0[body].0
-    }
-
-    fn twist(&self, body: usize) -> &Vector6<f64> {
-        &self.0[body].1
-    }
-}
 
 /// What the elements of a mechanism amount to at one state.
 pub(super) struct ElementForces {
@@ -48,7 +33,8 @@ impl ElementForces {
         if mechanism.elements().is_empty() {
             return Ok(forces);
         }
-        let motions = Seen(Recursive::new(Arc::clone(mechanism)).motions(q, speeds)?);
+        // Elements see the bodies where the recursive form has them: its kinematics are tested against others.
+        let motions = Recursive::new(Arc::clone(mechanism)).motions(q, speeds)?;
         let view = View {
             mechanism,
             configuration: q,
