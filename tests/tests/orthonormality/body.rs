@@ -61,6 +61,10 @@ impl<const K: usize> Dynamics for OneBody<K> {
         &self.mechanism
     }
 
+    fn complete_speeds(&mut self, _q: &[f64], _speeds: &mut [f64]) -> Result<(), DynamicsError> {
+        Ok(())
+    }
+
     fn accelerations(
         &mut self,
         q: &[f64],
