@@ -22,8 +22,8 @@ pub fn load(name: &str) -> Scene {
     Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// Every scene of the folder, in the order of their names: a new file enters by itself. Not those with a reference of their own in
-/// `data/motions`: the test `motions` holds them to that, fast and driven ones among them.
+/// Every scene of the folder on which gravity alone acts, in the order of their names: a new file enters by itself. Not those with a
+/// reference of their own in `data/motions`, which the test `motions` holds to that, nor those of the test `coupled_scenes`.
 ///
 /// # Panics
 /// Where one does not load.
@@ -39,7 +39,14 @@ pub fn all() -> Vec<Scene> {
     let mut names: Vec<String> = names.collect();
     names.retain(|name| !references.join(format!("{name}.json")).exists());
     names.sort();
-    names.iter().map(|name| load(name)).collect()
+    let mut scenes: Vec<Scene> = names.iter().map(|name| load(name)).collect();
+    scenes.retain(|scene| {
+        let mechanism = &scene.mechanism;
+        mechanism.elements().is_empty()
+            && mechanism.drives().is_empty()
+            && mechanism.constraints().is_empty()
+    });
+    scenes
 }
 
 /// The motion of a scene from its initial state, on the reference form and without inputs, to the last of the sample times.
