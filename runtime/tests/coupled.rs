@@ -3,12 +3,12 @@
 mod common;
 
 use common::random::Random;
+use common::readings::{assert_same, readings};
 use common::trees::{configuration, trees};
 use hamel::dynamics::{Dynamics, Recursive, Reference};
 use hamel::elements::PointConstraint;
 use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
 use hamel::mechanism::Mechanism;
-use nalgebra::DVector;
 use std::sync::Arc;
 
 /// Rounding of the trees, times the condition of the constraints, whose pivots are above 1e-3 here.
@@ -62,40 +62,19 @@ fn cases() -> Vec<Case> {
 }
 
 fn same(found: &[f64], expected: &[f64], what: &str) {
-    let (found, expected) = (
-        DVector::from_column_slice(found),
-        DVector::from_column_slice(expected),
-    );
-    let error = (&found - &expected).amax() / expected.amax().max(1.0);
-    assert!(error < ROUNDING, "{what}: {error:e}");
+    assert_same(found, expected, ROUNDING, what);
 }
 
-fn readings(dynamics: &mut dyn Dynamics, case: &Case) -> Vec<f64> {
-    let (q, v, tau) = (&case.q, &case.speeds, &case.efforts);
-    let mut completed = v.clone();
+/// The speeds completed from the independent ones, and all readings after them.
+fn completed_readings(dynamics: &mut dyn Dynamics, case: &Case) -> Vec<f64> {
+    let mut all = case.speeds.clone();
     for &speed in case.mechanism.dependent_speeds() {
-        completed[speed] = 0.0;
+        all[speed] = 0.0;
     }
     dynamics
-        .complete_speeds(q, &mut completed)
+        .complete_speeds(&case.q, &mut all)
         .expect("determined");
-    let mut all = completed;
-    let mut out = vec![0.0; v.len()];
-    dynamics
-        .accelerations(q, v, tau, &mut out)
-        .expect("regular");
-    all.extend(&out);
-    let mut momenta = vec![0.0; v.len()];
-    dynamics.momenta(q, v, &mut momenta).expect("sizes fit");
-    all.extend(&momenta);
-    let mut speeds = vec![0.0; v.len()];
-    let mut efforts = |_: &[f64], into: &mut [f64]| into.copy_from_slice(tau);
-    dynamics
-        .momentum_rates(q, &momenta, &mut efforts, &mut speeds, &mut out)
-        .expect("regular");
-    all.extend(&speeds);
-    all.extend(&out);
-    all.push(dynamics.hamiltonian(q, &momenta).expect("regular"));
+    all.extend(readings(dynamics, &case.q, &case.speeds, &case.efforts));
     all
 }
 
@@ -104,8 +83,8 @@ fn theorem_3_in_full_is_the_recursion() {
     let cases = cases();
     assert!(cases.len() > 8, "most trees can take a constraint");
     for case in cases {
-        let found = readings(&mut Recursive::new(Arc::clone(&case.mechanism)), &case);
-        let expected = readings(&mut Reference::new(Arc::clone(&case.mechanism)), &case);
+        let found = completed_readings(&mut Recursive::new(Arc::clone(&case.mechanism)), &case);
+        let expected = completed_readings(&mut Reference::new(Arc::clone(&case.mechanism)), &case);
         same(
             &found,
             &expected,

@@ -3,6 +3,7 @@
 mod common;
 
 use common::random::Random;
+use common::readings::{assert_same, readings};
 use common::trees::{configuration, trees};
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
 use hamel::elements::{
@@ -134,34 +135,7 @@ fn driven(mechanism: Mechanism) -> Mechanism {
 }
 
 fn same(found: &[f64], expected: &[f64], what: &str) {
-    let (found, expected) = (
-        DVector::from_column_slice(found),
-        DVector::from_column_slice(expected),
-    );
-    let error = (&found - &expected).amax() / expected.amax().max(1.0);
-    assert!(error < ROUNDING, "{what}: {error:e}");
-}
-
-/// Accelerations, momenta, speeds, momentum rates and energy, one after the other.
-fn readings(dynamics: &mut dyn Dynamics, q: &[f64], v: &[f64], tau: &[f64]) -> Vec<f64> {
-    let mut all = Vec::new();
-    let mut out = vec![0.0; v.len()];
-    dynamics
-        .accelerations(q, v, tau, &mut out)
-        .expect("regular");
-    all.extend(&out);
-    let mut momenta = vec![0.0; v.len()];
-    dynamics.momenta(q, v, &mut momenta).expect("sizes fit");
-    all.extend(&momenta);
-    let mut speeds = vec![0.0; v.len()];
-    let mut efforts = |_: &[f64], into: &mut [f64]| into.copy_from_slice(tau);
-    dynamics
-        .momentum_rates(q, &momenta, &mut efforts, &mut speeds, &mut out)
-        .expect("regular");
-    all.extend(&speeds);
-    all.extend(&out);
-    all.push(dynamics.hamiltonian(q, &momenta).expect("regular"));
-    all
+    assert_same(found, expected, ROUNDING, what);
 }
 
 #[test]

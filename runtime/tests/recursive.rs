@@ -3,6 +3,7 @@
 mod common;
 
 use common::random::Random;
+use common::readings::assert_same;
 use common::trees::{configuration, trees};
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
 use hamel::mechanism::Mechanism;
@@ -36,14 +37,8 @@ fn cases() -> impl Iterator<Item = Case> {
     })
 }
 
-/// Largest difference relative to the largest entry.
-fn assert_same(found: &[f64], expected: &[f64], what: &str) {
-    let (found, expected) = (
-        DVector::from_column_slice(found),
-        DVector::from_column_slice(expected),
-    );
-    let error = (&found - &expected).amax() / expected.amax().max(1.0);
-    assert!(error < ROUNDING, "{what}: {error:e}");
+fn same(found: &[f64], expected: &[f64], what: &str) {
+    assert_same(found, expected, ROUNDING, what);
 }
 
 impl Case {
@@ -52,7 +47,7 @@ impl Case {
         let mut reference = self.reference.clone();
         let found = run(self, &mut recursive);
         let expected = run(self, &mut reference);
-        assert_same(&found, &expected, what);
+        same(&found, &expected, what);
     }
 
     fn zeros(&self) -> Vec<f64> {
@@ -119,7 +114,7 @@ fn mass_matrix_and_its_factors_agree() {
         case.recursive
             .mass_matrix(&case.q, &mut mass)
             .expect("sizes fit");
-        assert_same(mass.matrix().as_slice(), expected.as_slice(), "mass matrix");
+        same(mass.matrix().as_slice(), expected.as_slice(), "mass matrix");
 
         mass.factorize(&case.mechanism).expect("regular");
         let factors = mass.factors();
@@ -130,12 +125,12 @@ fn mass_matrix_and_its_factors_agree() {
         });
         let diagonal = nalgebra::DMatrix::from_diagonal(&factors.diagonal());
         let product = unit.transpose() * diagonal * &unit;
-        assert_same(product.as_slice(), expected.as_slice(), "LᵀDL");
+        same(product.as_slice(), expected.as_slice(), "LᵀDL");
 
         let solution = DVector::from_column_slice(&case.speeds);
         let mut x = (&expected * &solution).as_slice().to_vec();
         mass.solve(&mut x).expect("sizes fit");
-        assert_same(&x, &case.speeds, "solution");
+        same(&x, &case.speeds, "solution");
 
         let mut inverse = MassMatrix::new(&case.mechanism);
         case.recursive
@@ -143,6 +138,6 @@ fn mass_matrix_and_its_factors_agree() {
             .expect("regular");
         let identity = inverse.matrix() * &expected;
         let exact = nalgebra::DMatrix::<f64>::identity(size, size);
-        assert_same(identity.as_slice(), exact.as_slice(), "inverse");
+        same(identity.as_slice(), exact.as_slice(), "inverse");
     }
 }

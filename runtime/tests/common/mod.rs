@@ -5,4 +5,5 @@ pub mod derived;
 pub mod joints;
 pub mod polar;
 pub mod random;
+pub mod readings;
 pub mod trees;

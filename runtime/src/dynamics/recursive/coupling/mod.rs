@@ -4,12 +4,15 @@
 //! independent ones is fixed when the mechanism is made. The state has all speeds of the tree: entries of dependent ones are
 //! completed, their momenta and rates are 0.
 
+mod hamiltonian;
+mod lagrangian;
+
 use super::Recursive;
 use super::lu::Lu;
 use crate::dynamics::DynamicsError;
 use crate::mechanism::Mechanism;
-use crate::spatial::fused::{add_cross, apply, cross, dot};
-use crate::spatial::{bracket_dual_product, join, split};
+use crate::spatial::fused::{apply, cross};
+use crate::spatial::join;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{Cholesky, DMatrix, Vector3, Vector6};
@@ -225,80 +228,6 @@ impl Recursive {
         Ok(())
     }
 
-    /// v̄̇ under τ; see [`Recursive::coupled_rates`] for the way.
-    pub(super) fn coupled_accelerations(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        efforts: &[f64],
-        rates: &mut [f64],
-        coupling: &mut Coupling,
-    ) -> Result<(), DynamicsError> {
-        self.couple(q, coupling)?;
-        self.known_accelerations(q, speeds, efforts, coupling);
-        let known = core::mem::take(&mut coupling.whole);
-        let mut needed = core::mem::take(&mut coupling.other);
-        self.advance(q, speeds, Some(&known));
-        self.act(q, speeds, Some(efforts));
-        self.relieve();
-        self.gather(&mut needed);
-        self.add_armature(&known, &mut needed);
-        for (needed, force) in needed.iter_mut().zip(&self.forces) {
-            *needed = force - *needed;
-        }
-        let mut reduced = core::mem::take(&mut coupling.reduced);
-        coupling.reduce(&needed, &mut reduced);
-        let solved = self.solve_reduced(coupling, &mut reduced);
-        for (value, &speed) in reduced.iter_mut().zip(&coupling.independent) {
-            *value += known[speed];
-        }
-        coupling.scatter(&reduced, rates);
-        coupling.reduced = reduced;
-        (coupling.whole, coupling.other) = (known, needed);
-        solved
-    }
-
-    /// What is known of v̄̇ into `coupling.whole`: prescribed rates, and what the constraints ask of the dependent ones.
-    fn known_accelerations(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        efforts: &[f64],
-        coupling: &mut Coupling,
-    ) {
-        self.set_driven_rates(efforts);
-        self.advance(q, speeds, None);
-        let gravity = *self.mechanism.gravity();
-        for (row, value) in coupling.rows.iter().zip(&mut coupling.multipliers) {
-            *value = -self.velocity_product_of(row, &gravity);
-        }
-        coupling.lu.solve(&mut coupling.multipliers);
-        let mut whole = core::mem::take(&mut coupling.whole);
-        let prescribed = |j: usize| match coupling.driven[j] {
-            true => self.driven[coupling.independent[j]],
-            false => 0.0,
-        };
-        coupling.expand(prescribed, &mut whole);
-        for (&speed, &value) in coupling.dependent.iter().zip(&coupling.multipliers) {
-            whole[speed] += value;
-        }
-        coupling.whole = whole;
-    }
-
-    /// `Ȧᵀ v̄` of one constraint: `d · a_P + (ω × d) · v_P` at v̄̇ = 0.
-    fn velocity_product_of(&self, row: &Row, gravity: &Vector3<f64>) -> f64 {
-        let motion = &self.nodes[row.body].motion;
-        let (_, direction) = split(&row.wrench);
-        let arm = apply(&motion.placement.rotation, &row.point);
-        let ((omega, velocity), (alpha, rate)) = (split(&motion.twist), split(&motion.rate));
-        // The base accelerates with −g in the sweep; a point's acceleration is the rate of the frame's velocity plus ω × v.
-        let origin = add_cross(&(rate + gravity), &omega, &velocity);
-        let turned = add_cross(&origin, &alpha, &arm);
-        let acceleration = add_cross(&turned, &omega, &cross(&omega, &arm));
-        let at_point = add_cross(&velocity, &omega, &arm);
-        dot(&direction, &acceleration) + dot(&cross(&omega, &direction), &at_point)
-    }
-
     /// `(S̄ᵀMS̄)⁻¹ x` in place; entries of prescribed speeds become 0.
     fn solve_reduced(&self, coupling: &mut Coupling, x: &mut [f64]) -> Result<(), DynamicsError> {
         let mut mass = core::mem::replace(&mut coupling.mass, DMatrix::zeros(0, 0));
@@ -340,157 +269,5 @@ impl Recursive {
                 limit: 0.0,
             },
         )
-    }
-
-    /// `p̄ = S̄ᵀ M v̄`; entries of prescribed speeds are the speeds.
-    pub(super) fn coupled_momenta(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        momenta: &mut [f64],
-        coupling: &mut Coupling,
-    ) -> Result<(), DynamicsError> {
-        self.weigh(q);
-        self.find_basis(coupling)?;
-        let mut reduced = core::mem::take(&mut coupling.reduced);
-        self.tree_momenta(speeds, momenta);
-        coupling.reduce(momenta, &mut reduced);
-        coupling.scatter(&reduced, momenta);
-        coupling.reduced = reduced;
-        self.copy_driven(speeds, momenta);
-        Ok(())
-    }
-
-    /// v̄ from p̄; placements, own inertias and twists are those of the result.
-    pub(super) fn coupled_speeds(
-        &mut self,
-        q: &[f64],
-        momenta: &[f64],
-        speeds: &mut [f64],
-        coupling: &mut Coupling,
-    ) -> Result<(), DynamicsError> {
-        self.couple(q, coupling)?;
-        let mut reduced = core::mem::take(&mut coupling.reduced);
-        for (j, (value, &speed)) in reduced.iter_mut().zip(&coupling.independent).enumerate() {
-            // What prescribed speeds contribute to the momenta of the others is known.
-            let prescribed = coupling
-                .driven
-                .iter()
-                .enumerate()
-                .filter(|(_, driven)| **driven);
-            let carried =
-                prescribed.map(|(k, _)| coupling.mass[(j, k)] * momenta[coupling.independent[k]]);
-            *value = momenta[speed] - carried.sum::<f64>();
-        }
-        let solved = self.solve_reduced(coupling, &mut reduced);
-        for (j, value) in reduced.iter_mut().enumerate() {
-            if coupling.driven[j] {
-                *value = momenta[coupling.independent[j]];
-            }
-        }
-        coupling.expand(|j| reduced[j], speeds);
-        coupling.reduced = reduced;
-        self.set_twists(speeds);
-        solved
-    }
-
-    /// p̄̇ = S̄ᵀ ṗ + S̄̇ᵀ p, with p = M v̄ the momenta of the tree.
-    ///
-    /// `S̄̇ᵀp = −S̄ᵀ Ȧ μ` with `A_d μ = p_d`. Ȧμ obeys the recursion of the momenta, with `−Σ μ F` in place of G V and `Σ μ ad_Vᵀ F` in place of
-    /// the external wrench, F the wrenches of the constraints: so both go through one sweep.
-    pub(super) fn coupled_rates(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        rates: &mut [f64],
-        coupling: &mut Coupling,
-    ) {
-        let mut momenta = core::mem::take(&mut coupling.other);
-        self.tree_momenta(speeds, &mut momenta);
-        for (value, &speed) in coupling.multipliers.iter_mut().zip(&coupling.dependent) {
-            *value = momenta[speed];
-        }
-        coupling.lu.solve_transposed(&mut coupling.multipliers);
-        self.prepare_rates();
-        for (row, &weight) in coupling.rows.iter().zip(&coupling.multipliers) {
-            let node = &mut self.nodes[row.body];
-            let weighted = row.wrench * weight;
-            node.motion.rate += bracket_dual_product(&node.motion.twist, &weighted);
-            node.wrench -= weighted;
-        }
-        self.gather_rates(q, speeds, &mut momenta);
-        let mut reduced = core::mem::take(&mut coupling.reduced);
-        coupling.reduce(&momenta, &mut reduced);
-        coupling.scatter(&reduced, rates);
-        coupling.reduced = reduced;
-        coupling.other = momenta;
-    }
-
-    /// λ of the constraints that couple joints into `forces`, one entry a constraint: they act on the tree with efforts `S̄ᵀ`-wise `Aλ`.
-    ///
-    /// `rates` are the accelerations that [`Dynamics::accelerations`](crate::dynamics::Dynamics::accelerations) found for `efforts`.
-    ///
-    /// # Errors
-    /// A wrong size; constraints that no longer determine their speeds.
-    pub fn coupling_force(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        rates: &[f64],
-        efforts: &[f64],
-        forces: &mut [f64],
-    ) -> Result<(), DynamicsError> {
-        let count = self.mechanism.constraints().len();
-        crate::mechanism::check_size(
-            crate::mechanism::WHOLE,
-            "constraint forces",
-            count,
-            forces.len(),
-        )?;
-        self.check(q, &[("speeds", speeds.len()), ("rates", rates.len())])?;
-        self.check_efforts(efforts)?;
-        let Some(mut coupling) = self.coupling.take() else {
-            return Ok(());
-        };
-        let result = self.coupling_force_with(q, speeds, rates, efforts, forces, &mut coupling);
-        self.coupling = Some(coupling);
-        result
-    }
-
-    fn coupling_force_with(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        rates: &[f64],
-        efforts: &[f64],
-        forces: &mut [f64],
-        coupling: &mut Coupling,
-    ) -> Result<(), DynamicsError> {
-        self.weigh(q);
-        self.find_basis(coupling)?;
-        self.known_accelerations(q, speeds, efforts, coupling);
-        let known = core::mem::take(&mut coupling.whole);
-        let mut all = core::mem::take(&mut coupling.other);
-        // Known rates hold what the constraints ask at v̄̇ᵢ = prescribed; the rest follows S̄.
-        let rest = |j: usize| {
-            let speed = coupling.independent[j];
-            rates[speed] - known[speed]
-        };
-        coupling.expand(rest, &mut all);
-        for (all, known) in all.iter_mut().zip(&known) {
-            *all += known;
-        }
-        self.advance(q, speeds, Some(&all));
-        self.act(q, speeds, Some(efforts));
-        self.relieve();
-        let mut needed = known;
-        self.gather(&mut needed);
-        self.add_armature(&all, &mut needed);
-        for (force, &speed) in forces.iter_mut().zip(&coupling.dependent) {
-            *force = needed[speed] - self.forces[speed];
-        }
-        coupling.lu.solve_transposed(forces);
-        (coupling.whole, coupling.other) = (needed, all);
-        Ok(())
     }
 }
