@@ -7,7 +7,7 @@ use hamel_tests::figures::{Largest, attitude_error, vector_error};
 use hamel_tests::scenes;
 use serde_json::Value;
 
-const REFERENCE: &str = include_str!("data/plate_cart_arm.json");
+const REFERENCE: &str = include_str!("../../data/plate_cart_arm.json");
 
 /// What is asked for in every quantity. The scene's tolerance is 1e-12 a step; its 4 s take some 500 steps, and errors grow
 /// 35-fold on the way (the `conditioning` of the reference).

@@ -2,7 +2,7 @@
 //! what is accepted comes through its own text.
 //!
 //! `cargo test` takes a slice. The whole:
-//! `cargo test --release --package hamel-tests --test fuzz_scenes -- --ignored --nocapture --test-threads 1`. The environment
+//! `cargo test --release --package hamel-tests --test scenes fuzz -- --ignored --nocapture --test-threads 1`. The environment
 //! variables `FUZZ_FROM` and `FUZZ_COUNT` choose other numbers of inputs.
 
 use hamel::registry::JointRegistry;

@@ -2,7 +2,7 @@
 //!
 //! `cargo test` takes a few hundred points a joint. The sweep takes 10⁵ and puts each joint's rows into
 //! `tests/data/kernel_accuracy.csv` as soon as it is done:
-//! `cargo test --release --package hamel-tests --test kernel_accuracy -- --ignored --nocapture`. With `HAMEL_SWEEP=resume` it leaves
+//! `cargo test --release --package hamel-tests --test kernels sweep -- --ignored --nocapture`. With `HAMEL_SWEEP=resume` it leaves
 //! out joints whose rows are there already.
 
 use hamel::joint::Joint;

@@ -4,7 +4,7 @@ use hamel::scalar::{Dual, F64x4};
 use std::path::Path;
 use std::process::Command;
 
-#[path = "../no_std/src/kernels.rs"]
+#[path = "../../no_std/src/kernels.rs"]
 mod kernels;
 
 fn allocations(work: impl FnOnce()) -> u64 {

@@ -1,6 +1,6 @@
 //! The generator on broken input: no panic, no input that takes long, bounded memory.
 //!
-//! `cargo test` takes a slice. The whole: `cargo test --release --package hamel-tests --test fuzz -- --ignored --nocapture --test-threads 1`.
+//! `cargo test` takes a slice. The whole: `cargo test --release --package hamel-tests --test kernels fuzz -- --ignored --nocapture --test-threads 1`.
 
 use hamel_tests::fuzz::{Corpus, Mutator, check, pipeline, report, run};
 

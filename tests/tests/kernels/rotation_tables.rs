@@ -19,7 +19,7 @@ struct Row {
 }
 
 fn table() -> Vec<Row> {
-    let text = include_str!("data/so3_exp_log_dexp.json");
+    let text = include_str!("../../data/so3_exp_log_dexp.json");
     let table: serde_json::Value = serde_json::from_str(text).expect("the table is JSON");
     let numbers = |row: &serde_json::Value, key: &str| -> Vec<f64> {
         let list = row[key].as_array().expect("a list of numbers");

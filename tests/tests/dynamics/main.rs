@@ -1,0 +1,9 @@
+//! Dynamics of trees: both forms against each other, against other formulations and against other programs.
+
+mod allocation;
+mod chains;
+mod errata;
+mod euler_lagrange;
+mod random_trees;
+mod reference_form;
+mod robot_references;

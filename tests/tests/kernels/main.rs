@@ -1,0 +1,11 @@
+//! What the generator emits, joint by joint: laws, accuracy, the paper's examples, broken input.
+//!
+//! One program for all suites of a topic: each program links the whole library, which takes more time and disk than its tests.
+
+mod accuracy;
+mod fuzz_specs;
+mod laws;
+mod no_std;
+mod paper;
+mod rotation_tables;
+mod structure_constants;

@@ -1,0 +1,10 @@
+//! Scene files and robots: what is read, what is refused, and the motions that come of it.
+
+mod coupled_scenes;
+mod forms_agree;
+mod fuzz_scenes;
+mod motions;
+mod orthonormality;
+mod plate_cart_arm;
+mod robots;
+mod scene_files;
