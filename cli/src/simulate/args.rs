@@ -1,6 +1,7 @@
 //! The options of `hamel simulate`.
 
 use clap::{ArgGroup, ValueEnum};
+use hamel::integrate::Pair;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -11,7 +12,7 @@ Examples:
       the same motion from the port-Hamiltonian form, up to 10 s
   hamel simulate scenes/ball_pendulum.toml --method rk4 --dt 1e-3 --csv swing.csv
       with fixed steps, trajectory to swing.csv
-  hamel simulate scenes/heavy_top.toml --method dop853 --tol 1e-15
+  hamel simulate scenes/heavy_top.toml --method verner9 --tol 2e-16
       as accurate as doubles allow: order 8, and sums that lose no rounding
   hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
       the state at three times, as JSON on stdout
@@ -44,11 +45,11 @@ pub struct Args {
     #[arg(long, value_enum)]
     pub form: Option<FormName>,
 
-    /// Integration method: rk4 has fixed steps, dopri5 and dop853 control theirs
+    /// Integration method: rk4 has fixed steps, the others control theirs
     #[arg(long, value_enum)]
     pub method: Option<MethodName>,
 
-    /// Tolerance of one step of dopri5 or dop853, 1e-15 at least: absolute in angle, relative in rates; implies dopri5 where the method is rk4
+    /// Tolerance of one step of dopri5, dop853 or verner9, 1e-16 at least: absolute in angle, relative in rates; implies dopri5 where the method is rk4
     #[arg(
         long,
         value_name = "TOLERANCE",
@@ -115,4 +116,18 @@ pub enum MethodName {
     Dopri5,
     /// Dormand–Prince 8(5,3) on the joints' manifolds, step control: for tolerances below 1e-8 or so
     Dop853,
+    /// Verner 9(8) on the joints' manifolds, step control: for tolerances near rounding
+    Verner9,
+}
+
+impl MethodName {
+    /// The pair of that name; `None` for fixed steps.
+    pub const fn pair(self) -> Option<Pair> {
+        match self {
+            Self::Rk4 => None,
+            Self::Dopri5 => Some(Pair::DormandPrince),
+            Self::Dop853 => Some(Pair::DormandPrince8),
+            Self::Verner9 => Some(Pair::Verner9),
+        }
+    }
 }

@@ -141,7 +141,7 @@ fn print_json(plan: &Plan, solution: &Solution, statistics: Statistics) -> Resul
     json::print(&Report {
         scene: &plan.scene.name,
         form: plan.settings.form_name(),
-        method: plan.settings.method_name(),
+        method: plan.settings.method.name(),
         samples: &samples,
         statistics,
     })

@@ -2,7 +2,7 @@
 
 use super::args::{Args, FormName, MethodName};
 use crate::output::Failure;
-use hamel::integrate::{Form, Method};
+use hamel::integrate::{Control, Form, Method, Pair};
 use hamel_scene::Settings;
 
 /// The settings that `args` and the scene's `settings` make together.
@@ -34,33 +34,32 @@ fn method(scene: Method, args: &Args) -> Result<Method, Failure> {
         (Some(MethodName::Rk4), _, Some(_)) => {
             return refuse("--tol means nothing to rk4, whose accuracy is --dt".into());
         }
-        (Some(MethodName::Dopri5), Some(_), _) => {
-            return refuse("--dt means nothing to dopri5, whose accuracy is --tol".into());
+        (Some(MethodName::Rk4), _, None) | (None, Some(_), _) => None,
+        (Some(named), Some(_), _) => {
+            let name = named.pair().map_or("", Pair::name);
+            return refuse(format!(
+                "--dt means nothing to {name}, whose accuracy is --tol"
+            ));
         }
-        (Some(MethodName::Dop853), Some(_), _) => {
-            return refuse("--dt means nothing to dop853, whose accuracy is --tol".into());
-        }
-        (Some(named), _, _) => named,
-        (None, Some(_), _) => MethodName::Rk4,
-        (None, None, Some(_)) => controlled(scene),
+        (Some(named), None, _) => named.pair(),
+        (None, None, Some(_)) => Some(own_pair(scene)),
         (None, None, None) => return Ok(scene),
     };
     let (own_dt, own_tol) = accuracy(scene);
     let tol = tol.or(own_tol).unwrap_or(Settings::DEFAULT_TOL);
     Ok(match named {
-        MethodName::Rk4 => Method::Rk4 {
+        None => Method::Rk4 {
             dt: dt.or(own_dt).unwrap_or(Settings::DEFAULT_DT),
         },
-        MethodName::Dopri5 => Method::dormand_prince(tol),
-        MethodName::Dop853 => Method::dormand_prince_8(tol),
+        Some(pair) => Method::controlled(pair, tol),
     })
 }
 
 /// What a tolerance alone asks for: the scene's own method where that controls its step.
-const fn controlled(scene: Method) -> MethodName {
+const fn own_pair(scene: Method) -> Pair {
     match scene {
-        Method::Rk4 { .. } | Method::DormandPrince { .. } => MethodName::Dopri5,
-        Method::DormandPrince8 { .. } => MethodName::Dop853,
+        Method::Rk4 { .. } => Pair::DormandPrince,
+        Method::Controlled { pair, .. } => pair,
     }
 }
 
@@ -68,14 +67,12 @@ const fn controlled(scene: Method) -> MethodName {
 const fn accuracy(scene: Method) -> (Option<f64>, Option<f64>) {
     match scene {
         Method::Rk4 { dt } => (Some(dt), None),
-        Method::DormandPrince { tolerance, .. } | Method::DormandPrince8 { tolerance, .. } => {
-            (None, Some(tolerance))
-        }
+        Method::Controlled { control, .. } => (None, Some(control.tolerance)),
     }
 }
 
 fn tolerance(tol: f64) -> Result<f64, Failure> {
-    let (least, largest) = (Settings::LEAST_TOL, Settings::LARGEST_TOL);
+    let (least, largest) = (Control::LEAST_TOLERANCE, Control::LARGEST_TOLERANCE);
     let limit = format!("between {least:?} and {largest:?}");
     in_range("--tol", tol, (least..=largest).contains(&tol), &limit)
 }
@@ -129,7 +126,7 @@ mod tests {
     #[test]
     fn an_accuracy_implies_its_method_and_the_scene_fills_the_rest() {
         let (rk4, dopri5) = (Method::Rk4 { dt: 0.5 }, Method::dormand_prince(1e-5));
-        let dop853 = Method::dormand_prince_8(1e-12);
+        let dop853 = Method::controlled(Pair::DormandPrince8, 1e-12);
         let default_dt = Settings::DEFAULT_DT;
         for (scene, options, wanted) in [
             (rk4, "", rk4),
@@ -143,8 +140,16 @@ mod tests {
                 Method::dormand_prince(Settings::DEFAULT_TOL),
             ),
             (dopri5, "--method dopri5", dopri5),
-            (dopri5, "--method dop853", Method::dormand_prince_8(1e-5)),
-            (dop853, "--tol 1e-15", Method::dormand_prince_8(1e-15)),
+            (
+                dopri5,
+                "--method dop853",
+                Method::controlled(Pair::DormandPrince8, 1e-5),
+            ),
+            (
+                dop853,
+                "--tol 1e-15",
+                Method::controlled(Pair::DormandPrince8, 1e-15),
+            ),
             (dop853, "--dt 0.1", Method::Rk4 { dt: 0.1 }),
             (
                 rk4,

@@ -76,8 +76,8 @@ impl Summary<'_> {
         write!(f, "{bodies}, {freedoms}, {speeds}; {form} form; ")?;
         match settings.method {
             Method::Rk4 { dt } => writeln!(f, "rk4 with steps of {dt:?} s")?,
-            Method::DormandPrince { tolerance, .. } | Method::DormandPrince8 { tolerance, .. } => {
-                writeln!(f, "{} to {tolerance:e}", settings.method_name())?;
+            Method::Controlled { pair, control } => {
+                writeln!(f, "{} to {:e}", pair.name(), control.tolerance)?;
             }
         }
         writeln!(f, "state at {} s:", self.last.t)

@@ -76,7 +76,7 @@ impl<'a> Driver<'a> {
 
     /// Steps until the end, or until the observer breaks.
     pub(super) fn run(mut self, observer: &mut Observer<'_>) -> Result<Solution, IntegrateError> {
-        let mut pacing = self.pacing();
+        let mut pacing = self.pacing()?;
         let mut stopped = self.report(observer);
         while !stopped && self.clock.time() < self.options.t_end {
             self.advance(&mut pacing)?;
@@ -92,27 +92,31 @@ impl<'a> Driver<'a> {
         })
     }
 
-    fn pacing(&self) -> Pacing {
+    fn pacing(&mut self) -> Result<Pacing, IntegrateError> {
         let order = self.options.method.tableau().order;
         let step = match (self.options.method, self.options.method.control()) {
             (Method::Rk4 { dt }, _) => dt,
-            (_, Some(control)) => control
-                .first_step
-                .unwrap_or_else(|| self.first_step(control.tolerance, order))
-                .min(control.max_step),
+            (_, Some(control)) => {
+                let first = control
+                    .first_step
+                    .map_or_else(|| self.first_step(control.tolerance, order), Ok);
+                first?.min(control.max_step)
+            }
             (_, None) => self.options.t_end - self.start,
         };
-        Pacing {
+        Ok(Pacing {
             step,
             controller: Controller::new(order),
-        }
+        })
     }
 
     /// A step over which the state changes by about `tolerance^(1/order)`.
-    fn first_step(&self, tolerance: f64, order: u32) -> f64 {
+    fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
         let span = self.options.t_end - self.start;
         let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
-        (change / self.stepper.pace()).min(0.01 * span)
+        let pace = self.stepper.pace(&mut self.flow);
+        let pace = pace.map_err(|cause| self.at_state(cause))?;
+        Ok((change / pace).min(0.01 * span))
     }
 
     /// The next sample time, or the end.
@@ -166,7 +170,7 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
-        let (error, joint) = self.stepper.error(&self.flow, step, tolerance);
+        let (error, joint) = self.stepper.error(&mut self.flow, step, tolerance)?;
         if error.is_nan() || error > 1.0 {
             pacing.step = step * pacing.controller.reject(Some(error));
             return Err(self.inaccurate(joint, error));
@@ -222,12 +226,18 @@ impl<'a> Driver<'a> {
             self.clock.advance(step);
         }
         let time = self.clock.time();
-        if let Err(cause) = self.stepper.accept(&mut self.flow, time) {
-            let (cause, near) = (Box::new(cause), self.near());
-            return Err(IntegrateError::AtState { time, cause, near });
-        }
+        let accepted = self.stepper.accept(&mut self.flow, time);
+        accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
         Ok(())
+    }
+
+    fn at_state(&self, cause: StepFailure) -> IntegrateError {
+        IntegrateError::AtState {
+            time: self.clock.time(),
+            cause: Box::new(cause),
+            near: self.near(),
+        }
     }
 
     /// The joint that is nearest to a singular set of its own.

@@ -104,22 +104,18 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// What y of one unit of each speed amounts to: 1, or the diagonal of M̄.
-    pub(super) fn units(&mut self, q: &[f64]) -> Result<Vec<f64>, DynamicsError> {
-        let size = self.mechanism.layout().speeds;
-        let mut units = vec![1.0; size];
-        if self.form == Form::Hamiltonian {
-            let (mut unit, mut momenta) = (vec![0.0; size], vec![0.0; size]);
-            for i in 0..size {
-                unit[i] = 1.0;
-                self.dynamics.complete_speeds(q, &mut unit)?;
-                self.dynamics.momenta(q, &unit, &mut momenta)?;
-                // A dependent speed has no momentum of its own.
-                units[i] = if momenta[i] > 0.0 { momenta[i] } else { 1.0 };
-                unit.fill(0.0);
-            }
+    /// The v̄ that `y` amounts to at `q`.
+    pub(super) fn speeds_of(
+        &mut self,
+        q: &[f64],
+        y: &[f64],
+        speeds: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        match self.form {
+            Form::Lagrangian => speeds.copy_from_slice(y),
+            Form::Hamiltonian => self.dynamics.speeds(q, y, speeds)?,
         }
-        Ok(units)
+        Ok(())
     }
 
     /// Rates at time `time`, at `Φ(base, phi)` and `y`.
@@ -140,11 +136,11 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// Rates that differ from `rates` in their base point alone: now `q` itself, with ϕ = `zero`.
-    pub(super) fn recentre(&mut self, q: &[f64], zero: &[f64], rates: &mut Rates) {
+    /// Rates at `q` that differ from `rates` in their base points alone: now `base`, with `q = Φ(base, phi)`.
+    pub(super) fn recentre(&mut self, q: &[f64], base: &[f64], phi: &[f64], rates: &mut Rates) {
         self.configuration.copy_from_slice(q);
         for index in 0..self.mechanism.bodies().len() {
-            self.local_rates(index, q, zero, rates);
+            self.local_rates(index, base, phi, rates);
         }
     }
 

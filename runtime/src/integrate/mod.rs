@@ -16,10 +16,11 @@ mod residue;
 mod solution;
 mod stepper;
 mod tableau;
+mod verner;
 
 pub use approach::{Approach, Near};
 pub use error::{IntegrateError, StepFailure};
-pub use options::{Form, Method, Options};
+pub use options::{Control, Form, Method, Options, Pair};
 pub use solution::{Solution, State, Statistics, Step};
 pub use tableau::{Estimate, Tableau};
 

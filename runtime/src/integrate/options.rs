@@ -3,6 +3,7 @@
 use super::IntegrateError;
 use super::dop853::DORMAND_PRINCE_8;
 use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
+use super::verner::VERNER_9;
 use alloc::vec::Vec;
 
 /// Which equations of motion are integrated.
@@ -22,46 +23,83 @@ pub enum Method {
         /// Step, s.
         dt: f64,
     },
-    /// Dormand and Prince's pair of order 5(4) with step control.
-    DormandPrince {
-        /// Error allowed a step: absolute in ϕ (relative to a ϕ above 1), relative in speeds (to max(1 SI unit, |v̄|)) and in momenta (to the
-        /// momentum of such speeds).
-        tolerance: f64,
-        /// Longest step, s; infinity for none.
-        max_step: f64,
-        /// First step to try, s; `None` to estimate it.
-        first_step: Option<f64>,
+    /// An embedded pair with step control.
+    Controlled {
+        /// Which pair.
+        pair: Pair,
+        /// How accurate its steps shall be.
+        control: Control,
     },
-    /// Dormand and Prince's method of order 8(5,3) with step control, known as DOP853: for tolerances below 1e-8 or so.
-    DormandPrince8 {
-        /// Error allowed a step, as for [`Method::DormandPrince`].
-        tolerance: f64,
-        /// Longest step, s; infinity for none.
-        max_step: f64,
-        /// First step to try, s; `None` to estimate it.
-        first_step: Option<f64>,
-    },
+}
+
+/// Explicit methods with an estimate of their own error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pair {
+    /// Dormand and Prince's of order 5(4).
+    DormandPrince,
+    /// Dormand and Prince's of order 8(5,3), known as DOP853: for tolerances below 1e-8 or so.
+    DormandPrince8,
+    /// Verner's of order 9(8): for tolerances near rounding, which its result feels less than that of DOP853.
+    Verner9,
+}
+
+impl Pair {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::DormandPrince, Self::DormandPrince8, Self::Verner9];
+
+    /// As scenes and the command line write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::DormandPrince => "dopri5",
+            Self::DormandPrince8 => "dop853",
+            Self::Verner9 => "verner9",
+        }
+    }
+
+    /// Its coefficients.
+    pub const fn tableau(self) -> &'static Tableau {
+        match self {
+            Self::DormandPrince => &DORMAND_PRINCE,
+            Self::DormandPrince8 => &DORMAND_PRINCE_8,
+            Self::Verner9 => &VERNER_9,
+        }
+    }
 }
 
 /// What step control is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Control {
-    pub(super) tolerance: f64,
-    pub(super) max_step: f64,
-    pub(super) first_step: Option<f64>,
+pub struct Control {
+    /// Error allowed a step: absolute in ϕ (relative to a ϕ above 1), relative in speeds (to max(1 SI unit, |v̄|)) and in momenta
+    /// by what they do to the speeds.
+    pub tolerance: f64,
+    /// Longest step, s; infinity for none.
+    pub max_step: f64,
+    /// First step to try, s; `None` to estimate it.
+    pub first_step: Option<f64>,
 }
 
 impl Control {
     /// Least tolerance, below which rounding of the estimate decides.
-    const LEAST_TOLERANCE: f64 = 1e-15;
+    pub const LEAST_TOLERANCE: f64 = 1e-16;
+    /// Largest tolerance, beyond which a step says nothing.
+    pub const LARGEST_TOLERANCE: f64 = 0.1;
+
+    /// Nothing but a tolerance.
+    pub const fn to(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            max_step: f64::INFINITY,
+            first_step: None,
+        }
+    }
 
     fn check(&self) -> Result<(), IntegrateError> {
-        let allowed = self.tolerance >= Self::LEAST_TOLERANCE && self.tolerance <= 0.1;
+        let allowed = Self::LEAST_TOLERANCE..=Self::LARGEST_TOLERANCE;
         require(
             "tolerance",
             self.tolerance,
-            allowed,
-            "between 1e-15 and 0.1",
+            allowed.contains(&self.tolerance),
+            "between 1e-16 and 0.1",
         )?;
         require("max_step", self.max_step, self.max_step > 0.0, "positive")?;
         let first = self.first_step.unwrap_or(1.0);
@@ -71,21 +109,24 @@ impl Control {
 }
 
 impl Method {
-    /// Step control to `tolerance`, with nothing else prescribed.
+    /// Order 5 with step control to `tolerance`, with nothing else prescribed.
     pub const fn dormand_prince(tolerance: f64) -> Self {
-        Self::DormandPrince {
-            tolerance,
-            max_step: f64::INFINITY,
-            first_step: None,
+        Self::controlled(Pair::DormandPrince, tolerance)
+    }
+
+    /// A pair with step control to `tolerance`, with nothing else prescribed.
+    pub const fn controlled(pair: Pair, tolerance: f64) -> Self {
+        Self::Controlled {
+            pair,
+            control: Control::to(tolerance),
         }
     }
 
-    /// Order 8 with step control to `tolerance`, with nothing else prescribed.
-    pub const fn dormand_prince_8(tolerance: f64) -> Self {
-        Self::DormandPrince8 {
-            tolerance,
-            max_step: f64::INFINITY,
-            first_step: None,
+    /// As scenes and the command line write it.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Rk4 { .. } => "rk4",
+            Self::Controlled { pair, .. } => pair.name(),
         }
     }
 
@@ -93,29 +134,15 @@ impl Method {
     pub const fn tableau(&self) -> &'static Tableau {
         match self {
             Self::Rk4 { .. } => &CLASSICAL,
-            Self::DormandPrince { .. } => &DORMAND_PRINCE,
-            Self::DormandPrince8 { .. } => &DORMAND_PRINCE_8,
+            Self::Controlled { pair, .. } => pair.tableau(),
         }
     }
 
     /// What its step control is given, if it has any.
-    pub(super) const fn control(&self) -> Option<Control> {
+    pub const fn control(&self) -> Option<Control> {
         match *self {
             Self::Rk4 { .. } => None,
-            Self::DormandPrince {
-                tolerance,
-                max_step,
-                first_step,
-            }
-            | Self::DormandPrince8 {
-                tolerance,
-                max_step,
-                first_step,
-            } => Some(Control {
-                tolerance,
-                max_step,
-                first_step,
-            }),
+            Self::Controlled { control, .. } => Some(control),
         }
     }
 

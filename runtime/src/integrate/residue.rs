@@ -1,14 +1,14 @@
 //! What rounding takes from the state in one step is given back in the next.
 //!
-//! A sum of a million steps in doubles loses a millionfold of a rounding, or its root at best. Here every y, and every Q to which ϕ
-//! is added as it is, keeps what the sum was too coarse to take (W. Kahan; here with the exact remainder of D. E. Knuth). It
-//! belongs to the integration: the state that a caller sees is rounded.
+//! A sum of a million steps in doubles loses a millionfold of a rounding, or its root at best. Here every y and
+//! every ϕ keeps what the sum was too coarse to take (W. Kahan; here with the exact remainder of D. E. Knuth). It belongs to the
+//! integration: the state that a caller sees is rounded.
 
 use crate::mechanism::{Body, Mechanism};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// The exact state is that of `Φ(Q, phi)` and `y + residue.y`.
+/// The exact state is that of `Φ(base, ϕ + residue.phi)` and `y + residue.y`.
 #[derive(Clone, Debug)]
 pub(super) struct Residue {
     /// One entry a freedom.
@@ -27,15 +27,18 @@ impl Residue {
         }
     }
 
-    /// What of `phi` is lost from `old` to `new` where the two add up.
-    pub(super) fn keep(&mut self, mechanism: &Mechanism, old: &[f64], new: &[f64], phi: &[f64]) {
-        for body in mechanism.bodies().iter().filter(|body| adds(body)) {
-            let (q, freedoms) = (body.ranges().configuration.clone(), &body.ranges().freedoms);
-            for (q, i) in q.zip(freedoms.clone()) {
-                let (sum, lost) = add_exactly(old[q], phi[i]);
-                // Any other Φ of flat coordinates, and a projection that moves them, show here.
-                self.phi[i] = if sum == new[q] { lost } else { 0.0 };
-            }
+    /// Turns the residue of `phi` at the base point `old` into that of ϕ = 0 at `new`: where the two add up, with what is lost
+    /// of their sum.
+    pub(super) fn keep(&mut self, body: &Body, old: &[f64], new: &[f64], phi: &[f64]) {
+        let own = &mut self.phi[body.ranges().freedoms.clone()];
+        if !adds(body) {
+            own.fill(0.0);
+            return;
+        }
+        for (i, rest) in own.iter_mut().enumerate() {
+            let (sum, lost) = add_exactly(old[i], phi[i]);
+            // Any other Φ of flat coordinates, and a projection that moves them, show here.
+            *rest = if sum == new[i] { lost + *rest } else { 0.0 };
         }
     }
 }

@@ -3,9 +3,9 @@
 use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::tree;
-use crate::support::{distance, fixed_steps, fixed_steps_8, mixed, options, run, start};
+use crate::support::{distance, fixed_steps, fixed_steps_of, mixed, options, run, start};
 use hamel::dynamics::Reference;
-use hamel::integrate::{Form, Method, integrate, no_observer};
+use hamel::integrate::{Form, Method, Pair, integrate, no_observer};
 use std::sync::Arc;
 
 #[test]
@@ -15,7 +15,11 @@ fn methods_have_their_order_in_both_forms() {
     let reference = run(
         &mechanism,
         &initial,
-        &options(Form::Lagrangian, Method::dormand_prince_8(1e-15), 0.2),
+        &options(
+            Form::Lagrangian,
+            Method::controlled(Pair::Verner9, 1e-16),
+            0.2,
+        ),
     )
     .state;
     for form in [Form::Lagrangian, Form::Hamiltonian] {
@@ -27,7 +31,8 @@ fn methods_have_their_order_in_both_forms() {
             ),
             (5.0, 10.0, &fixed_steps),
             // Few enough that the error of the finer run stays far above rounding.
-            (8.0, 1.0, &fixed_steps_8),
+            (8.0, 1.0, &|step| fixed_steps_of(Pair::DormandPrince8, step)),
+            (9.0, 1.0, &|step| fixed_steps_of(Pair::Verner9, step)),
         ] {
             let error = |steps: f64| {
                 let options = options(form, method(0.2 / steps), 0.2);

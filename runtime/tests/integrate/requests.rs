@@ -6,7 +6,8 @@ use crate::common::trees::{GRAVITY, body, tree};
 use crate::support::{distance, fixed_steps, options, run, start};
 use hamel::dynamics::{Dynamics, DynamicsError, Reference};
 use hamel::integrate::{
-    Form, IntegrateError, Method, Options, State, StepFailure, integrate, no_inputs, no_observer,
+    Control, Form, IntegrateError, Method, Options, Pair, State, StepFailure, integrate, no_inputs,
+    no_observer,
 };
 use hamel::mechanism::Mechanism;
 use hamel::spatial::{MassProperties, Pose};
@@ -101,10 +102,13 @@ fn work_is_counted() {
         ),
         (100, 0, 1 + 6 * 100)
     );
-    let rough = Method::DormandPrince {
-        tolerance: 1e-10,
-        max_step: f64::INFINITY,
-        first_step: Some(1.0),
+    let rough = Method::Controlled {
+        pair: Pair::DormandPrince,
+        control: Control {
+            tolerance: 1e-10,
+            max_step: f64::INFINITY,
+            first_step: Some(1.0),
+        },
     };
     let statistics = run(&mechanism, &initial, &options(Form::Lagrangian, rough, 1.0)).statistics;
     assert!(statistics.rejected > 0);

@@ -4,7 +4,9 @@ use crate::common::polar::polar;
 use crate::common::trees::body;
 use crate::support::{options, run};
 use hamel::dynamics::Reference;
-use hamel::integrate::{Form, IntegrateError, Method, State, integrate, no_inputs, no_observer};
+use hamel::integrate::{
+    Control, Form, IntegrateError, Method, Pair, State, integrate, no_inputs, no_observer,
+};
 use hamel::mechanism::{Mechanism, MechanismError};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
@@ -32,10 +34,13 @@ fn towards_centre(aside: f64) -> State {
 fn the_nearest_approach_is_reported() {
     let mechanism = free_point(1.0).expect("valid");
     let aside = 0.01;
-    let method = Method::DormandPrince {
-        tolerance: 1e-10,
-        max_step: 1e-3,
-        first_step: None,
+    let method = Method::Controlled {
+        pair: Pair::DormandPrince,
+        control: Control {
+            tolerance: 1e-10,
+            max_step: 1e-3,
+            first_step: None,
+        },
     };
     let solution = run(
         &mechanism,

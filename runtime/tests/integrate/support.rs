@@ -4,7 +4,9 @@ use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::{configuration, tree};
 use hamel::dynamics::Reference;
-use hamel::integrate::{Form, Method, Options, Solution, State, integrate, no_inputs, no_observer};
+use hamel::integrate::{
+    Control, Form, Method, Options, Pair, Solution, State, integrate, no_inputs, no_observer,
+};
 use hamel::mechanism::Mechanism;
 use std::sync::Arc;
 
@@ -19,20 +21,17 @@ pub fn options(form: Form, method: Method, t_end: f64) -> Options {
 
 /// Dormand–Prince with steps of one size: no error is large enough to refuse one.
 pub fn fixed_steps(step: f64) -> Method {
-    Method::DormandPrince {
-        tolerance: 0.1,
-        max_step: step,
-        first_step: Some(step),
-    }
+    fixed_steps_of(Pair::DormandPrince, step)
 }
 
-/// The same of order 8.
-pub fn fixed_steps_8(step: f64) -> Method {
-    Method::DormandPrince8 {
+/// The same of any pair.
+pub fn fixed_steps_of(pair: Pair, step: f64) -> Method {
+    let control = Control {
         tolerance: 0.1,
         max_step: step,
         first_step: Some(step),
-    }
+    };
+    Method::Controlled { pair, control }
 }
 
 pub fn start(mechanism: &Mechanism, seed: u64) -> State {

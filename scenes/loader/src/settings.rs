@@ -1,12 +1,15 @@
 //! How a scene wants to be simulated: defaults that a caller may override.
 
-use hamel::integrate::{Form, Method};
+use hamel::integrate::{Form, Method, Pair};
 
 /// Names of the forms of the equations of motion, as scene files and the command line write them.
 pub(crate) const FORM_NAMES: [&str; 2] = ["lagrangian", "hamiltonian"];
 
 /// Names of the integration methods, as scene files and the command line write them.
-pub(crate) const METHOD_NAMES: [&str; 3] = ["rk4", "dopri5", "dop853"];
+pub(crate) const METHOD_NAMES: [&str; 4] = {
+    let [a, b, c] = Pair::ALL;
+    ["rk4", a.name(), b.name(), c.name()]
+};
 
 /// Settings of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,27 +31,14 @@ impl Settings {
     pub const DEFAULT_SAMPLE_STEP: f64 = 0.01;
     /// Step of `rk4` where a scene gives none, s.
     pub const DEFAULT_DT: f64 = 1e-3;
-    /// Tolerance of `dopri5` and `dop853` where a scene gives none.
+    /// Tolerance of methods with step control where a scene gives none.
     pub const DEFAULT_TOL: f64 = 1e-10;
-    /// Least tolerance of `dopri5` and `dop853`: a few roundings.
-    pub const LEAST_TOL: f64 = 1e-15;
-    /// Largest tolerance of `dopri5` and `dop853`: beyond it a step says nothing.
-    pub const LARGEST_TOL: f64 = 0.1;
 
     /// Name of the form, as scene files and the command line write it.
     pub const fn form_name(&self) -> &'static str {
         match self.form {
             Form::Lagrangian => "lagrangian",
             Form::Hamiltonian => "hamiltonian",
-        }
-    }
-
-    /// Name of the method, as scene files and the command line write it.
-    pub const fn method_name(&self) -> &'static str {
-        match self.method {
-            Method::Rk4 { .. } => "rk4",
-            Method::DormandPrince { .. } => "dopri5",
-            Method::DormandPrince8 { .. } => "dop853",
         }
     }
 }

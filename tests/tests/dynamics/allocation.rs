@@ -3,7 +3,7 @@
 use allocation_counter::measure;
 use hamel::dynamics::{Dynamics, Frame, MassMatrix, Recursive};
 use hamel::integrate::{
-    Form, Method, Options, State, Statistics, integrate, no_inputs, no_observer,
+    Control, Form, Method, Options, Pair, State, Statistics, integrate, no_inputs, no_observer,
 };
 use hamel::nalgebra::Vector6;
 use hamel_tests::random::{Case, cases, library};
@@ -194,10 +194,13 @@ fn integration(case: &Case, form: Form, method: Method, t_end: f64) -> (u64, Sta
 #[test]
 fn accepted_steps_do_not_allocate() {
     let step = 1.0 / 1024.0;
-    let controlled = Method::DormandPrince {
-        tolerance: 1e-3,
-        max_step: step,
-        first_step: Some(step),
+    let controlled = Method::Controlled {
+        pair: Pair::DormandPrince,
+        control: Control {
+            tolerance: 1e-3,
+            max_step: step,
+            first_step: Some(step),
+        },
     };
     let mut compared = 0;
     for case in trees() {

@@ -3,7 +3,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink};
 use crate::settings::{FORM_NAMES, METHOD_NAMES, Settings, form_named};
-use hamel::integrate::Method;
+use hamel::integrate::{Control, Method, Pair};
 
 /// Reads the settings; the defaults where the table or a key of it is absent or in error.
 pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
@@ -41,8 +41,11 @@ fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<Method> {
     let tol = tol.unwrap_or(Settings::DEFAULT_TOL);
     let (key, method, advice) = match name {
         Some("rk4") => ("tol", rk4, "its accuracy is `dt`"),
-        Some("dop853") => ("dt", Method::dormand_prince_8(tol), "its accuracy is `tol`"),
-        Some(_) => ("dt", Method::dormand_prince(tol), "its accuracy is `tol`"),
+        Some(name) => {
+            let mut pairs = Pair::ALL.into_iter();
+            let pair = pairs.find(|pair| pair.name() == name)?;
+            ("dt", Method::controlled(pair, tol), "its accuracy is `tol`")
+        }
         None => {
             let found = table.at_most_one(&["dt", "tol"], sink)?;
             return Some(if found.0 == 0 {
@@ -78,7 +81,7 @@ fn positive(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Optio
 }
 
 fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
-    let (least, largest) = (Settings::LEAST_TOL, Settings::LARGEST_TOL);
+    let (least, largest) = (Control::LEAST_TOLERANCE, Control::LARGEST_TOLERANCE);
     let limit = format!("between {least:?} and {largest:?}");
     let holds = |number| (least..=largest).contains(&number);
     let number = table.optional("tol")?.number_within(holds, &limit, sink)?;

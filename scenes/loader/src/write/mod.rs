@@ -46,9 +46,9 @@ fn comments(out: &mut String, lines: &[String]) {
 fn settings(out: &mut String, settings: &Settings) {
     let accuracy = match settings.method {
         Method::Rk4 { dt } => format!("dt = {}", number(dt)),
-        Method::DormandPrince { tolerance, .. } => format!("tol = {}", number(tolerance)),
-        Method::DormandPrince8 { tolerance, .. } => {
-            format!("method = \"dop853\"\ntol = {}", number(tolerance))
+        Method::Controlled { pair, control } => {
+            let (name, tol) = (text(pair.name()), number(control.tolerance));
+            format!("method = {name}\ntol = {tol}")
         }
     };
     let (t_end, step) = (number(settings.t_end), number(settings.sample_step));
