@@ -1,6 +1,6 @@
 //! Articulated inertia: what a body and all that hangs on it feel like to a hand at one frame.
 
-use super::fused::{add_cross, add_scaled, apply, apply_transposed, cross};
+use super::fused::{add_cross, add_scaled, apply, apply_transposed, cross, product};
 use super::{SpatialInertia, Symmetric3, join, split};
 use crate::scalar::Scalar;
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -103,6 +103,15 @@ impl<T: Scalar> ArticulatedInertia<T> {
             },
             coupling,
             linear: self.linear,
+        }
+    }
+
+    /// The same inertia in a frame of the same origin, of which `rotation` holds this frame's axes as columns.
+    pub fn rotated(&self, rotation: &Matrix3<T>) -> Self {
+        Self {
+            angular: self.angular.rotated(rotation),
+            coupling: product(&product(rotation, &self.coupling), &rotation.transpose()),
+            linear: self.linear.rotated(rotation),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Spatial inertia of a rigid body.
 
-use super::fused::{add_cross, apply, dot};
+use super::fused::{add_cross, apply, cross, dot};
 use super::{MassProperties, Pose, Symmetric3, hat, join, split};
 use crate::scalar::Scalar;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
@@ -94,6 +94,12 @@ impl<T: Scalar> SpatialInertia<T> {
             first_moment: self.first_moment + other.first_moment,
             inertia,
         }
+    }
+
+    /// The wrench of a uniform `gravity` on the body, all in this frame.
+    #[inline(always)]
+    pub fn weight(&self, gravity: &Vector3<T>) -> Vector6<T> {
+        join(&cross(&self.first_moment, gravity), &(gravity * self.mass))
     }
 
     /// The wrench `N V̇ − ad_Vᵀ N V` that moves the body with twist V and twist rate V̇, all in this frame.

@@ -16,7 +16,7 @@ pub use place::Placement;
 use crate::erased::Erased;
 use crate::joint::Joint;
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
-use nalgebra::{SVector, Vector6};
+use nalgebra::{Matrix3, SVector, Vector6};
 
 /// The motion of a joint's child frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +52,9 @@ pub trait Steps {
         own: &mut Placement<f64>,
         columns: &mut [Vector6<f64>],
     );
+
+    /// The columns of X̄ in child axes.
+    fn speed_map(&self, q: &[f64], columns: &mut [Vector6<f64>]);
 
     /// [`Steps::stand`] at the `state` (q, v̄, v̄̇); `V = V_λ + X̄ v̄` and
     /// `V̇ = V̇_λ + X̄ v̄̇ + c + ad_V X̄ v̄`. An empty v̄̇ is zero.
@@ -165,6 +168,11 @@ where
         let q = SVector::from(*sized::<_, N>(q));
         *own = place::child(self.joint(), &q, joint_frame, parent);
         *sized_mut(columns) = place::columns(self.joint(), &q, &own.rotation);
+    }
+
+    fn speed_map(&self, q: &[f64], columns: &mut [Vector6<f64>]) {
+        let q = SVector::from(*sized::<_, N>(q));
+        *sized_mut(columns) = place::columns(self.joint(), &q, &Matrix3::identity());
     }
 
     fn advance(

@@ -22,15 +22,10 @@ const ALLOWED: f64 = 100.0;
 const TURNS: &str = "million_turns";
 
 /// Cases that do not meet it yet, and are run only on demand (`--ignored`).
-const OPEN: [(&str, Form); 7] = [
+const OPEN: [(&str, Form); 2] = [
+    // 116 radians of the spring's frequency go by, of which the floor knows nothing.
     ("ball_spring", Form::Lagrangian),
     ("ball_spring", Form::Hamiltonian),
-    ("mixed_tree", Form::Lagrangian),
-    ("mixed_tree", Form::Hamiltonian),
-    // ω × I ω cancels to 5e-11 of its terms.
-    ("needle", Form::Lagrangian),
-    ("needle", Form::Hamiltonian),
-    ("plate_cart_arm_level", Form::Hamiltonian),
 ];
 
 const FORMS: [Form; 2] = [Form::Lagrangian, Form::Hamiltonian];
@@ -156,18 +151,22 @@ impl Multiples {
     }
 
     /// Takes the energy, springs included, as a part of the larger of its initial value and the initial kinetic energy.
+    ///
+    /// Where a fall has made far larger energies that cancel, one rounding of each is taken off: the sum has no smaller steps. (One
+    /// ulp of the 542 J at the end of `mixed_tree`, whose energy is 3.8 J, is 98 floors.)
     fn meet_energy(&mut self, scene: &Scene, samples: &[State], energy: f64) {
-        let start = scene
-            .mechanism
-            .kinematics(&scene.configuration, &scene.speeds)
-            .expect("sizes fit");
-        let unit = energy.abs().max(start.kinetic_energy());
-        for state in samples {
+        let kinematics = |state: &State| {
             let kinematics = scene
                 .mechanism
-                .kinematics(&state.configuration, &state.speeds)
-                .expect("sizes fit");
-            let error = (kinematics.energy() - energy).abs() / unit;
+                .kinematics(&state.configuration, &state.speeds);
+            kinematics.expect("sizes fit")
+        };
+        let unit = energy.abs().max(kinematics(&samples[0]).kinetic_energy());
+        for state in samples {
+            let kinematics = kinematics(state);
+            let (total, kinetic) = (kinematics.energy(), kinematics.kinetic_energy());
+            let rounding = 0.5 * f64::EPSILON * (kinetic + (total - kinetic).abs());
+            let error = ((total - energy).abs() - rounding).max(0.0) / unit;
             self.energy.meet(error / self.floor, state.time);
         }
     }

@@ -4,15 +4,20 @@
 
 use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
-use crate::spatial::fused::{apply_transposed, cross, dot};
-use crate::spatial::{bracket_dual_product, join, shift_wrench, split};
-use nalgebra::{Vector3, Vector6};
+use super::slender::turned_back;
+use crate::spatial::fused::dot;
+use crate::spatial::{bracket_dual_product, shift_wrench};
+use nalgebra::Vector6;
 
 impl Recursive {
     /// The momentum of each body alone into its node, from twists and inertias.
     pub(super) fn set_momenta(&mut self) {
-        for node in &mut self.nodes {
+        let gravity = *self.mechanism.gravity();
+        for (link, node) in self.links.iter().zip(&mut self.nodes) {
             node.wrench = node.rigid.apply(&node.motion.twist);
+            if let Some(number) = link.slender {
+                self.slender[number].set_momentum(link, &gravity, node);
+            }
         }
     }
 
@@ -26,48 +31,58 @@ impl Recursive {
     pub(super) fn prepare_rates(&mut self) {
         let gravity = *self.mechanism.gravity();
         self.set_momenta();
-        for (node, external) in self.nodes.iter_mut().zip(&self.external) {
-            let weight = weight(&gravity, node.rigid.mass, &node.rigid.first_moment);
-            node.motion.rate = weight + external;
+        let bodies = self.links.iter().zip(&mut self.nodes).zip(&self.external);
+        for ((link, node), external) in bodies {
+            node.motion.rate = *external;
+            if link.slender.is_none() {
+                node.motion.rate += node.rigid.weight(&gravity);
+            }
         }
     }
 
     /// Inward, after [`Recursive::prepare_rates`]: the composites, and p̄̇ from them.
     pub(super) fn gather_rates(&mut self, q: &[f64], speeds: &[f64], rates: &mut [f64]) {
-        for (index, link) in self.links.iter().enumerate().rev() {
-            let (before, rest) = self.nodes.split_at_mut(index);
-            let own = &rest[0];
+        for index in (0..self.links.len()).rev() {
+            let link = &self.links[index];
             let speed_range = link.speeds.clone();
             let out = &mut rates[speed_range.clone()];
-            let turned = own.motion.rate + bracket_dual_product(&own.motion.twist, &own.wrench);
-            link.joint
-                .gather(&turned, &self.columns[speed_range.clone()], out);
+            let momentum = match link.slender {
+                None => self.turned_momenta(index, out),
+                Some(number) => self.turned_momenta_slender(index, number, out),
+            };
+            let link = &self.links[index];
             let forces = &self.forces[speed_range.clone()];
             for (rate, force) in out.iter_mut().zip(forces) {
                 *rate += force;
             }
             if !link.joint.structures().bias_momentum.is_zero() {
-                let (moment, momentum) = split(&own.wrench);
-                let rotation = &own.motion.placement.rotation;
-                let in_child = join(
-                    &apply_transposed(rotation, &moment),
-                    &apply_transposed(rotation, &momentum),
-                );
                 let q = &q[link.configuration.clone()];
                 let mut moved = [0.0; MOST_FREEDOMS];
                 let moved = &mut moved[..out.len()];
                 link.joint
-                    .bias_momentum(q, &speeds[speed_range], &in_child, moved);
+                    .bias_momentum(q, &speeds[speed_range], &momentum, moved);
                 for (rate, moved) in out.iter_mut().zip(moved) {
                     *rate += *moved;
                 }
             }
             if let Some(parent) = link.parent {
+                let (before, rest) = self.nodes.split_at_mut(index);
+                let own = &rest[0];
                 let offset = &own.motion.placement.offset;
                 before[parent].wrench += shift_wrench(&own.wrench, offset);
                 before[parent].motion.rate += shift_wrench(&own.motion.rate, offset);
             }
         }
+    }
+
+    /// `X̄ᵀ(f + ad_Vᵀ h)` of one joint into `out`; returns h in child axes.
+    #[inline(always)]
+    fn turned_momenta(&self, index: usize, out: &mut [f64]) -> Vector6<f64> {
+        let (link, own) = (&self.links[index], &self.nodes[index]);
+        let turned = own.motion.rate + bracket_dual_product(&own.motion.twist, &own.wrench);
+        link.joint
+            .gather(&turned, &self.columns[link.speeds.clone()], out);
+        turned_back(&own.motion.placement.rotation, &own.wrench)
     }
 
     /// Kinetic and potential energy at the placements, twists and inertias of the workspace, J.
@@ -100,9 +115,4 @@ impl Recursive {
         });
         -work.sum::<f64>()
     }
-}
-
-/// Gravity's wrench on a body.
-fn weight(gravity: &Vector3<f64>, mass: f64, first_moment: &Vector3<f64>) -> Vector6<f64> {
-    join(&cross(first_moment, gravity), &(gravity * mass))
 }

@@ -1,5 +1,6 @@
 //! What the recursion keeps of each body: a compact copy of what never changes, and the workspace.
 
+use super::slender::is_slender;
 use crate::erased::AnyJoint;
 use crate::mechanism::{Body, Mechanism};
 use crate::spatial::{Pose, SpatialInertia, join};
@@ -27,6 +28,8 @@ pub(super) struct Link {
     pub(super) driven: bool,
     /// Whether any body hangs on this one.
     pub(super) carries: bool,
+    /// Which of the slender bodies this is, if it is one.
+    pub(super) slender: Option<usize>,
     /// Whether this is the last of the bodies that hang on its parent, and so the first in an inward sweep.
     pub(super) last: bool,
 }
@@ -41,6 +44,10 @@ impl Link {
                 ..Self::new(body)
             })
             .collect();
+        let slender = links.iter_mut().filter(|link| is_slender(&link.inertia));
+        for (number, link) in slender.enumerate() {
+            link.slender = Some(number);
+        }
         for index in (0..links.len()).rev() {
             if let Some(parent) = links[index].parent {
                 links[index].last = !links[parent].carries;
@@ -68,6 +75,7 @@ impl Link {
             armature: Vec::new(),
             driven: false,
             carries: false,
+            slender: None,
             last: false,
         }
     }

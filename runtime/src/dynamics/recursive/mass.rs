@@ -247,15 +247,19 @@ impl Recursive {
             if speeds.contains(&speed) {
                 unit[speed - speeds.start] = 1.0;
             }
-            link.joint.reduce(
-                &mut wrench,
-                &self.columns[speeds.clone()],
-                &self.pivots[speeds.clone()],
-                &unit[..speeds.len()],
-                &mut self.loads[speeds],
-            );
-            wrench = shift_wrench(&wrench, &self.nodes[index].motion.placement.offset);
             next = link.parent;
+            let unit = &unit[..speeds.len()];
+            match link.slender {
+                None => link.joint.reduce(
+                    &mut wrench,
+                    &self.columns[speeds.clone()],
+                    &self.pivots[speeds.clone()],
+                    unit,
+                    &mut self.loads[speeds],
+                ),
+                Some(number) => wrench = self.reduce_slender(index, number, &wrench, unit),
+            }
+            wrench = shift_wrench(&wrench, &self.nodes[index].motion.placement.offset);
         }
         self.resolve_up_to(body, row);
     }

@@ -17,6 +17,7 @@ mod link;
 mod lu;
 mod mass;
 mod readings;
+mod slender;
 mod sweeps;
 
 pub use mass::MassMatrix;
@@ -32,6 +33,7 @@ use alloc::vec::Vec;
 use coupling::Coupling;
 use link::{Link, Node, Rung};
 use nalgebra::Vector6;
+use slender::Slender;
 
 /// The recursive form of a mechanism's dynamics, with its workspace: one for each thread.
 #[derive(Clone, Debug)]
@@ -49,6 +51,7 @@ pub struct Recursive {
     columns: Vec<Vector6<f64>>,
     /// Composite momenta of the columns, one a speed.
     momenta: Vec<Vector6<f64>>,
+    slender: Vec<Slender>,
     inertias: Vec<ArticulatedInertia<f64>>,
     pivots: Vec<Pivot<f64>>,
     loads: Vec<f64>,
@@ -71,10 +74,12 @@ impl Recursive {
         let world = Node::world(mechanism.gravity());
         let count = mechanism.bodies().len();
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        let links = Link::all(&mechanism);
         Self {
             plain: false,
             acted_on: false,
-            links: Link::all(&mechanism),
+            slender: Slender::all(&links),
+            links,
             rungs: mechanism.bodies().iter().map(Rung::new).collect(),
             nodes: vec![world.clone(); count],
             world,

@@ -37,6 +37,9 @@ impl Recursive {
             let q = &q[link.configuration.clone()];
             let columns = &mut self.columns[link.speeds.clone()];
             link.joint.stand(q, &link.frame, from, to, columns);
+            if let Some(number) = link.slender {
+                self.slender[number].stand(link, q);
+            }
             // The body before: to load what a joint has just stored is to wait for it.
             if let Some(last) = index.checked_sub(1) {
                 self.links[last].turn(&mut self.nodes[last]);
@@ -64,6 +67,9 @@ impl Recursive {
                 .advance(state, &link.frame, &parent.motion, motion, columns);
             own.rigid = link.inertia.rotated(&motion.placement.rotation);
             own.wrench = own.rigid.wrench(&motion.twist, &motion.rate);
+            if let Some(number) = link.slender {
+                self.slender[number].advance(link, state, &parent.motion, own);
+            }
         }
     }
 
@@ -72,56 +78,100 @@ impl Recursive {
         for (index, link) in self.links.iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let carried = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
-            let columns = &self.columns[link.speeds.clone()];
-            own.motion.twist = combine(carried, columns, &speeds[link.speeds.clone()]);
+            let (columns, speeds) = (
+                &self.columns[link.speeds.clone()],
+                &speeds[link.speeds.clone()],
+            );
+            own.motion.twist = combine(carried, columns, speeds);
+            if let Some(number) = link.slender {
+                self.slender[number].set_twist(speeds, &carried, own);
+            }
         }
     }
 
     /// Inward: the articulated inertias, and the pivots of every joint.
     pub(super) fn articulate(&mut self) -> Result<(), DynamicsError> {
-        for (index, link) in self.links.iter().enumerate().rev() {
-            let speeds = link.speeds.clone();
-            let (columns, pivots) = (&self.columns[speeds.clone()], &mut self.pivots[speeds]);
-            let node = &self.nodes[index];
-            let mut inertia = whole(link, node, &self.inertias[index]);
-            if !link.driven {
-                link.joint
-                    .articulate(&mut inertia, columns, &link.armature, pivots)
-                    .map_err(|failure| self.mechanism.singular(index, &failure))?;
-            }
-            if let Some(parent) = link.parent {
-                let carried = inertia.shifted(&node.motion.placement.offset);
-                hand_over(link, &mut self.inertias[parent], &carried);
-            }
+        for index in (0..self.links.len()).rev() {
+            let inertia = match self.links[index].slender {
+                None => self.articulate_body(index)?,
+                Some(number) => self.articulate_slender(index, number)?,
+            };
+            self.hand_over(index, &inertia);
         }
         Ok(())
     }
 
-    /// Inward: [`Recursive::articulate`], and the loads of generalised `forces` (one entry a speed) against the wrenches of the nodes.
-    pub(super) fn eliminate(&mut self, forces: &[f64]) -> Result<(), DynamicsError> {
-        for (index, link) in self.links.iter().enumerate().rev() {
-            let speeds = link.speeds.clone();
-            let (before, rest) = self.nodes.split_at_mut(index);
-            let node = &mut rest[0];
-            let mut inertia = whole(link, node, &self.inertias[index]);
-            if !link.driven {
-                link.joint
-                    .eliminate(
-                        (&mut inertia, &mut node.wrench),
-                        &self.columns[speeds.clone()],
-                        (&link.armature, &forces[speeds.clone()]),
-                        &mut self.pivots[speeds.clone()],
-                        &mut self.loads[speeds],
-                    )
-                    .map_err(|failure| self.mechanism.singular(index, &failure))?;
-            }
-            if let Some(parent) = link.parent {
-                let offset = &node.motion.placement.offset;
-                hand_over(link, &mut self.inertias[parent], &inertia.shifted(offset));
-                before[parent].wrench += shift_wrench(&node.wrench, offset);
+    #[inline(always)]
+    fn articulate_body(&mut self, index: usize) -> Result<ArticulatedInertia<f64>, DynamicsError> {
+        let link = &self.links[index];
+        let speeds = link.speeds.clone();
+        let (columns, pivots) = (&self.columns[speeds.clone()], &mut self.pivots[speeds]);
+        let mut inertia = whole(link, &self.nodes[index], &self.inertias[index]);
+        if !link.driven {
+            link.joint
+                .articulate(&mut inertia, columns, &link.armature, pivots)
+                .map_err(|failure| self.mechanism.singular(index, &failure))?;
+        }
+        Ok(inertia)
+    }
+
+    /// Adds what the parent of a body feels of it; the first of an inward sweep overwrites what the last sweep left.
+    #[inline(always)]
+    fn hand_over(&mut self, index: usize, inertia: &ArticulatedInertia<f64>) {
+        let link = &self.links[index];
+        if let Some(parent) = link.parent {
+            let carried = inertia.shifted(&self.nodes[index].motion.placement.offset);
+            match link.last {
+                true => self.inertias[parent] = carried,
+                false => self.inertias[parent].add(&carried),
             }
         }
+    }
+
+    /// Inward: [`Recursive::articulate`], and the loads of generalised `forces` (one entry a speed) against the wrenches of the nodes.
+    pub(super) fn eliminate(&mut self, forces: &[f64]) -> Result<(), DynamicsError> {
+        for index in (0..self.links.len()).rev() {
+            let inertia = match self.links[index].slender {
+                None => self.eliminate_body(index, forces)?,
+                Some(number) => self.eliminate_slender(index, number, forces)?,
+            };
+            self.hand_over(index, &inertia);
+            self.add_to_parent(index);
+        }
         Ok(())
+    }
+
+    #[inline(always)]
+    fn eliminate_body(
+        &mut self,
+        index: usize,
+        forces: &[f64],
+    ) -> Result<ArticulatedInertia<f64>, DynamicsError> {
+        let (link, node) = (&self.links[index], &mut self.nodes[index]);
+        let speeds = link.speeds.clone();
+        let mut inertia = whole(link, node, &self.inertias[index]);
+        if !link.driven {
+            link.joint
+                .eliminate(
+                    (&mut inertia, &mut node.wrench),
+                    &self.columns[speeds.clone()],
+                    (&link.armature, &forces[speeds.clone()]),
+                    &mut self.pivots[speeds.clone()],
+                    &mut self.loads[speeds],
+                )
+                .map_err(|failure| self.mechanism.singular(index, &failure))?;
+        }
+        Ok(inertia)
+    }
+
+    /// Adds the wrench of a body's node to its parent's.
+    #[inline(always)]
+    fn add_to_parent(&mut self, index: usize) {
+        if let Some(parent) = self.links[index].parent {
+            let own = &self.nodes[index];
+            let carried = shift_wrench(&own.wrench, &own.motion.placement.offset);
+            self.nodes[parent].wrench += carried;
+        }
     }
 
     /// Outward, after [`Recursive::eliminate`]: the rates that the loads amount to. The twists become those of the rates.
@@ -133,33 +183,35 @@ impl Recursive {
 
     /// [`Recursive::resolve`] for the bodies up to `last`.
     pub(super) fn resolve_up_to(&mut self, last: usize, rates: &mut [f64]) {
-        for (index, link) in self.links[..=last].iter().enumerate() {
+        for index in 0..=last {
+            let link = &self.links[index];
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let speeds = link.speeds.clone();
             let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds.clone()]);
             let loads = &self.loads[speeds.clone()];
-            own.motion.twist = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
-            link.joint.resolve(
-                &mut own.motion.twist,
-                columns,
-                pivots,
-                loads,
-                &mut rates[speeds],
-            );
+            let carried = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
+            let rates = &mut rates[speeds];
+            if let Some(number) = link.slender {
+                self.resolve_slender(index, number, &carried, rates);
+                continue;
+            }
+            own.motion.twist = carried;
+            link.joint
+                .resolve(&mut own.motion.twist, columns, pivots, loads, rates);
         }
     }
 
     /// Inward: the wrench of each node and of all that hangs on it; `X̄ᵀ` of it into `out`, one entry a speed.
     pub(super) fn gather(&mut self, out: &mut [f64]) {
-        for (index, link) in self.links.iter().enumerate().rev() {
-            let (before, rest) = self.nodes.split_at_mut(index);
-            let own = &rest[0];
-            let columns = &self.columns[link.speeds.clone()];
-            link.joint
-                .gather(&own.wrench, columns, &mut out[link.speeds.clone()]);
-            if let Some(parent) = link.parent {
-                before[parent].wrench += shift_wrench(&own.wrench, &own.motion.placement.offset);
+        for index in (0..self.links.len()).rev() {
+            let link = &self.links[index];
+            let (own, columns) = (&self.nodes[index], &self.columns[link.speeds.clone()]);
+            let out = &mut out[link.speeds.clone()];
+            match link.slender {
+                None => link.joint.gather(&own.wrench, columns, out),
+                Some(number) => self.gather_slender(index, number, out),
             }
+            self.add_to_parent(index);
         }
     }
 }
@@ -170,15 +222,6 @@ fn whole(link: &Link, node: &Node, handed: &ArticulatedInertia<f64>) -> Articula
     match link.carries {
         true => handed.with_rigid(&node.rigid),
         false => ArticulatedInertia::from(&node.rigid),
-    }
-}
-
-/// Adds a child's share to its parent's; the first of an inward sweep overwrites what the last sweep left.
-#[inline(always)]
-fn hand_over(link: &Link, parent: &mut ArticulatedInertia<f64>, carried: &ArticulatedInertia<f64>) {
-    match link.last {
-        true => *parent = *carried,
-        false => parent.add(carried),
     }
 }
 

@@ -1,0 +1,277 @@
+//! Slender bodies: those with a moment of inertia that is tiny beside the others.
+//!
+//! Turned into world axes, their inertia keeps the tiny moment only to a rounding of the largest: at a ratio of 1e-10, six digits are
+//! left. So whatever such a body and its joint alone decide is computed in the child frame's own axes, where the moments stay
+//! apart; what other bodies hand over is turned into them, and back.
+
+use super::Recursive;
+use super::link::{Link, Node};
+use crate::dynamics::DynamicsError;
+use crate::spatial::fused::{add_cross, apply, apply_transposed, cross};
+use crate::spatial::{
+    ArticulatedInertia, SpatialInertia, add_weighted, bracket_product, join, shift_twist, split,
+};
+use crate::steps::Motion;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3, Vector6};
+
+/// The ratio of moments from which on a body counts as slender: in world axes it costs as many digits as it has zeros.
+const RATIO: f64 = 1e4;
+
+/// What a slender body keeps in its child frame's axes.
+#[derive(Clone, Debug)]
+pub(super) struct Slender {
+    /// X̄, one column a speed.
+    pub(super) columns: Vec<Vector6<f64>>,
+    /// V.
+    pub(super) twist: Vector6<f64>,
+    /// The body's own share of what a sweep carries rootward: a wrench or a momentum.
+    pub(super) wrench: Vector6<f64>,
+    /// The body's weight.
+    pub(super) weight: Vector6<f64>,
+}
+
+/// Whether `inertia` has a moment that is tiny beside the others.
+pub(super) fn is_slender(inertia: &SpatialInertia<f64>) -> bool {
+    let moments = SymmetricEigen::new(inertia.inertia.matrix()).eigenvalues;
+    moments.max() > RATIO * moments.min() && moments.max() > 0.0
+}
+
+impl Slender {
+    /// Room for each slender body of `links`.
+    pub(super) fn all(links: &[Link]) -> Vec<Self> {
+        let slender = links.iter().filter(|link| link.slender.is_some());
+        let new = |link: &Link| Self {
+            columns: vec![Vector6::zeros(); link.speeds.len()],
+            twist: Vector6::zeros(),
+            wrench: Vector6::zeros(),
+            weight: Vector6::zeros(),
+        };
+        slender.map(new).collect()
+    }
+
+    /// X̄ at the joint's `q`; no wrench.
+    pub(super) fn stand(&mut self, link: &Link, q: &[f64]) {
+        link.joint.speed_map(q, &mut self.columns);
+        self.wrench = Vector6::zeros();
+    }
+
+    /// X̄, V and the wrench that the body takes, at `(q, v̄, v̄̇)` of the joint.
+    pub(super) fn advance(
+        &mut self,
+        link: &Link,
+        (q, speeds, accelerations): (&[f64], &[f64], &[f64]),
+        parent: &Motion<f64>,
+        node: &mut Node,
+    ) {
+        self.stand(link, q);
+        let (rotation, offset) = (
+            &node.motion.placement.rotation,
+            &node.motion.placement.offset,
+        );
+        let carried = turned_back(rotation, &shift_twist(&parent.twist, offset));
+        let relative = self.combine(speeds);
+        let mut rate = turned_back(rotation, &shift_twist(&parent.rate, offset));
+        rate += bracket_product(&carried, &relative) + self.combine(accelerations);
+        if !link.joint.structures().bias_acceleration.is_zero() {
+            rate += link.joint.bias_acceleration(q, speeds);
+        }
+        self.twist = carried + relative;
+        self.wrench =
+            link.inertia.apply(&rate) - self.turned(link, &link.inertia.apply(&self.twist));
+        node.wrench = Vector6::zeros();
+    }
+
+    /// V of the joint's speeds, on top of what the parent carries along.
+    pub(super) fn set_twist(&mut self, speeds: &[f64], carried: &Vector6<f64>, node: &Node) {
+        let rotation = &node.motion.placement.rotation;
+        self.twist = turned_back(rotation, carried) + self.combine(speeds);
+    }
+
+    /// The momentum and the weight of the body alone.
+    pub(super) fn set_momentum(&mut self, link: &Link, gravity: &Vector3<f64>, node: &mut Node) {
+        let gravity = apply_transposed(&node.motion.placement.rotation, gravity);
+        self.wrench = link.inertia.apply(&self.twist);
+        self.weight = link.inertia.weight(&gravity);
+        node.wrench = Vector6::zeros();
+    }
+
+    /// `ad_Vᵀ h` of a momentum h, most of which is the body's own.
+    ///
+    /// `ω × I ω` is a difference of products that cancel where two moments are nearly equal, as the large ones of a slender body must
+    /// be. `ω × (I − s 1) ω` is the same and does not, with the largest moment for s.
+    pub(super) fn turned(&self, link: &Link, momentum: &Vector6<f64>) -> Vector6<f64> {
+        let (moment, force) = split(momentum);
+        let (angular, linear) = split(&self.twist);
+        let whole = &link.inertia.inertia;
+        let most = whole.xx.max(whole.yy).max(whole.zz);
+        let mut rest = *whole;
+        rest.xx -= most;
+        rest.yy -= most;
+        rest.zz -= most;
+        // The rest of `moment` is exact where it is what I ω and the first moment make of it.
+        let spun = rest.apply(&angular) + (moment - whole.apply(&angular));
+        join(
+            &add_cross(&cross(&spun, &angular), &force, &linear),
+            &cross(&force, &angular),
+        )
+    }
+
+    /// What the joint carries: the body's own inertia and what its children have handed over.
+    pub(super) fn whole(
+        link: &Link,
+        node: &Node,
+        handed: &ArticulatedInertia<f64>,
+    ) -> ArticulatedInertia<f64> {
+        match link.carries {
+            true => handed
+                .rotated(&node.motion.placement.rotation.transpose())
+                .with_rigid(&link.inertia),
+            false => ArticulatedInertia::from(&link.inertia),
+        }
+    }
+
+    /// What the joint carries of a sweep's wrenches: the body's own, and in `node` those of its children.
+    pub(super) fn carried(&self, node: &Node) -> Vector6<f64> {
+        self.wrench + turned_back(&node.motion.placement.rotation, &node.wrench)
+    }
+
+    /// `X̄ weights`.
+    fn combine(&self, weights: &[f64]) -> Vector6<f64> {
+        let terms = self.columns.iter().zip(weights);
+        terms.fold(Vector6::zeros(), |sum, (column, &weight)| {
+            add_weighted(&sum, column, weight)
+        })
+    }
+}
+
+impl Recursive {
+    /// [`Recursive::articulate`] of a slender body: what its parent feels, in world axes.
+    pub(super) fn articulate_slender(
+        &mut self,
+        index: usize,
+        number: usize,
+    ) -> Result<ArticulatedInertia<f64>, DynamicsError> {
+        let (link, own) = (&self.links[index], &self.slender[number]);
+        let node = &self.nodes[index];
+        let mut inertia = Slender::whole(link, node, &self.inertias[index]);
+        let pivots = &mut self.pivots[link.speeds.clone()];
+        if !link.driven {
+            link.joint
+                .articulate(&mut inertia, &own.columns, &link.armature, pivots)
+                .map_err(|failure| self.mechanism.singular(index, &failure))?;
+        }
+        Ok(inertia.rotated(&node.motion.placement.rotation))
+    }
+
+    /// [`Recursive::eliminate`] of a slender body: what its parent feels, the wrench in the node.
+    pub(super) fn eliminate_slender(
+        &mut self,
+        index: usize,
+        number: usize,
+        forces: &[f64],
+    ) -> Result<ArticulatedInertia<f64>, DynamicsError> {
+        let inertia = self.articulate_slender(index, number)?;
+        let (link, own) = (&self.links[index], &self.slender[number]);
+        let node = &mut self.nodes[index];
+        let rotation = &node.motion.placement.rotation;
+        let mut wrench = own.carried(node);
+        if !link.driven {
+            let speeds = link.speeds.clone();
+            link.joint.reduce(
+                &mut wrench,
+                &own.columns,
+                &self.pivots[speeds.clone()],
+                &forces[speeds.clone()],
+                &mut self.loads[speeds],
+            );
+        }
+        node.wrench = turned_out(rotation, &wrench);
+        Ok(inertia)
+    }
+
+    /// [`Recursive::resolve`] of a slender body that its parent carries along with `carried`.
+    pub(super) fn resolve_slender(
+        &mut self,
+        index: usize,
+        number: usize,
+        carried: &Vector6<f64>,
+        rates: &mut [f64],
+    ) {
+        let (link, own) = (&self.links[index], &mut self.slender[number]);
+        let motion = &mut self.nodes[index].motion;
+        let rotation = &motion.placement.rotation;
+        own.twist = turned_back(rotation, carried);
+        let (speeds, pivots) = (&link.speeds, &self.pivots[link.speeds.clone()]);
+        let loads = &self.loads[speeds.clone()];
+        link.joint
+            .resolve(&mut own.twist, &own.columns, pivots, loads, rates);
+        motion.twist = turned_out(rotation, &own.twist);
+    }
+
+    /// [`crate::steps::Steps::reduce`] of a slender body's joint, for a `wrench` in world axes.
+    pub(super) fn reduce_slender(
+        &mut self,
+        index: usize,
+        number: usize,
+        wrench: &Vector6<f64>,
+        forces: &[f64],
+    ) -> Vector6<f64> {
+        let (link, own) = (&self.links[index], &self.slender[number]);
+        let rotation = &self.nodes[index].motion.placement.rotation;
+        let speeds = link.speeds.clone();
+        let mut turned = turned_back(rotation, wrench);
+        link.joint.reduce(
+            &mut turned,
+            &own.columns,
+            &self.pivots[speeds.clone()],
+            forces,
+            &mut self.loads[speeds],
+        );
+        turned_out(rotation, &turned)
+    }
+
+    /// `X̄ᵀF` of a slender body's joint into `out`, with all of F into the node.
+    pub(super) fn gather_slender(&mut self, index: usize, number: usize, out: &mut [f64]) {
+        let (link, own) = (&self.links[index], &self.slender[number]);
+        let node = &mut self.nodes[index];
+        let wrench = own.carried(node);
+        link.joint.gather(&wrench, &own.columns, out);
+        node.wrench = turned_out(&node.motion.placement.rotation, &wrench);
+    }
+
+    /// [`Recursive::turned_momenta`] of a slender body.
+    pub(super) fn turned_momenta_slender(
+        &mut self,
+        index: usize,
+        number: usize,
+        out: &mut [f64],
+    ) -> Vector6<f64> {
+        let (link, own) = (&self.links[index], &self.slender[number]);
+        let node = &mut self.nodes[index];
+        let rotation = &node.motion.placement.rotation;
+        let momentum = own.carried(node);
+        let acting = own.weight + turned_back(rotation, &node.motion.rate);
+        let turned = acting + own.turned(link, &momentum);
+        link.joint.gather(&turned, &own.columns, out);
+        node.motion.rate = turned_out(rotation, &acting);
+        node.wrench = turned_out(rotation, &momentum);
+        momentum
+    }
+}
+
+/// A spatial vector in child axes, in world axes.
+pub(super) fn turned_out(rotation: &Matrix3<f64>, vector: &Vector6<f64>) -> Vector6<f64> {
+    let (angular, linear) = split(vector);
+    join(&apply(rotation, &angular), &apply(rotation, &linear))
+}
+
+/// A spatial vector in world axes, in child axes.
+pub(super) fn turned_back(rotation: &Matrix3<f64>, vector: &Vector6<f64>) -> Vector6<f64> {
+    let (angular, linear) = split(vector);
+    join(
+        &apply_transposed(rotation, &angular),
+        &apply_transposed(rotation, &linear),
+    )
+}
