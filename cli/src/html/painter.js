@@ -1,0 +1,212 @@
+const solidVertex = `#version 300 es
+uniform mat4 view;
+uniform vec4 turn;
+uniform vec3 place, size, light, up;
+uniform float ground;
+uniform bool shadow;
+layout(location = 0) in vec3 corner;
+layout(location = 1) in vec3 facing;
+out vec3 normal, inside;
+vec3 turned(vec3 v) {
+  vec3 t = 2.0 * cross(turn.yzw, v);
+  return v + turn.x * t + cross(turn.yzw, t);
+}
+void main() {
+  vec3 world = place + turned(size * corner);
+  if (shadow) world -= light * ((dot(world, up) - ground) / dot(light, up));
+  normal = turned(facing / size);
+  inside = corner;
+  gl_Position = view * vec4(world, 1.0);
+}`;
+
+const solidFragment = `#version 300 es
+precision mediump float;
+uniform vec4 color;
+uniform vec3 light, up;
+uniform bool shadow, octants;
+in vec3 normal, inside;
+out vec4 shown;
+void main() {
+  if (shadow) { shown = color; return; }
+  vec3 n = normalize(normal);
+  float lit = 0.62 + 0.16 * dot(n, up) + 0.34 * max(dot(n, light), 0.0);
+  // Octants of two tones show how a round body turns.
+  if (octants && inside.x * inside.y * inside.z < 0.0) lit *= 0.8;
+  shown = vec4(color.rgb * lit, color.a);
+}`;
+
+const lineVertex = `#version 300 es
+uniform mat4 view;
+uniform vec2 pixels;
+uniform float width, count;
+uniform bool ageing;
+layout(location = 0) in vec3 from;
+layout(location = 1) in vec3 to;
+out vec3 world;
+out float age;
+const float near = 1e-6;
+void main() {
+  vec4 a = view * vec4(from, 1.0), b = view * vec4(to, 1.0);
+  if (a.w < near) a = mix(a, b, clamp((near - a.w) / (b.w - a.w), 0.0, 1.0));
+  if (b.w < near) b = mix(b, a, clamp((near - b.w) / (a.w - b.w), 0.0, 1.0));
+  vec2 along = (b.xy / b.w - a.xy / a.w) * pixels;
+  along /= max(length(along), 1e-6);
+  bool end = gl_VertexID >= 2;
+  float side = gl_VertexID % 2 == 0 ? 1.0 : -1.0;
+  vec4 place = end ? b : a;
+  place.xy += side * width * vec2(-along.y, along.x) / pixels * place.w;
+  world = end ? to : from;
+  age = ageing ? (float(gl_InstanceID) + float(end)) / count : 1.0;
+  gl_Position = place;
+}`;
+
+const lineFragment = `#version 300 es
+precision highp float;
+uniform vec4 color;
+uniform vec3 centre;
+uniform float reach;
+in vec3 world;
+in float age;
+out vec4 shown;
+void main() {
+  float far = reach > 0.0 ? 1.0 - smoothstep(0.35, 1.0, distance(world, centre) / reach) : 1.0;
+  shown = vec4(color.rgb, color.a * far * mix(0.08, 1.0, age));
+}`;
+
+/** Draws solids and lines with WebGL 2. */
+class Painter {
+  constructor(canvas) {
+    const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
+    if (!gl) throw new Error("this browser gives no WebGL 2");
+    this.canvas = canvas;
+    this.gl = gl;
+    this.solids = this.program(solidVertex, solidFragment);
+    this.lines = this.program(lineVertex, lineFragment);
+    this.meshes = new Map();
+    this.scratch = gl.createBuffer();
+    this.lineArrays = gl.createVertexArray();
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+  }
+
+  program(...sources) {
+    const gl = this.gl;
+    const program = gl.createProgram();
+    sources.forEach((source, index) => {
+      const shader = gl.createShader(index ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
+      gl.shaderSource(shader, source);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+    });
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+    const places = {};
+    const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
+    for (let k = 0; k < count; k++) {
+      const { name } = gl.getActiveUniform(program, k);
+      places[name] = gl.getUniformLocation(program, name);
+    }
+    return { program, places };
+  }
+
+  /** The mesh of that key, made on first use. */
+  mesh(key, make) {
+    if (!this.meshes.has(key)) {
+      const gl = this.gl;
+      const numbers = make();
+      const array = gl.createVertexArray();
+      gl.bindVertexArray(array);
+      this.buffer(numbers);
+      for (const place of [0, 1]) {
+        gl.enableVertexAttribArray(place);
+        gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 24, 12 * place);
+      }
+      this.meshes.set(key, { array, corners: numbers.length / 6 });
+    }
+    return this.meshes.get(key);
+  }
+
+  /** Numbers that stay as they are. */
+  buffer(numbers) {
+    const gl = this.gl;
+    const buffer = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.STATIC_DRAW);
+    return buffer;
+  }
+
+  /** Begins a picture. */
+  begin(camera, background, up) {
+    const gl = this.gl;
+    const { width, height } = this.canvas;
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(...background, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
+    this.view = camera.matrix(width / height);
+    this.up = up;
+    this.light = camera.light();
+  }
+
+  /** Draws solids, { mesh, pose, size, color, octants }; or their shadow on the ground at that height, `shadow` dark. */
+  drawSolids(solids, ground = 0, shadow = null) {
+    const gl = this.gl;
+    const { program, places } = this.solids;
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(places.view, false, this.view);
+    gl.uniform3fv(places.light, this.light);
+    gl.uniform3fv(places.up, this.up);
+    gl.uniform1f(places.ground, ground);
+    gl.uniform1i(places.shadow, shadow === null ? 0 : 1);
+    if (shadow !== null) {
+      // Each pixel is darkened once.
+      gl.enable(gl.STENCIL_TEST);
+      gl.stencilFunc(gl.EQUAL, 0, 255);
+      gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
+      gl.depthMask(false);
+      gl.uniform4f(places.color, 0, 0, 0, shadow);
+    }
+    for (const { mesh, pose, size, color, octants } of solids) {
+      gl.bindVertexArray(mesh.array);
+      gl.uniform3fv(places.place, pose.p);
+      gl.uniform4fv(places.turn, pose.q);
+      gl.uniform3fv(places.size, size);
+      if (shadow === null) gl.uniform4f(places.color, color[0], color[1], color[2], 1);
+      gl.uniform1i(places.octants, octants ? 1 : 0);
+      gl.drawArrays(gl.TRIANGLES, 0, mesh.corners);
+    }
+    gl.disable(gl.STENCIL_TEST);
+    gl.depthMask(true);
+  }
+
+  /** Draws segments between points, three numbers each; pairs of points, or with `strip` each point with the next. */
+  drawLines(points, { color, alpha = 1, width = 1.5, strip = false, from = 0, count, ageing = false, centre = [0, 0, 0], reach = 0 }) {
+    const gl = this.gl;
+    const { program, places } = this.lines;
+    gl.useProgram(program);
+    gl.bindVertexArray(this.lineArrays);
+    if (points instanceof WebGLBuffer) gl.bindBuffer(gl.ARRAY_BUFFER, points);
+    else {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.scratch);
+      gl.bufferData(gl.ARRAY_BUFFER, points, gl.STREAM_DRAW);
+      count ??= strip ? points.length / 3 - 1 : points.length / 6;
+    }
+    if (count <= 0) return;
+    for (const place of [0, 1]) {
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, 3, gl.FLOAT, false, strip ? 12 : 24, 12 * (from + place));
+      gl.vertexAttribDivisor(place, 1);
+    }
+    gl.uniformMatrix4fv(places.view, false, this.view);
+    gl.uniform2f(places.pixels, this.canvas.width, this.canvas.height);
+    gl.uniform1f(places.width, width);
+    gl.uniform1f(places.count, count);
+    gl.uniform1i(places.ageing, ageing ? 1 : 0);
+    gl.uniform4f(places.color, ...color, alpha);
+    gl.uniform3fv(places.centre, centre);
+    gl.uniform1f(places.reach, reach);
+    gl.depthMask(false);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+    gl.depthMask(true);
+  }
+}
