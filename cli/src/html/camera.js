@@ -38,9 +38,14 @@ class Camera {
   /** From world to the picture. */
   matrix(aspect) {
     const { back, right, up } = this.axes();
-    const projection = perspective(Camera.angle, aspect, 0.02 * this.distance, 200 * this.distance);
+    const projection = perspective(Camera.angle, aspect, this.near(), 200 * this.distance);
     this.aspect = aspect;
     return (this.last = product(projection, looking(this.eye(), right, up, back)));
+  }
+
+  /** Distance from which on something is seen. */
+  near() {
+    return 0.02 * this.distance;
   }
 
   /** Direction to the light: above the viewer's left shoulder. */

@@ -13,7 +13,7 @@ function start() {
   } catch (error) {
     element("refusal").hidden = false;
     element("refusal").textContent = `The motion cannot be drawn: ${error.message}. The plots are complete.`;
-    element("tools").hidden = true;
+    for (const id of ["stage", "tools"]) element(id).hidden = true;
   }
   const panel = new Panel(recording, element("selected"));
   const clock = new Clock(recording.duration, invalidate);

@@ -1,24 +1,29 @@
-// Meshes: corners and normals, six numbers each, in triangles. Round ones are of radius 1 about z.
+// Meshes: corners with their normals, six numbers each, and triangles of corners. Round ones are of radius 1 about z.
 
-/** Rows of a surface of revolution, [radius, z, normal across, normal along], as triangles. */
-function revolved(rows, around = 28) {
-  const out = [];
-  const corner = ([radius, z, across, along], step) => {
-    const angle = (2 * Math.PI * step) / around;
-    const [c, s] = [Math.cos(angle), Math.sin(angle)];
-    out.push(radius * c, radius * s, z, across * c, across * s, along);
-  };
-  for (let k = 0; k + 1 < rows.length; k++)
-    for (let step = 0; step < around; step++) {
-      const [a, b] = [rows[k], rows[k + 1]];
-      if (a[0] > 0) [[a, 0], [a, 1], [b, 1]].forEach(([row, more]) => corner(row, step + more));
-      if (b[0] > 0) [[a, 0], [b, 1], [b, 0]].forEach(([row, more]) => corner(row, step + more));
-    }
-  return new Float32Array(out);
+/** The surface that strips of rows, [radius, z, normal across, normal along], make when they turn about z. */
+function revolved(strips, around) {
+  const [corners, triangles] = [[], []];
+  for (const rows of strips) {
+    const first = corners.length / 6;
+    for (const [radius, z, across, along] of rows)
+      for (let step = 0; step <= around; step++) {
+        const angle = (2 * Math.PI * step) / around;
+        const [c, s] = [Math.cos(angle), Math.sin(angle)];
+        corners.push(radius * c, radius * s, z, across * c, across * s, along);
+      }
+    for (let k = 0; k + 1 < rows.length; k++)
+      for (let step = 0; step < around; step++) {
+        const a = first + k * (around + 1) + step;
+        const b = a + around + 1;
+        if (rows[k][0] > 0) triangles.push(a, a + 1, b + 1);
+        if (rows[k + 1][0] > 0) triangles.push(a, b + 1, b);
+      }
+  }
+  return { corners: new Float32Array(corners), triangles: new Uint16Array(triangles) };
 }
 
 /** Rows of a quarter circle between two angles of latitude, about the height `z`. */
-function arc(from, to, radius = 1, z = 0, steps = 8) {
+function arc(from, to, steps, radius = 1, z = 0) {
   return Array.from({ length: steps + 1 }, (_, k) => {
     const angle = from + ((to - from) * k) / steps;
     const c = k === 0 && from === -Math.PI / 2 ? 0 : k === steps && to === Math.PI / 2 ? 0 : Math.cos(angle);
@@ -27,40 +32,40 @@ function arc(from, to, radius = 1, z = 0, steps = 8) {
 }
 
 const meshes = {
-  sphere: () => revolved(arc(-Math.PI / 2, Math.PI / 2, 1, 0, 16)),
+  sphere: (around = 24) => revolved([arc(-Math.PI / 2, Math.PI / 2, around / 2)], around),
 
   /** From z = −1/2 to z = 1/2. */
-  cylinder: (around) => {
+  cylinder: (around = 32) => {
     const [bottom, top] = [-0.5, 0.5];
-    const rows = [
+    const strips = [
       [[0, bottom, 0, -1], [1, bottom, 0, -1]],
       [[1, bottom, 1, 0], [1, top, 1, 0]],
       [[1, top, 0, 1], [0, top, 0, 1]],
     ];
-    const parts = rows.flatMap((pair) => Array.from(revolved(pair, around)));
-    return new Float32Array(parts);
+    return revolved(strips, around);
   },
 
   /** From −1 to 1 along each axis. */
   box: () => {
-    const out = [];
+    const [corners, triangles] = [[], []];
     for (let axis = 0; axis < 3; axis++)
       for (const sign of [-1, 1]) {
-        const corners = [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]];
-        for (const [a, b] of sign > 0 ? corners : corners.reverse()) {
+        const first = corners.length / 6;
+        for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
           const [position, normal] = [[0, 0, 0], [0, 0, 0]];
           normal[axis] = position[axis] = sign;
           position[(axis + 1) % 3] = a;
           position[(axis + 2) % 3] = b;
-          out.push(...position, ...normal);
+          corners.push(...position, ...normal);
         }
+        triangles.push(...[0, 1, 2, 0, 2, 3].map((corner) => first + corner));
       }
-    return new Float32Array(out);
+    return { corners: new Float32Array(corners), triangles: new Uint16Array(triangles) };
   },
 
   capsule: (radius, length) => {
-    const lower = arc(-Math.PI / 2, 0, radius, -length / 2);
-    const upper = arc(0, Math.PI / 2, radius, length / 2);
-    return revolved([...lower, ...upper]);
+    const lower = arc(-Math.PI / 2, 0, 6, radius, -length / 2);
+    const upper = arc(0, Math.PI / 2, 6, radius, length / 2);
+    return revolved([[...lower, ...upper]], 24);
   },
 };

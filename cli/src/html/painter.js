@@ -1,12 +1,16 @@
 const solidVertex = `#version 300 es
 uniform mat4 view;
-uniform vec4 turn;
-uniform vec3 place, size, light, up;
+uniform vec3 light, up;
 uniform float ground;
 uniform bool shadow;
 layout(location = 0) in vec3 corner;
 layout(location = 1) in vec3 facing;
+layout(location = 2) in vec3 place;
+layout(location = 3) in vec4 turn;
+layout(location = 4) in vec3 size;
+layout(location = 5) in vec4 color;
 out vec3 normal, inside;
+flat out vec4 paint;
 vec3 turned(vec3 v) {
   vec3 t = 2.0 * cross(turn.yzw, v);
   return v + turn.x * t + cross(turn.yzw, t);
@@ -16,35 +20,36 @@ void main() {
   if (shadow) world -= light * ((dot(world, up) - ground) / dot(light, up));
   normal = turned(facing / size);
   inside = corner;
+  paint = color;
   gl_Position = view * vec4(world, 1.0);
 }`;
 
 const solidFragment = `#version 300 es
-precision mediump float;
-uniform vec4 color;
+precision highp float;
 uniform vec3 light, up;
-uniform bool shadow, octants;
+uniform float darkness;
+uniform bool shadow;
 in vec3 normal, inside;
+flat in vec4 paint;
 out vec4 shown;
 void main() {
-  if (shadow) { shown = color; return; }
+  if (shadow) { shown = vec4(0.0, 0.0, 0.0, darkness); return; }
   vec3 n = normalize(normal);
   float lit = 0.62 + 0.16 * dot(n, up) + 0.34 * max(dot(n, light), 0.0);
   // Octants of two tones show how a round body turns.
-  if (octants && inside.x * inside.y * inside.z < 0.0) lit *= 0.8;
-  shown = vec4(color.rgb * lit, color.a);
+  if (paint.a > 0.5 && inside.x * inside.y * inside.z < 0.0) lit *= 0.8;
+  shown = vec4(paint.rgb * lit, 1.0);
 }`;
 
 const lineVertex = `#version 300 es
 uniform mat4 view;
 uniform vec2 pixels;
-uniform float width, count;
+uniform float width, count, near;
 uniform bool ageing;
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 out vec3 world;
 out float age;
-const float near = 1e-6;
 void main() {
   vec4 a = view * vec4(from, 1.0), b = view * vec4(to, 1.0);
   if (a.w < near) a = mix(a, b, clamp((near - a.w) / (b.w - a.w), 0.0, 1.0));
@@ -76,7 +81,8 @@ void main() {
 /** Draws solids and lines with WebGL 2. */
 class Painter {
   constructor(canvas) {
-    const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
+    // Where the processor draws, smooth edges would cost most of the time.
+    const gl = canvas.getContext("webgl2", { antialias: !Painter.isSoftware(), stencil: true, alpha: false });
     if (!gl) throw new Error("this browser gives no WebGL 2");
     this.canvas = canvas;
     this.gl = gl;
@@ -88,6 +94,15 @@ class Painter {
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+  }
+
+  /** Whether no graphics card draws. */
+  static isSoftware() {
+    const gl = document.createElement("canvas").getContext("webgl2");
+    const information = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = information ? gl.getParameter(information.UNMASKED_RENDERER_WEBGL) : "";
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|software|basic render/i.test(name);
   }
 
   program(...sources) {
@@ -114,17 +129,30 @@ class Painter {
   mesh(key, make) {
     if (!this.meshes.has(key)) {
       const gl = this.gl;
-      const numbers = make();
+      const { corners, triangles } = make();
       const array = gl.createVertexArray();
       gl.bindVertexArray(array);
-      this.buffer(numbers);
-      for (const place of [0, 1]) {
-        gl.enableVertexAttribArray(place);
-        gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 24, 12 * place);
-      }
-      this.meshes.set(key, { array, corners: numbers.length / 6 });
+      this.buffer(corners);
+      for (const place of [0, 1]) this.attribute(place, 3, 24, 12 * place);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
+      const copies = this.buffer(new Float32Array(0));
+      Painter.parts.forEach(([place, size, offset]) => {
+        this.attribute(place, size, 4 * Painter.stride, 4 * offset);
+        gl.vertexAttribDivisor(place, 1);
+      });
+      this.meshes.set(key, { array, corners: triangles.length, copies });
     }
     return this.meshes.get(key);
+  }
+
+  /** Numbers of one copy of a mesh: attribute, how many, and where they begin. */
+  static parts = [[2, 3, 0], [3, 4, 3], [4, 3, 7], [5, 4, 10]];
+  static stride = 14;
+
+  attribute(place, size, stride, offset) {
+    this.gl.enableVertexAttribArray(place);
+    this.gl.vertexAttribPointer(place, size, this.gl.FLOAT, false, stride, offset);
   }
 
   /** Numbers that stay as they are. */
@@ -144,36 +172,47 @@ class Painter {
     gl.clearColor(...background, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
     this.view = camera.matrix(width / height);
+    this.near = camera.near();
     this.up = up;
     this.light = camera.light();
   }
 
-  /** Draws solids, { mesh, pose, size, color, octants }; or their shadow on the ground at that height, `shadow` dark. */
-  drawSolids(solids, ground = 0, shadow = null) {
+  /** Takes the solids to draw, { mesh, pose, size, color, octants }: all copies of a mesh are drawn at once. */
+  place(solids) {
+    const gl = this.gl;
+    const groups = new Map();
+    for (const { mesh, pose, size, color, octants } of solids) {
+      if (!groups.has(mesh)) groups.set(mesh, []);
+      groups.get(mesh).push(...pose.p, ...pose.q, ...size, ...color, octants ? 1 : 0);
+    }
+    for (const [mesh, numbers] of groups) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, mesh.copies);
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STREAM_DRAW);
+    }
+    this.placed = Array.from(groups, ([mesh, numbers]) => ({ mesh, count: numbers.length / Painter.stride }));
+  }
+
+  /** Draws the solids; or with `shadow`, { ground, darkness }, their shadow on the ground at that height. */
+  drawSolids(shadow = null) {
     const gl = this.gl;
     const { program, places } = this.solids;
     gl.useProgram(program);
     gl.uniformMatrix4fv(places.view, false, this.view);
     gl.uniform3fv(places.light, this.light);
     gl.uniform3fv(places.up, this.up);
-    gl.uniform1f(places.ground, ground);
-    gl.uniform1i(places.shadow, shadow === null ? 0 : 1);
-    if (shadow !== null) {
+    gl.uniform1i(places.shadow, shadow ? 1 : 0);
+    if (shadow) {
+      gl.uniform1f(places.ground, shadow.ground);
+      gl.uniform1f(places.darkness, shadow.darkness);
       // Each pixel is darkened once.
       gl.enable(gl.STENCIL_TEST);
       gl.stencilFunc(gl.EQUAL, 0, 255);
       gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
       gl.depthMask(false);
-      gl.uniform4f(places.color, 0, 0, 0, shadow);
     }
-    for (const { mesh, pose, size, color, octants } of solids) {
+    for (const { mesh, count } of this.placed) {
       gl.bindVertexArray(mesh.array);
-      gl.uniform3fv(places.place, pose.p);
-      gl.uniform4fv(places.turn, pose.q);
-      gl.uniform3fv(places.size, size);
-      if (shadow === null) gl.uniform4f(places.color, color[0], color[1], color[2], 1);
-      gl.uniform1i(places.octants, octants ? 1 : 0);
-      gl.drawArrays(gl.TRIANGLES, 0, mesh.corners);
+      gl.drawElementsInstanced(gl.TRIANGLES, mesh.corners, gl.UNSIGNED_SHORT, 0, count);
     }
     gl.disable(gl.STENCIL_TEST);
     gl.depthMask(true);
@@ -193,12 +232,12 @@ class Painter {
     }
     if (count <= 0) return;
     for (const place of [0, 1]) {
-      gl.enableVertexAttribArray(place);
-      gl.vertexAttribPointer(place, 3, gl.FLOAT, false, strip ? 12 : 24, 12 * (from + place));
+      this.attribute(place, 3, strip ? 12 : 24, 12 * (from + place));
       gl.vertexAttribDivisor(place, 1);
     }
     gl.uniformMatrix4fv(places.view, false, this.view);
     gl.uniform2f(places.pixels, this.canvas.width, this.canvas.height);
+    gl.uniform1f(places.near, this.near);
     gl.uniform1f(places.width, width);
     gl.uniform1f(places.count, count);
     gl.uniform1i(places.ageing, ageing ? 1 : 0);

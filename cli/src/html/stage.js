@@ -23,20 +23,24 @@ class Stage {
     };
     this.radii = recording.bodies.map(radius);
     const bounds = (frames) => {
-      const low = [Infinity, Infinity, Infinity];
-      const high = [-Infinity, -Infinity, -Infinity];
+      const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+      const balls = [];
       let bottom = Infinity;
       for (const frame of frames)
         recording.bodies.forEach((body, index) => {
           const pose = recording.poseAt(frame, index);
-          for (const place of [point(pose, body.com), point(pose, poseOf(body.joint_in_body).p)])
-            for (let k = 0; k < 3; k++) {
-              low[k] = Math.min(low[k], place[k] - this.radii[index]);
-              high[k] = Math.max(high[k], place[k] + this.radii[index]);
-            }
+          balls.push([point(pose, body.com), this.radii[index]]);
+          balls.push([point(pose, poseOf(body.joint_in_body).p), 0]);
           bottom = Math.min(bottom, this.lowest(index, pose));
         });
-      return { centre: scaled(add(low, high), 0.5), radius: length(sub(high, low)) / 2 || 1, bottom };
+      for (const [place, radius] of balls)
+        for (let k = 0; k < 3; k++) {
+          low[k] = Math.min(low[k], place[k] - radius);
+          high[k] = Math.max(high[k], place[k] + radius);
+        }
+      const centre = scaled(add(low, high), 0.5);
+      const reach = balls.map(([place, radius]) => length(sub(place, centre)) + radius);
+      return { centre, radius: Math.max(...reach) || 1, bottom };
     };
     const stride = Math.max(1, Math.ceil(recording.frames / 240));
     const some = Array.from({ length: Math.ceil(recording.frames / stride) }, (_, k) => k * stride);
@@ -180,7 +184,7 @@ class Stage {
     const out = [];
     for (const rod of this.rods) {
       if (rod.joint) {
-        const ball = painter.mesh("ball", () => revolved(arc(-Math.PI / 2, Math.PI / 2, 1, 0, 8), 12));
+        const ball = painter.mesh("ball", () => meshes.sphere(12));
         out.push({ mesh: ball, pose: { p: place(rod.joint), q: [1, 0, 0, 0] }, size: [2.2 * thick, 2.2 * thick, 2.2 * thick], color: colors.rod });
         continue;
       }
@@ -188,7 +192,7 @@ class Stage {
       const along = sub(b, a);
       const long = length(along);
       if (long < thick) continue;
-      const mesh = painter.mesh("rod", () => meshes.cylinder(10));
+      const mesh = painter.mesh("rod", () => meshes.cylinder(8));
       const pose = { p: scaled(add(a, b), 0.5), q: fromAxis(along) };
       out.push({ mesh, pose, size: [thick, thick, long], color: colors.rod });
     }
@@ -203,15 +207,13 @@ class Stage {
     if (options.follow && this.followed) camera.target = add(camera.target, sub(centre, this.followed));
     this.followed = options.follow ? centre : null;
     painter.begin(camera, colors.sky, recording.up);
-    const solids = this.shown(poses);
-    const rods = this.shownRods(poses);
+    painter.place(this.shown(poses).concat(this.shownRods(poses)));
     if (options.ground) {
       const seen = dot(sub(camera.eye(), scaled(recording.up, this.ground)), recording.up) > 0;
-      if (seen) painter.drawSolids(solids.concat(rods), this.ground, colors.shadow);
+      if (seen) painter.drawSolids({ ground: this.ground, darkness: colors.shadow });
       this.drawGrid();
     }
-    painter.drawSolids(solids);
-    painter.drawSolids(rods);
+    painter.drawSolids();
     if (options.trails) this.drawTrails(time);
     if (options.frames) this.drawFrames(poses);
   }
