@@ -59,8 +59,8 @@ function start() {
     pace.rate = ((pace.drawn - 1) / span) * 1000;
     [pace.since, pace.drawn] = [now, 1];
     element("rate").textContent = `${pace.rate.toFixed(0)} frames/s`;
-    if (pace.rate < 40 && sharpness > 0.5) {
-      sharpness = Math.max(0.5, 0.8 * sharpness);
+    if (pace.rate < 35 && sharpness > 0.6) {
+      sharpness = Math.max(0.6, 0.8 * sharpness);
       resize();
     }
   }

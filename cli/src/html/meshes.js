@@ -1,4 +1,5 @@
-// Meshes: corners with their normals, six numbers each, and triangles of corners. Round ones are of radius 1 about z.
+// Meshes: corners with their normals, six numbers each, and triangles of corners, counterclockwise from outside. Round ones are
+// of radius 1 about z, with so many corners `around` it, a multiple of four.
 
 /** The surface that strips of rows, [radius, z, normal across, normal along], make when they turn about z. */
 function revolved(strips, around) {
@@ -32,10 +33,10 @@ function arc(from, to, steps, radius = 1, z = 0) {
 }
 
 const meshes = {
-  sphere: (around = 24) => revolved([arc(-Math.PI / 2, Math.PI / 2, around / 2)], around),
+  sphere: (around) => revolved([arc(-Math.PI / 2, Math.PI / 2, around / 2)], around),
 
   /** From z = −1/2 to z = 1/2. */
-  cylinder: (around = 32) => {
+  cylinder: (around) => {
     const [bottom, top] = [-0.5, 0.5];
     const strips = [
       [[0, bottom, 0, -1], [1, bottom, 0, -1]],
@@ -44,6 +45,9 @@ const meshes = {
     ];
     return revolved(strips, around);
   },
+
+  /** A cylinder without ends. */
+  tube: (around) => revolved([[[1, -0.5, 1, 0], [1, 0.5, 1, 0]]], around),
 
   /** From −1 to 1 along each axis. */
   box: () => {
@@ -58,14 +62,15 @@ const meshes = {
           position[(axis + 2) % 3] = b;
           corners.push(...position, ...normal);
         }
-        triangles.push(...[0, 1, 2, 0, 2, 3].map((corner) => first + corner));
+        const order = sign > 0 ? [0, 1, 2, 0, 2, 3] : [0, 2, 1, 0, 3, 2];
+        triangles.push(...order.map((corner) => first + corner));
       }
     return { corners: new Float32Array(corners), triangles: new Uint16Array(triangles) };
   },
 
-  capsule: (radius, length) => {
-    const lower = arc(-Math.PI / 2, 0, 6, radius, -length / 2);
-    const upper = arc(0, Math.PI / 2, 6, radius, length / 2);
-    return revolved([[...lower, ...upper]], 24);
+  capsule: (around, radius, length) => {
+    const lower = arc(-Math.PI / 2, 0, around / 4, radius, -length / 2);
+    const upper = arc(0, Math.PI / 2, around / 4, radius, length / 2);
+    return revolved([[...lower, ...upper]], around);
   },
 };

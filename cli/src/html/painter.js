@@ -81,14 +81,16 @@ void main() {
 /** Draws solids and lines with WebGL 2. */
 class Painter {
   constructor(canvas) {
-    // Where the processor draws, smooth edges would cost most of the time.
-    const gl = canvas.getContext("webgl2", { antialias: !Painter.isSoftware(), stencil: true, alpha: false });
+    // Where the processor draws, smooth edges and many corners would cost most of the time.
+    const software = Painter.isSoftware();
+    const gl = canvas.getContext("webgl2", { antialias: !software, stencil: true, alpha: false });
     if (!gl) throw new Error("this browser gives no WebGL 2");
     this.canvas = canvas;
     this.gl = gl;
     this.solids = this.program(solidVertex, solidFragment);
     this.lines = this.program(lineVertex, lineFragment);
     this.meshes = new Map();
+    this.around = software ? 20 : 40;
     this.scratch = gl.createBuffer();
     this.lineArrays = gl.createVertexArray();
     gl.enable(gl.DEPTH_TEST);
@@ -177,24 +179,15 @@ class Painter {
     this.light = camera.light();
   }
 
-  /** Takes the solids to draw, { mesh, pose, size, color, octants }: all copies of a mesh are drawn at once. */
-  place(solids) {
+  /** Draws solids, { mesh, pose, size, color, octants }, all copies of a mesh at once; or with `shadow`, { ground, darkness }, their
+      shadow on the ground at that height. */
+  drawSolids(solids, shadow = null) {
     const gl = this.gl;
     const groups = new Map();
     for (const { mesh, pose, size, color, octants } of solids) {
       if (!groups.has(mesh)) groups.set(mesh, []);
       groups.get(mesh).push(...pose.p, ...pose.q, ...size, ...color, octants ? 1 : 0);
     }
-    for (const [mesh, numbers] of groups) {
-      gl.bindBuffer(gl.ARRAY_BUFFER, mesh.copies);
-      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STREAM_DRAW);
-    }
-    this.placed = Array.from(groups, ([mesh, numbers]) => ({ mesh, count: numbers.length / Painter.stride }));
-  }
-
-  /** Draws the solids; or with `shadow`, { ground, darkness }, their shadow on the ground at that height. */
-  drawSolids(shadow = null) {
-    const gl = this.gl;
     const { program, places } = this.solids;
     gl.useProgram(program);
     gl.uniformMatrix4fv(places.view, false, this.view);
@@ -210,10 +203,14 @@ class Painter {
       gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
       gl.depthMask(false);
     }
-    for (const { mesh, count } of this.placed) {
+    gl.enable(gl.CULL_FACE);
+    for (const [mesh, numbers] of groups) {
       gl.bindVertexArray(mesh.array);
-      gl.drawElementsInstanced(gl.TRIANGLES, mesh.corners, gl.UNSIGNED_SHORT, 0, count);
+      gl.bindBuffer(gl.ARRAY_BUFFER, mesh.copies);
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STREAM_DRAW);
+      gl.drawElementsInstanced(gl.TRIANGLES, mesh.corners, gl.UNSIGNED_SHORT, 0, numbers.length / Painter.stride);
     }
+    gl.disable(gl.CULL_FACE);
     gl.disable(gl.STENCIL_TEST);
     gl.depthMask(true);
   }

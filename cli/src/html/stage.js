@@ -91,7 +91,7 @@ class Stage {
     const least = 0.006 * this.size;
     recording.shapes.forEach(({ body, kind, size, pose, color }) => {
       const key = kind === "capsule" ? `capsule ${size}` : kind;
-      const mesh = painter.mesh(key, () => meshes[kind](...(kind === "capsule" ? size : [])));
+      const mesh = painter.mesh(key, () => meshes[kind](painter.around, ...size));
       const scale = {
         box: () => scaled(size, 0.5),
         sphere: () => [size[0], size[0], size[0]],
@@ -106,8 +106,9 @@ class Stage {
       const local = poseOf(ellipsoid.pose);
       const bare = !recording.shapes.some((shape) => shape.body === body);
       const half = ellipsoid.half.map((axis) => Math.max(axis, least));
-      const sphere = painter.mesh("sphere", meshes.sphere);
-      solids.push({ body, when: bare ? ["shape", "ellipsoid"] : ["ellipsoid"], mesh: sphere, local, size: half, octants: true, reach: half });
+      const sphere = painter.mesh("sphere", () => meshes.sphere(painter.around));
+      const coarse = painter.mesh("coarse sphere", () => meshes.sphere(12));
+      solids.push({ body, when: bare ? ["shape", "ellipsoid"] : ["ellipsoid"], mesh: sphere, coarse, local, size: half, octants: true, reach: half });
       // A box of half sides s has moments m/3 (s² + s²), the ellipsoid m/5 (a² + a²).
       const sides = scaled(half, Math.sqrt(3 / 5));
       solids.push({ body, when: ["box"], mesh: painter.mesh("box", meshes.box), local, size: sides, octants: false, reach: sides });
@@ -184,7 +185,7 @@ class Stage {
     const out = [];
     for (const rod of this.rods) {
       if (rod.joint) {
-        const ball = painter.mesh("ball", () => meshes.sphere(12));
+        const ball = painter.mesh("ball", () => meshes.sphere(8));
         out.push({ mesh: ball, pose: { p: place(rod.joint), q: [1, 0, 0, 0] }, size: [2.2 * thick, 2.2 * thick, 2.2 * thick], color: colors.rod });
         continue;
       }
@@ -192,7 +193,7 @@ class Stage {
       const along = sub(b, a);
       const long = length(along);
       if (long < thick) continue;
-      const mesh = painter.mesh("rod", () => meshes.cylinder(8));
+      const mesh = painter.mesh("rod", () => meshes.tube(8));
       const pose = { p: scaled(add(a, b), 0.5), q: fromAxis(along) };
       out.push({ mesh, pose, size: [thick, thick, long], color: colors.rod });
     }
@@ -207,13 +208,14 @@ class Stage {
     if (options.follow && this.followed) camera.target = add(camera.target, sub(centre, this.followed));
     this.followed = options.follow ? centre : null;
     painter.begin(camera, colors.sky, recording.up);
-    painter.place(this.shown(poses).concat(this.shownRods(poses)));
+    const solids = this.shown(poses);
     if (options.ground) {
       const seen = dot(sub(camera.eye(), scaled(recording.up, this.ground)), recording.up) > 0;
-      if (seen) painter.drawSolids({ ground: this.ground, darkness: colors.shadow });
+      const coarse = solids.map((solid) => ({ ...solid, mesh: solid.coarse ?? solid.mesh }));
+      if (seen) painter.drawSolids(coarse, { ground: this.ground, darkness: colors.shadow });
       this.drawGrid();
     }
-    painter.drawSolids();
+    painter.drawSolids(solids.concat(this.shownRods(poses)));
     if (options.trails) this.drawTrails(time);
     if (options.frames) this.drawFrames(poses);
   }
