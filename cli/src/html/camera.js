@@ -17,10 +17,10 @@ class Camera {
     this.elevation = 0.35;
   }
 
-  /** Shows all of a ball. */
-  fit(centre, radius) {
+  /** Shows all of a ball in a picture so many times wider than high. */
+  fit(centre, radius, aspect) {
     this.target = centre;
-    this.distance = (1.08 * radius) / Math.sin(Camera.angle / 2);
+    this.distance = (1.08 * radius) / Math.sin(Camera.angle / 2) / Math.min(1, aspect);
   }
 
   /** Directions of the picture in the world: towards the eye, right and up. */

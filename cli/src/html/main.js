@@ -34,13 +34,16 @@ function start() {
     scheduled = true;
   }
 
-  /** Pixels of the picture to one of the page: fewer where drawing is slow. */
-  let sharpness = Math.min(2, window.devicePixelRatio || 1);
+  /** Pixels of the picture to one of the page; while it plays fewer where drawing is slow. */
+  const sharpest = Math.min(2, window.devicePixelRatio || 1);
+  let sharpness = sharpest;
+  let drawnPlaying = false;
   const pace = { since: null, drawn: 0, rate: 0 };
 
   function frame(now) {
     scheduled = false;
     clock.tick(now);
+    if (clock.playing !== drawnPlaying) resize();
     draw();
     if (!clock.playing) {
       pace.since = null;
@@ -88,8 +91,11 @@ function start() {
   }
 
   function resize() {
-    canvas.width = Math.max(1, Math.round(canvas.clientWidth * sharpness));
-    canvas.height = Math.max(1, Math.round(canvas.clientHeight * sharpness));
+    drawnPlaying = clock.playing;
+    const pixels = drawnPlaying ? sharpness : sharpest;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(size * pixels)));
+    // Setting a size clears the picture, even the same size.
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     invalidate();
   }
 
@@ -154,7 +160,9 @@ function start() {
   };
   document.addEventListener("keydown", (event) => {
     const key = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (!key || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, input, button")) return;
+    const own = event.target.closest("select, input, button");
+    const taken = own?.matches("select, input[type=range]") ? /^( |Arrow|Home|End)/ : /^ /;
+    if (!key || event.ctrlKey || event.metaKey || event.altKey || (own && taken.test(event.key))) return;
     event.preventDefault();
     key();
   });

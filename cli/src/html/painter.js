@@ -10,6 +10,7 @@ layout(location = 3) in vec4 turn;
 layout(location = 4) in vec3 size;
 layout(location = 5) in vec4 color;
 out vec3 normal, inside;
+out float height;
 flat out vec4 paint;
 vec3 turned(vec3 v) {
   vec3 t = 2.0 * cross(turn.yzw, v);
@@ -17,7 +18,8 @@ vec3 turned(vec3 v) {
 }
 void main() {
   vec3 world = place + turned(size * corner);
-  if (shadow) world -= light * ((dot(world, up) - ground) / dot(light, up));
+  height = dot(world, up) - ground;
+  if (shadow) world -= light * (height / dot(light, up));
   normal = turned(facing / size);
   inside = corner;
   paint = color;
@@ -30,10 +32,15 @@ uniform vec3 light, up;
 uniform float darkness;
 uniform bool shadow;
 in vec3 normal, inside;
+in float height;
 flat in vec4 paint;
 out vec4 shown;
 void main() {
-  if (shadow) { shown = vec4(0.0, 0.0, 0.0, darkness); return; }
+  if (shadow) {
+    if (height < 0.0) discard;
+    shown = vec4(0.0, 0.0, 0.0, darkness);
+    return;
+  }
   vec3 n = normalize(normal);
   float lit = 0.62 + 0.16 * dot(n, up) + 0.34 * max(dot(n, light), 0.0);
   // Octants of two tones show how a round body turns.

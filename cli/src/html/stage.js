@@ -6,6 +6,8 @@ class Stage {
     this.camera = new Camera(recording.up);
     this.options = { solids: "shape", rods: true, frames: false, trails: false, ground: true, follow: false };
     this.selected = null;
+    // Shapes show by themselves how bodies hang together.
+    this.options.rods = recording.bodies.some((_, body) => !recording.shapes.some((shape) => shape.body === body));
     this.measure();
     this.solids = this.makeSolids();
     this.rods = this.makeRods();
@@ -16,21 +18,27 @@ class Stage {
   /** How large the mechanism is, where it goes, and how high the ground is. */
   measure() {
     const { recording } = this;
-    const radius = (body, index) => {
-      const shapes = recording.shapes.filter((shape) => shape.body === index);
-      const reach = (shape) => length(sub(poseOf(shape.pose).p, body.com)) + Math.hypot(...shape.size) * (shape.kind === "box" ? 0.5 : 1);
-      return Math.max(0, ...(body.ellipsoid?.half ?? []), ...shapes.map(reach));
+    const reach = {
+      box: (size) => Math.hypot(...size) / 2,
+      sphere: ([r]) => r,
+      cylinder: ([r, l]) => Math.hypot(r, l / 2),
+      capsule: ([r, l]) => r + l / 2,
     };
-    this.radii = recording.bodies.map(radius);
+    // Balls around what stands for each body, and its joint.
+    const around = recording.bodies.map((body, index) => {
+      const shapes = recording.shapes.filter((shape) => shape.body === index);
+      const balls = shapes.map((shape) => [poseOf(shape.pose).p, reach[shape.kind](shape.size)]);
+      if (balls.length === 0) balls.push([body.com, Math.max(0, ...(body.ellipsoid?.half ?? []))]);
+      return [...balls, [poseOf(body.joint_in_body).p, 0]];
+    });
     const bounds = (frames) => {
       const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
       const balls = [];
       let bottom = Infinity;
       for (const frame of frames)
-        recording.bodies.forEach((body, index) => {
+        recording.bodies.forEach((_, index) => {
           const pose = recording.poseAt(frame, index);
-          balls.push([point(pose, body.com), this.radii[index]]);
-          balls.push([point(pose, poseOf(body.joint_in_body).p), 0]);
+          balls.push(...around[index].map(([place, radius]) => [point(pose, place), radius]));
           bottom = Math.min(bottom, this.lowest(index, pose));
         });
       for (const [place, radius] of balls)
@@ -39,18 +47,20 @@ class Stage {
           high[k] = Math.max(high[k], place[k] + radius);
         }
       const centre = scaled(add(low, high), 0.5);
-      const reach = balls.map(([place, radius]) => length(sub(place, centre)) + radius);
-      return { centre, radius: Math.max(...reach) || 1, bottom };
+      const distances = balls.map(([place, radius]) => length(sub(place, centre)) + radius);
+      return { centre, radius: distances.reduce((a, b) => Math.max(a, b), 0) || 1, bottom };
     };
     const stride = Math.max(1, Math.ceil(recording.frames / 240));
     const some = Array.from({ length: Math.ceil(recording.frames / stride) }, (_, k) => k * stride);
     const [still, moving] = [bounds([0]), bounds([...some, recording.frames - 1])];
     this.size = still.radius;
     this.travels = moving.radius > 4 * still.radius;
-    this.all = this.travels ? still : moving;
+    // What travels has room around it.
+    this.all = this.travels ? { ...still, radius: 1.5 * still.radius } : moving;
     this.options.follow = this.travels;
-    // The ground is level with the world's origin, or below everything that hangs from it.
-    this.ground = moving.bottom < -0.02 * this.size && moving.bottom > -6 * this.size ? moving.bottom : 0;
+    // The ground is level with the world's origin, or below everything; of what falls far, below where it starts.
+    const bottom = moving.bottom > -6 * this.size ? moving.bottom : still.bottom;
+    this.ground = bottom < -0.02 * this.size ? bottom : 0;
   }
 
   /** Height of the lowest point of what stands for a body: of its shapes, or of its ellipsoid. */
@@ -80,7 +90,8 @@ class Stage {
   /** The first view. */
   home() {
     this.camera.reset();
-    this.camera.fit(this.all.centre, this.all.radius);
+    const { clientWidth: width, clientHeight: height } = this.painter.canvas;
+    this.camera.fit(this.all.centre, this.all.radius, width / height || 1);
     this.followed = null;
   }
 
@@ -91,7 +102,7 @@ class Stage {
     const least = 0.006 * this.size;
     recording.shapes.forEach(({ body, kind, size, pose, color }) => {
       const key = kind === "capsule" ? `capsule ${size}` : kind;
-      const mesh = painter.mesh(key, () => meshes[kind](painter.around, ...size));
+      const mesh = painter.mesh(key, () => meshes[kind](Math.max(32, painter.around), ...size));
       const scale = {
         box: () => scaled(size, 0.5),
         sphere: () => [size[0], size[0], size[0]],
@@ -106,7 +117,7 @@ class Stage {
       const local = poseOf(ellipsoid.pose);
       const bare = !recording.shapes.some((shape) => shape.body === body);
       const half = ellipsoid.half.map((axis) => Math.max(axis, least));
-      const sphere = painter.mesh("sphere", () => meshes.sphere(painter.around));
+      const sphere = painter.mesh("sphere", () => meshes.sphere(recording.bodies.length > 8 ? painter.around : 40));
       const coarse = painter.mesh("coarse sphere", () => meshes.sphere(12));
       solids.push({ body, when: bare ? ["shape", "ellipsoid"] : ["ellipsoid"], mesh: sphere, coarse, local, size: half, octants: true, reach: half });
       // A box of half sides s has moments m/3 (s² + s²), the ellipsoid m/5 (a² + a²).
@@ -182,10 +193,11 @@ class Stage {
     const { painter, size, colors } = this;
     const place = ({ body, local }) => (body === null ? local : point(poses[body], local));
     const thick = 0.007 * size;
+    const ball = painter.mesh("ball", () => meshes.sphere(8));
+    const tube = painter.mesh("rod", () => meshes.tube(8));
     const out = [];
     for (const rod of this.rods) {
       if (rod.joint) {
-        const ball = painter.mesh("ball", () => meshes.sphere(8));
         out.push({ mesh: ball, pose: { p: place(rod.joint), q: [1, 0, 0, 0] }, size: [2.2 * thick, 2.2 * thick, 2.2 * thick], color: colors.rod });
         continue;
       }
@@ -193,9 +205,8 @@ class Stage {
       const along = sub(b, a);
       const long = length(along);
       if (long < thick) continue;
-      const mesh = painter.mesh("rod", () => meshes.tube(8));
       const pose = { p: scaled(add(a, b), 0.5), q: fromAxis(along) };
-      out.push({ mesh, pose, size: [thick, thick, long], color: colors.rod });
+      out.push({ mesh: tube, pose, size: [thick, thick, long], color: colors.rod });
     }
     return out;
   }
