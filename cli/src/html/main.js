@@ -9,10 +9,11 @@ function start() {
   const canvas = element("stage");
   let stage = null;
   try {
+    if (recording.frames === 0) throw new Error("the simulation stopped before its first sample");
     stage = new Stage(recording, new Painter(canvas));
   } catch (error) {
     element("refusal").hidden = false;
-    element("refusal").textContent = `The motion cannot be drawn: ${error.message}. The plots are complete.`;
+    element("refusal").textContent = `The motion cannot be drawn: ${error.message}. Plots do not need it.`;
     for (const id of ["stage", "tools"]) element(id).hidden = true;
   }
   const panel = new Panel(recording, element("selected"));
