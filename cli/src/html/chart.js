@@ -8,6 +8,15 @@ function ticks(low, high, count) {
   return Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => (first + k) * step);
 }
 
+/** Ticks of a logarithmic axis between two powers of ten: whole powers, and where these are few, 2 and 5 times them. */
+function powers(low, high) {
+  const factors = high - low > 3 ? [1] : high - low > 1.2 ? [1, 3] : [1, 2, 5];
+  const found = [];
+  for (let power = Math.floor(low); power <= high; power++)
+    for (const factor of factors) found.push(power + Math.log10(factor));
+  return found.filter((value) => value >= low && value <= high);
+}
+
 /** A number for people: three or four digits. */
 function shortNumber(number, digits = 4) {
   if (!Number.isFinite(number)) return "–";
@@ -135,8 +144,7 @@ class Plot {
     context.fillStyle = color("--muted");
     context.textAlign = "right";
     context.textBaseline = "middle";
-    for (const value of ticks(low, high, 4)) {
-      if (this.chart.log && !Number.isInteger(Number(value.toFixed(6))) && high - low > 2) continue;
+    for (const value of this.chart.log ? powers(low, high) : ticks(low, high, 4)) {
       context.beginPath();
       context.moveTo(left, y(value));
       context.lineTo(width - right, y(value));

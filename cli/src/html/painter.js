@@ -222,8 +222,9 @@ class Painter {
     gl.depthMask(true);
   }
 
-  /** Draws segments between points, three numbers each; pairs of points, or with `strip` each point with the next. */
-  drawLines(points, { color, alpha = 1, width = 1.5, strip = false, from = 0, count, ageing = false, centre = [0, 0, 0], reach = 0 }) {
+  /** Draws segments between points, three numbers each; pairs of points, or with `strip` each point with the next; `above` even what hides
+      them. */
+  drawLines(points, { color, alpha = 1, width = 1.5, strip = false, from = 0, count, ageing = false, above = false, centre = [0, 0, 0], reach = 0 }) {
     const gl = this.gl;
     const { program, places } = this.lines;
     gl.useProgram(program);
@@ -249,7 +250,9 @@ class Painter {
     gl.uniform3fv(places.centre, centre);
     gl.uniform1f(places.reach, reach);
     gl.depthMask(false);
+    if (above) gl.disable(gl.DEPTH_TEST);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+    gl.enable(gl.DEPTH_TEST);
     gl.depthMask(true);
   }
 }

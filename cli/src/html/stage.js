@@ -273,7 +273,7 @@ class Stage {
     const all = [[world, 0.2], ...poses.map((pose) => [pose, 0.13]), ...named];
     [[1, 0, 0], [0, 1, 0], [0, 0, 1]].forEach((axis, k) => {
       const points = all.flatMap(([pose, long]) => [...pose.p, ...point(pose, scaled(axis, long * size))]);
-      painter.drawLines(new Float32Array(points), { color: colors.axes[k], width: 2.5 });
+      painter.drawLines(new Float32Array(points), { color: colors.axes[k], width: 2.5, above: true });
     });
   }
 
