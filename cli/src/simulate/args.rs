@@ -14,6 +14,10 @@ Examples:
       with fixed steps, trajectory to swing.csv
   hamel simulate scenes/heavy_top.toml --method verner9 --tol 2e-16
       as accurate as doubles allow: order 8, and sums that lose no rounding
+  hamel simulate scenes/rolling_disk.toml --html disk.html
+      one page to open in a browser, with no network: the motion in three dimensions, and plots along the time
+  hamel simulate scenes/snake.toml --parquet snake.parquet
+      the trajectory for pandas, polars, MATLAB or PlotJuggler
   hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
       the state at three times, as JSON on stdout
   hamel simulate anymal.urdf --floating-base --t-end 0.5
@@ -24,6 +28,11 @@ The CSV file has one row a sample: `t_s`, `energy_J`, and for each body NAME
   NAME.rx_rad, .ry_rad, .rz_rad              attitude as rotation vector, body to world
   NAME.vx_m_per_s, …                         velocity of the centre of mass, world axes
   NAME.wx_rad_per_s, …                       angular velocity, body axes
+The Parquet file has the same columns and more: docs/trajectories.md lists them.
+
+The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellipsoids or boxes of their inertias. Drag to turn,
+wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step.
+It holds at most 60 samples a second of the trajectory: for a smooth picture keep --sample-step at 0.02 or less.
 
 Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a file that cannot be written; 2 wrong options.";
 
@@ -85,9 +94,17 @@ pub struct Args {
     )]
     pub at: Vec<f64>,
 
-    /// Write the trajectory to FILE [default: the scene's file name with .csv, in the current folder]
+    /// Write the trajectory to FILE as CSV [default, unless another output is asked for: the scene's file name with .csv, in the current folder]
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
+
+    /// Write the trajectory to FILE as Parquet
+    #[arg(long, value_name = "FILE")]
+    pub parquet: Option<PathBuf>,
+
+    /// Write a page to FILE that shows the motion and plots in a browser; it needs no network and no other file
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
 
     /// Print the samples as JSON on stdout, and nothing else; no CSV unless asked for
     #[arg(long)]

@@ -22,6 +22,13 @@ const COLUMNS: [&str; 12] = [
     "wz_rad_per_s",
 ];
 
+/// Names of the columns: of time, energy, and twelve for each body. [`Sample::numbers`] has the numbers under them.
+pub fn columns<'a>(bodies: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let columns = bodies.flat_map(|body| COLUMNS.map(|column| format!("{body}.{column}")));
+    let head = ["t_s", "energy_J"].map(String::from).into_iter();
+    head.chain(columns).collect()
+}
+
 /// A CSV file being written.
 pub struct Trajectory {
     writer: csv::Writer<BufWriter<File>>,
@@ -41,9 +48,7 @@ impl Trajectory {
         })?;
         let writer = csv::Writer::from_writer(BufWriter::new(file));
         let mut trajectory = Self { writer, target };
-        let columns = bodies.flat_map(|body| COLUMNS.map(|column| format!("{body}.{column}")));
-        let header = ["t_s", "energy_J"].map(String::from).into_iter();
-        trajectory.record(header.chain(columns))?;
+        trajectory.record(columns(bodies).into_iter())?;
         Ok(trajectory)
     }
 
@@ -52,13 +57,8 @@ impl Trajectory {
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&mut self, sample: &Sample<'_>) -> Result<(), Failure> {
-        let bodies = sample.bodies.iter().flat_map(|body| {
-            let pose = body.position_com.into_iter().chain(body.rotation_vector());
-            pose.chain(body.velocity_com_world)
-                .chain(body.angular_velocity_body)
-        });
-        let numbers = [sample.t, sample.energy].into_iter().chain(bodies);
         // The shortest digits that read back as the same number.
+        let numbers = sample.numbers().into_iter();
         self.record(numbers.map(|number| format!("{number:?}")))
     }
 

@@ -3,6 +3,8 @@
 mod args;
 mod csv;
 mod json;
+mod page;
+mod parquet;
 mod plan;
 mod progress;
 mod run;

@@ -3,7 +3,7 @@
 use super::args::Args;
 use super::{settings, times};
 use crate::output::{Failure, tell};
-use hamel::integrate::Options;
+use hamel::integrate::{Method, Options};
 use hamel::registry::JointRegistry;
 use hamel_scene::{Scene, Settings, urdf};
 use std::path::{Path, PathBuf};
@@ -17,8 +17,12 @@ pub struct Plan {
     pub settings: Settings,
     /// Sample times, s.
     pub times: Vec<f64>,
-    /// Where the trajectory goes, if anywhere.
+    /// Where the trajectory goes as CSV, if anywhere.
     pub csv: Option<PathBuf>,
+    /// Where it goes as Parquet, if anywhere.
+    pub parquet: Option<PathBuf>,
+    /// Where it goes as a page to look at, if anywhere.
+    pub html: Option<PathBuf>,
 }
 
 impl Plan {
@@ -45,7 +49,25 @@ impl Plan {
             settings,
             times,
             csv: csv_path(args),
+            parquet: args.parquet.clone(),
+            html: args.html.clone(),
         })
+    }
+
+    /// The files of the trajectory.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let files = [&self.csv, &self.parquet, &self.html];
+        files.into_iter().flatten().map(PathBuf::as_path)
+    }
+
+    /// The method of integration and its accuracy, in words.
+    pub fn method(&self) -> String {
+        match self.settings.method {
+            Method::Rk4 { dt } => format!("rk4 with steps of {dt:?} s"),
+            Method::Controlled { pair, control } => {
+                format!("{} to {:e}", pair.name(), control.tolerance)
+            }
+        }
     }
 
     /// What the integrator is asked to do.
@@ -78,7 +100,7 @@ fn load(args: &Args, registry: &JointRegistry) -> Result<Scene, Failure> {
     Ok(Scene::load(&args.scene, registry)?)
 }
 
-/// The file asked for; else, unless JSON is wanted, the scene's file name with `.csv` in the current folder.
+/// The file asked for; else, unless something else is wanted, the scene's file name with `.csv` in the current folder.
 fn csv_path(args: &Args) -> Option<PathBuf> {
     let default = || {
         let stem = args.scene.file_stem().unwrap_or("trajectory".as_ref());
@@ -88,6 +110,6 @@ fn csv_path(args: &Args) -> Option<PathBuf> {
     };
     match &args.csv {
         Some(path) => Some(path.clone()),
-        None => (!args.json).then(default),
+        None => (!args.json && args.parquet.is_none() && args.html.is_none()).then(default),
     }
 }

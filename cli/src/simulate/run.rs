@@ -3,6 +3,8 @@
 use super::args::Args;
 use super::csv::Trajectory;
 use super::json::{self, Report, Statistics};
+use super::page::Page;
+use super::parquet::Parquet;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::sample::Sample;
@@ -58,12 +60,16 @@ fn simulate(plan: &Plan, quiet: bool) -> Result<(Solution, Statistics), Failure>
 }
 
 fn stopped(plan: &Plan, error: &IntegrateError) -> Failure {
-    Failure::Simulation(match &plan.csv {
-        Some(path) => format!(
+    let files: Vec<String> = plan
+        .files()
+        .map(|path| path.display().to_string())
+        .collect();
+    Failure::Simulation(match files.as_slice() {
+        [] => error.to_string(),
+        files => format!(
             "{error} (the samples before that are in {})",
-            path.display()
+            files.join(", ")
         ),
-        None => error.to_string(),
     })
 }
 
@@ -84,6 +90,8 @@ fn sample<'a>(mechanism: &'a Mechanism, state: &State) -> Result<Sample<'a>, Fai
 struct Recorder<'a> {
     mechanism: &'a Mechanism,
     trajectory: Option<Trajectory>,
+    parquet: Option<Parquet>,
+    page: Option<Page<'a>>,
     progress: Progress,
     failure: Option<Failure>,
 }
@@ -99,6 +107,8 @@ impl<'a> Recorder<'a> {
         Ok(Self {
             mechanism,
             trajectory,
+            parquet: Parquet::create(plan)?,
+            page: Page::create(plan)?,
             progress: Progress::new(plan.settings.t_end, quiet),
             failure: None,
         })
@@ -106,6 +116,9 @@ impl<'a> Recorder<'a> {
 
     fn see(&mut self, step: &Step<'_>) -> ControlFlow<()> {
         self.progress.at(step.time);
+        if let Some(page) = &mut self.page {
+            page.step(step.time);
+        }
         if step.sample.is_none() {
             return ControlFlow::Continue(());
         }
@@ -119,17 +132,30 @@ impl<'a> Recorder<'a> {
     }
 
     fn record(&mut self, step: &Step<'_>) -> Result<(), Failure> {
-        let Some(trajectory) = &mut self.trajectory else {
+        if self.trajectory.is_none() && self.parquet.is_none() && self.page.is_none() {
             return Ok(());
-        };
-        let sample = Sample::new(self.mechanism, step.time, step.configuration, step.speeds);
-        trajectory.write(&sample.map_err(|error| Failure::Simulation(error.to_string()))?)
+        }
+        let kinematics = self.mechanism.kinematics(step.configuration, step.speeds);
+        let kinematics = kinematics.map_err(|error| Failure::Simulation(error.to_string()))?;
+        let sample = Sample::of(self.mechanism, step.time, &kinematics);
+        if let Some(trajectory) = &mut self.trajectory {
+            trajectory.write(&sample)?;
+        }
+        if let Some(parquet) = &mut self.parquet {
+            parquet.write(&sample, step, &kinematics)?;
+        }
+        if let Some(page) = &mut self.page {
+            page.sample(step, &kinematics);
+        }
+        Ok(())
     }
 
     fn finish(self) -> Result<(), Failure> {
         self.progress.finish();
-        let flushed = self.trajectory.map_or(Ok(()), Trajectory::finish);
-        self.failure.map_or(flushed, Err)
+        let csv = self.trajectory.map_or(Ok(()), Trajectory::finish);
+        let parquet = self.parquet.map_or(Ok(()), Parquet::finish);
+        let page = self.page.map_or(Ok(()), Page::finish);
+        self.failure.map_or(csv.and(parquet).and(page), Err)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The mechanism at one time, in the quantities that all outputs show.
 
-use hamel::mechanism::{BodyState, Mechanism, StateError};
+use hamel::mechanism::{BodyState, Kinematics, Mechanism, StateError};
 use hamel::spatial::so3;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
@@ -42,15 +42,29 @@ impl<'a> Sample<'a> {
         q: &[f64],
         speeds: &[f64],
     ) -> Result<Self, StateError> {
-        let kinematics = mechanism.kinematics(q, speeds)?;
+        Ok(Self::of(mechanism, t, &mechanism.kinematics(q, speeds)?))
+    }
+
+    /// The mechanism at the time `t` where its kinematics are known.
+    pub fn of(mechanism: &'a Mechanism, t: f64, kinematics: &Kinematics) -> Self {
         let bodies = mechanism.bodies().iter().zip(&kinematics.bodies);
-        Ok(Self {
+        Self {
             t,
             energy: kinematics.energy(),
             bodies: bodies
                 .map(|(body, state)| BodySample::new(body.name(), state))
                 .collect(),
-        })
+        }
+    }
+
+    /// A row of the trajectory: time, energy, and position, attitude and velocities of each body.
+    pub fn numbers(&self) -> Vec<f64> {
+        let bodies = self.bodies.iter().flat_map(|body| {
+            let pose = body.position_com.into_iter().chain(body.rotation_vector());
+            pose.chain(body.velocity_com_world)
+                .chain(body.angular_velocity_body)
+        });
+        [self.t, self.energy].into_iter().chain(bodies).collect()
     }
 }
 

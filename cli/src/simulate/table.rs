@@ -4,7 +4,7 @@ use super::json::Statistics;
 use super::plan::Plan;
 use super::sample::{BodySample, Sample};
 use comfy_table::{Cell, CellAlignment, Table, presets};
-use hamel::integrate::{Approach, Method};
+use hamel::integrate::Approach;
 use std::fmt;
 
 /// Numbers from here on are written with an exponent.
@@ -47,15 +47,15 @@ impl fmt::Display for Summary<'_> {
         for approach in self.approaches {
             writeln!(f, "singular    {approach}")?;
         }
-        match &self.plan.csv {
-            Some(path) => writeln!(
+        for path in self.plan.files() {
+            writeln!(
                 f,
                 "trajectory  {} samples in {}",
                 self.samples,
                 path.display()
-            ),
-            None => Ok(()),
+            )?;
         }
+        Ok(())
     }
 }
 
@@ -73,13 +73,8 @@ impl Summary<'_> {
         let freedoms = counted(layout.freedoms, "freedom", "freedoms");
         let speeds = counted(layout.speeds, "speed", "speeds");
         let form = settings.form_name();
-        write!(f, "{bodies}, {freedoms}, {speeds}; {form} form; ")?;
-        match settings.method {
-            Method::Rk4 { dt } => writeln!(f, "rk4 with steps of {dt:?} s")?,
-            Method::Controlled { pair, control } => {
-                writeln!(f, "{} to {:e}", pair.name(), control.tolerance)?;
-            }
-        }
+        let method = self.plan.method();
+        writeln!(f, "{bodies}, {freedoms}, {speeds}; {form} form; {method}")?;
         writeln!(f, "state at {} s:", self.last.t)
     }
 

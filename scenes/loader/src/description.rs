@@ -4,6 +4,7 @@ use crate::forces::{
     ConstraintDescription, FrameDescription, JointForces, PointSpring, WrenchDescription,
 };
 use crate::settings::Settings;
+use crate::shape::ShapeDescription;
 use crate::source::{Located, Span};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Vector3, Vector6};
@@ -27,6 +28,8 @@ pub struct SceneDescription {
     pub wrenches: Vec<WrenchDescription>,
     /// Forbidden velocities of points.
     pub constraints: Vec<ConstraintDescription>,
+    /// What stands for bodies in pictures.
+    pub shapes: Vec<ShapeDescription>,
     /// Simulation settings.
     pub settings: Settings,
     pub(crate) source: Source,
@@ -44,6 +47,7 @@ impl SceneDescription {
             springs: Vec::new(),
             wrenches: Vec::new(),
             constraints: Vec::new(),
+            shapes: Vec::new(),
             settings: Settings::default(),
             source,
         }

@@ -15,6 +15,7 @@ mod parse;
 mod read;
 mod scene;
 mod settings;
+mod shape;
 mod source;
 mod suggest;
 pub mod urdf;
@@ -32,4 +33,5 @@ pub use forces::{
 pub use notice::Notice;
 pub use scene::Scene;
 pub use settings::Settings;
+pub use shape::{Geometry, ShapeDescription};
 pub use source::{Located, Span};

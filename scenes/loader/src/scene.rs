@@ -8,6 +8,7 @@ use crate::notice::Notice;
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
 use crate::settings::Settings;
+use crate::shape::ShapeDescription;
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::path::Path;
@@ -48,6 +49,8 @@ pub struct Scene {
     pub speeds: Vec<f64>,
     /// Named frames.
     pub frames: Vec<FrameDescription>,
+    /// What stands for bodies in pictures.
+    pub shapes: Vec<ShapeDescription>,
     /// Simulation settings.
     pub settings: Settings,
     /// What the scene says and the simulation leaves out.
@@ -163,6 +166,7 @@ fn describe(
             springs: draft.elements.springs,
             wrenches: draft.elements.wrenches,
             constraints: draft.elements.constraints,
+            shapes: draft.elements.shapes,
             settings: draft.settings,
             ..SceneDescription::empty(source)
         }),

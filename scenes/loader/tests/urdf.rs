@@ -2,7 +2,7 @@
 
 use hamel::spatial::Pose;
 use hamel_scene::urdf::{Import, Options, read};
-use hamel_scene::{BodyDescription, PerFreedom};
+use hamel_scene::{BodyDescription, Geometry, PerFreedom};
 use nalgebra::{Matrix3, Vector3};
 
 /// A few roundings of numbers around 1.
@@ -133,13 +133,12 @@ fn what_is_not_simulated_is_told_and_kept() {
                   <dynamics damping=\"0.1\" friction=\"0.2\"/><safety_controller k_velocity=\"1\"/>\
                   <calibration rising=\"0\"/><mimic joint=\"other\" multiplier=\"-1\"/>";
     let more = format!(
-        "<link name=\"hand\">{INERTIAL}<visual/></link><joint name=\"other\" type=\"planar\"><parent link=\"arm\"/>\
+        "<link name=\"hand\">{INERTIAL}<visual><geometry><mesh filename=\"hand.dae\"/></geometry></visual></link><joint name=\"other\" type=\"planar\"><parent link=\"arm\"/>\
          <child link=\"hand\"/><axis xyz=\"0 0 1\"/></joint><transmission name=\"t\"/><gear/>"
     );
     let import = robot("revolute", inside, &more);
     let wanted = [
         "attributes `current` of <limit> are not read: joint `joint`",
-        "visual shapes are not read: link `hand`",
         "transmissions are not simulated: transmission `t`",
         "elements <gear> in <robot> are not read: gear 1",
         "limits of position are not simulated: the joint moves past them: joint `joint`",
@@ -149,6 +148,7 @@ fn what_is_not_simulated_is_told_and_kept() {
         "safety controllers are not simulated: joint `joint`",
         "calibrations are not read: joint `joint`",
         "URDF does not say whether a planar joint turns: it turns about its axis and slides across it: joint `other`",
+        "meshes are not read: pictures show such links by their inertias: link `hand`",
     ];
     assert_eq!(notices(&import), wanted);
     let facts = &import.joints[0];
@@ -194,6 +194,35 @@ fn what_rounding_leaves_of_an_inertia_is_no_mistake() {
         refused
             .is_err_and(|message| message.contains("link `arm`: inertia has the principal moment"))
     );
+}
+
+#[test]
+fn simple_visual_shapes_are_kept_for_pictures() {
+    let more = "<material name=\"grey\"><color rgba=\"0.5 0.5 0.5 1\"/></material>\
+        <link name=\"tip\"><visual><origin xyz=\"0 0 1\" rpy=\"0 0 1.5707963267948966\"/><geometry><box size=\"1 2 3\"/></geometry>\
+        <material name=\"grey\"/></visual>\
+        <visual><geometry><cylinder radius=\"0.1\" length=\"0.4\"/></geometry><material name=\"own\"><color rgba=\"1 0 0 1\"/>\
+        </material></visual><visual><geometry><sphere radius=\"-1\"/></geometry></visual><visual/></link>\
+        <joint name=\"end\" type=\"fixed\"><parent link=\"arm\"/><child link=\"tip\"/><origin xyz=\"1 0 0\"/></joint>";
+    let import = robot("revolute", "<axis xyz=\"0 0 1\"/>", more);
+    let [block, pin] = import.scene.shapes.as_slice() else {
+        panic!("two shapes");
+    };
+    assert_eq!(block.geometry, Geometry::Box(Vector3::new(1.0, 2.0, 3.0)));
+    // The tip is a part of the arm, one metre along x.
+    assert_eq!(
+        (block.body, block.at.translation),
+        (Some(0), Vector3::new(1.0, 0.0, 1.0))
+    );
+    assert_eq!(
+        (block.color, pin.color),
+        (Some([128; 3]), Some([255, 0, 0]))
+    );
+    let told = "visual shapes that are not complete are not drawn: link `tip`, link `tip`";
+    assert!(notices(&import).iter().any(|notice| notice == told));
+    let text = import.to_toml();
+    let again = hamel_scene::Scene::from_toml(&text, "r.toml").expect("a sound text");
+    assert_eq!(again.shapes, import.scene.shapes);
 }
 
 #[test]

@@ -58,6 +58,7 @@ pub(crate) fn scene(
         configuration,
         speeds,
         frames: description.frames.clone(),
+        shapes: description.shapes.clone(),
         settings: description.settings,
         notices: Vec::new(),
     })

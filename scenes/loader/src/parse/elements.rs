@@ -1,12 +1,14 @@
-//! Elements of a scene beside its bodies: `[[frame]]`, `[[spring]]`, `[[wrench]]`, `[[constraint]]`.
+//! Elements of a scene beside its bodies: `[[frame]]`, `[[spring]]`, `[[wrench]]`, `[[constraint]]`, `[[shape]]`.
 
 use super::body::WORLD;
+use super::shape::shape;
 use super::{BodyDraft, Tree, placement, rotation};
 use crate::diagnostics::Diagnostic;
 use crate::forces::{
     BodyPoint, ConstraintDescription, FrameDescription, PointSpring, WrenchAxes, WrenchDescription,
 };
 use crate::read::{Fields, Sink, Value};
+use crate::shape::ShapeDescription;
 use crate::source::Located;
 use crate::suggest::{nearest, one_of};
 use hamel::spatial::Pose;
@@ -20,6 +22,7 @@ pub(crate) struct Elements {
     pub(crate) springs: Vec<PointSpring>,
     pub(crate) wrenches: Vec<WrenchDescription>,
     pub(crate) constraints: Vec<ConstraintDescription>,
+    pub(crate) shapes: Vec<ShapeDescription>,
 }
 
 /// Reads all of them.
@@ -35,6 +38,7 @@ pub(super) fn elements(
         springs: each(fields, "spring", |f, s| spring(f, &bodies, s), sink),
         wrenches: each(fields, "wrench", |f, s| wrench(f, &bodies, s), sink),
         constraints: each(fields, "constraint", |f, s| constraint(f, &bodies, s), sink),
+        shapes: each(fields, "shape", |f, s| shape(f, &bodies, s), sink),
     };
     unique(&elements, drafts, sink);
     elements
@@ -61,7 +65,7 @@ fn each<T>(
 }
 
 /// The bodies by name; those of a scene whose tree is wrong have no index.
-struct Bodies<'a> {
+pub(super) struct Bodies<'a> {
     names: Vec<&'a str>,
     indices: HashMap<&'a str, Option<usize>>,
 }
@@ -81,7 +85,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// The body called by `value`; the inner `None` is the world.
-    fn find(&self, value: &Value<'_>, sink: &mut Sink) -> Option<Option<usize>> {
+    pub(super) fn find(&self, value: &Value<'_>, sink: &mut Sink) -> Option<Option<usize>> {
         let name = value.text(sink)?;
         if name.value == WORLD {
             return Some(None);

@@ -8,6 +8,7 @@ mod joint;
 mod mass;
 mod placement;
 pub(crate) mod rotation;
+mod shape;
 mod simulation;
 mod syntax;
 mod tree;

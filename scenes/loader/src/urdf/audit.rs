@@ -2,7 +2,7 @@
 //! parser, which would stop at the first error and drop what it does not know.
 
 use super::document::tag;
-use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need};
+use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need, SHOWN};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::read::Sink;
@@ -87,6 +87,9 @@ impl Audit<'_> {
             let error = Diagnostic::new(tag(node), message);
             self.sink
                 .push(error.help("expand it first: `xacro robot.urdf.xacro > robot.urdf`"));
+            return;
+        }
+        if SHOWN.contains(&name) {
             return;
         }
         let element = match owner {

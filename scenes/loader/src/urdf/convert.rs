@@ -4,7 +4,7 @@ use super::document::{child, place, tag};
 use super::joint::{self, JointFacts};
 use super::masses::Part;
 use super::tree::{self, Links, Parsed};
-use super::{Import, Options, mass, masses};
+use super::{Import, Options, mass, masses, shapes};
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, SceneDescription, Source,
 };
@@ -15,6 +15,7 @@ use crate::parse::WORLD;
 use crate::read::Sink;
 use crate::scene::stem;
 use crate::settings::Settings;
+use crate::shape::ShapeDescription;
 use crate::source::{Located, Span};
 use hamel::spatial::{MassProperties, Pose};
 use std::path::Path;
@@ -42,6 +43,7 @@ pub(super) fn convert(
         mut bodies,
         frames,
         parts,
+        shapes,
         ..
     } = robot;
     // A mass that was refused is missing on what moves.
@@ -67,6 +69,7 @@ pub(super) fn convert(
             gravity: options.gravity,
             bodies,
             frames,
+            shapes,
             settings: Settings::default(),
             ..SceneDescription::empty(source)
         },
@@ -112,6 +115,7 @@ struct Converter<'c, 'a, 'i> {
     /// The links that make each body.
     parts: Vec<Vec<Part>>,
     frames: Vec<FrameDescription>,
+    shapes: Vec<ShapeDescription>,
 }
 
 impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
@@ -130,6 +134,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             bodies: Vec::new(),
             parts: Vec::new(),
             frames: Vec::new(),
+            shapes: Vec::new(),
         }
     }
 
@@ -268,9 +273,13 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         )));
     }
 
-    /// Notes where a link is, and gives its mass to that body.
+    /// Notes where a link is, and gives its mass and its shapes to that body.
     fn place(&mut self, link: usize, anchor: Anchor) {
         self.anchors[link] = Some(anchor);
+        let (node, owner) = (self.parsed.links[link], self.owner(link));
+        let Anchor { body, pose } = anchor;
+        let shapes = shapes::of_link(node, &owner, body, &pose, self.notices);
+        self.shapes.extend(shapes);
         let Some(mass) = self.mass(link) else { return };
         match anchor.body {
             Some(body) => self.parts[body].push(Part {

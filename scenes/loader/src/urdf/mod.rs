@@ -8,7 +8,8 @@
 //! | `planar` | `planar`: turns about the axis and slides across it, velocities in child axes; x and y of the plane are those of the joint's frame where its axis is z, else where the shortest rotation from z to the axis takes them |
 //! | root link | fixed to the world, or on a `free` joint: [`Options::floating_base`] |
 //! | `<inertial>` absent | no mass |
-//! | limits, mimic, friction, safety controllers, transmissions, shapes, unknown elements | not simulated, and told as [`Notice`]s |
+//! | `<visual>` of a box, a sphere, a cylinder or a capsule | a shape for pictures; meshes are told as [`Notice`]s |
+//! | limits, mimic, friction, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
 //!
 //! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
 
@@ -19,6 +20,7 @@ mod joint;
 mod mass;
 mod masses;
 mod schema;
+mod shapes;
 mod tree;
 
 pub use joint::{JointFacts, Limits, Mimic};

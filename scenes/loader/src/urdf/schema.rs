@@ -71,13 +71,14 @@ pub(super) const JOINT_TYPES: [&str; 7] = [
 ];
 
 /// Elements of URDF that say nothing about motion, with what messages call them.
-pub(super) const NOT_READ: [(&str, &str); 5] = [
-    ("visual", "visual shapes are not read"),
+pub(super) const NOT_READ: [(&str, &str); 3] = [
     ("collision", "collision shapes are not read"),
-    ("material", "materials are not read"),
     ("transmission", "transmissions are not simulated"),
     ("gazebo", "settings for Gazebo are not read"),
 ];
+
+/// Elements of URDF that pictures show: `shapes` reads them.
+pub(super) const SHOWN: [&str; 2] = ["visual", "material"];
 
 /// The whole document.
 pub(super) static ROBOT: Element = Element {

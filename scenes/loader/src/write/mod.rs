@@ -3,6 +3,7 @@
 mod body;
 mod forces;
 mod pose;
+mod shape;
 mod value;
 
 use crate::description::SceneDescription;
@@ -30,6 +31,7 @@ impl SceneDescription {
             body::body(&mut out, body, &self.bodies);
         }
         forces::elements(&mut out, self);
+        shape::shapes(&mut out, self);
         settings(&mut out, &self.settings);
         out
     }

@@ -1,0 +1,207 @@
+//! What the page plots: which columns there are, what they are called, and their values at a time.
+
+use hamel::integrate::Step;
+use hamel::mechanism::{Body, Kinematics, Mechanism};
+use hamel::spatial::split;
+use nalgebra::Matrix6xX;
+use serde::Serialize;
+
+/// A plot: one of its variants at a time is shown.
+#[derive(Debug, Serialize)]
+pub struct Chart {
+    title: &'static str,
+    /// Whether the vertical axis is logarithmic.
+    log: bool,
+    variants: Vec<Variant>,
+}
+
+/// Columns in one plot.
+#[derive(Debug, Serialize)]
+struct Variant {
+    name: String,
+    unit: String,
+    /// The body that it is about, if it is about one.
+    body: Option<usize>,
+    columns: Vec<Column>,
+}
+
+/// A column of the recorded numbers.
+#[derive(Debug, Serialize)]
+struct Column {
+    name: String,
+    index: usize,
+}
+
+/// Fills the columns and describes them.
+#[derive(Debug)]
+pub struct Charts<'a> {
+    mechanism: &'a Mechanism,
+    described: Vec<Chart>,
+    columns: usize,
+    first_energy: Option<f64>,
+    steps: Steps,
+}
+
+impl<'a> Charts<'a> {
+    /// The charts of a mechanism.
+    pub fn new(mechanism: &'a Mechanism) -> Self {
+        let mut columns = 0;
+        let described = described(mechanism, &mut columns);
+        Self {
+            mechanism,
+            described,
+            columns,
+            first_energy: None,
+            steps: Steps::default(),
+        }
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// The charts, in the order of the page.
+    pub fn into_described(self) -> Vec<Chart> {
+        self.described
+    }
+
+    /// Notes the end of a step.
+    pub fn step(&mut self, time: f64) {
+        self.steps.note(time);
+    }
+
+    /// The columns' values at the end of `step`, in the order of [`described`].
+    pub fn values(&mut self, step: &Step<'_>, kinematics: &Kinematics) -> Vec<f64> {
+        let energy = kinematics.energy();
+        let first = *self.first_energy.get_or_insert(energy);
+        let (about_origin, linear) = split(&kinematics.momentum());
+        let (about_com, _) = split(&kinematics.momentum_com());
+        let mut values = vec![
+            kinematics.kinetic_energy(),
+            kinematics.potential_energy(),
+            energy,
+            energy - first,
+        ];
+        for momentum in [linear, about_origin, about_com] {
+            values.extend(momentum.iter());
+        }
+        for body in self.mechanism.bodies() {
+            values.extend(local_coordinates(
+                body,
+                body.configuration(step.configuration),
+            ));
+        }
+        values.extend(step.speeds);
+        values.extend(self.steps.take());
+        values
+    }
+}
+
+/// Longest and shortest step since the last frame.
+#[derive(Debug, Default)]
+struct Steps {
+    last_time: Option<f64>,
+    extremes: Option<[f64; 2]>,
+}
+
+impl Steps {
+    fn note(&mut self, time: f64) {
+        if let Some(last) = self.last_time.replace(time) {
+            let length = time - last;
+            let [longest, shortest] = self.extremes.unwrap_or([length; 2]);
+            self.extremes = Some([longest.max(length), shortest.min(length)]);
+        }
+    }
+
+    fn take(&mut self) -> [f64; 2] {
+        self.extremes.take().unwrap_or([f64::NAN; 2])
+    }
+}
+
+/// ϕ of `q` from the joint's home; NaN where there is none.
+fn local_coordinates(body: &Body, q: &[f64]) -> Vec<f64> {
+    let mut phi = vec![0.0; body.joint().layout().freedoms];
+    match body.joint().local(&body.home(), q, &mut phi) {
+        Ok(()) => phi,
+        Err(_) => vec![f64::NAN; phi.len()],
+    }
+}
+
+/// Which columns there are, numbered in the order of [`Charts::values`].
+fn described(mechanism: &Mechanism, next: &mut usize) -> Vec<Chart> {
+    let mut plain = |name: &str, unit: &str, columns: &[&str]| {
+        let columns = numbered(columns.iter().copied(), next);
+        variant(name, unit, None, columns)
+    };
+    let energy = vec![plain("", "J", &["kinetic", "potential", "total"])];
+    let drift = vec![plain("", "J", &["total − initial"])];
+    let about = |point: &str| format!("angular, about {point}");
+    let momentum = vec![
+        plain("linear", "kg m/s", &["x", "y", "z"]),
+        plain(&about("the world’s origin"), "kg m²/s", &["x", "y", "z"]),
+        plain(&about("the centre of mass"), "kg m²/s", &["x", "y", "z"]),
+    ];
+    let mut coordinates = Vec::new();
+    for (index, body) in mechanism.bodies().iter().enumerate() {
+        let columns = numbered(body.joint().freedoms().iter().copied(), next);
+        let unit = units(body, |angular| if angular { "rad" } else { "m" });
+        coordinates.push(variant(body.joint_name(), &unit, Some(index), columns));
+    }
+    let mut speeds = Vec::new();
+    for (index, body) in mechanism.bodies().iter().enumerate() {
+        let columns = numbered(body.joint().speeds().iter().copied(), next);
+        let unit = units(body, |angular| if angular { "rad/s" } else { "m/s" });
+        speeds.push(variant(body.joint_name(), &unit, Some(index), columns));
+    }
+    let columns = numbered(["longest", "shortest"].into_iter(), next);
+    let steps = vec![variant("", "s", None, columns)];
+    [
+        ("Energy", false, energy),
+        ("Energy drift", false, drift),
+        ("Momentum", false, momentum),
+        ("Coordinates ϕ from home", false, coordinates),
+        ("Speeds v̄", false, speeds),
+        ("Integration steps", true, steps),
+    ]
+    .map(|(title, log, variants)| Chart {
+        title,
+        log,
+        variants,
+    })
+    .into()
+}
+
+fn variant(name: &str, unit: &str, body: Option<usize>, columns: Vec<Column>) -> Variant {
+    Variant {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        body,
+        columns,
+    }
+}
+
+fn numbered<'n>(names: impl Iterator<Item = &'n str>, next: &mut usize) -> Vec<Column> {
+    let columns = names.map(|name| {
+        let index = *next;
+        *next += 1;
+        Column {
+            name: name.to_owned(),
+            index,
+        }
+    });
+    columns.collect()
+}
+
+/// Units of a joint's freedoms: those that turn the body are angular.
+fn units(body: &Body, unit: impl Fn(bool) -> &'static str) -> String {
+    let mut map = Matrix6xX::zeros(body.joint().layout().freedoms);
+    body.joint()
+        .twist_map_child(&body.home(), map.as_mut_slice());
+    let columns = map.column_iter();
+    let turns: Vec<bool> = columns.map(|twist| twist.rows(0, 3).amax() > 0.0).collect();
+    let units = [true, false]
+        .into_iter()
+        .filter(|kind| turns.contains(kind));
+    units.map(unit).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,99 @@
+//! What a page is told of the mechanism and of the run, as JSON.
+
+use super::super::plan::Plan;
+use super::blob::seven;
+use super::charts::Chart;
+use super::solids::{Ellipsoid, Shape};
+use hamel::mechanism::Body;
+use serde::Serialize;
+
+/// Everything but the recorded numbers. All in SI units; poses are x, y, z and a quaternion, scalar first.
+#[derive(Debug, Serialize)]
+pub struct Header<'a> {
+    /// Version of this layout.
+    version: u32,
+    /// Name of the scene.
+    pub name: &'a str,
+    description: &'a str,
+    /// Form and method, in words.
+    method: String,
+    gravity: [f64; 3],
+    /// Number of frames.
+    frames: usize,
+    bodies: Vec<BodyHeader<'a>>,
+    shapes: Vec<Shape>,
+    /// Named frames.
+    marks: Vec<Mark<'a>>,
+    charts: Vec<Chart>,
+}
+
+#[derive(Debug, Serialize)]
+struct BodyHeader<'a> {
+    name: &'a str,
+    parent: Option<usize>,
+    joint: &'a str,
+    joint_type: &'static str,
+    freedoms: usize,
+    mass: f64,
+    com: [f64; 3],
+    ellipsoid: Option<Ellipsoid>,
+    /// The joint's parent frame in the parent's body frame.
+    joint_in_parent: [f64; 7],
+    /// The joint's child frame in the body frame.
+    joint_in_body: [f64; 7],
+}
+
+/// A named frame.
+#[derive(Debug, Serialize)]
+struct Mark<'a> {
+    name: &'a str,
+    body: Option<usize>,
+    pose: [f64; 7],
+}
+
+impl<'a> Header<'a> {
+    /// What there is to tell of the run of `plan`.
+    pub fn new(plan: &'a Plan, frames: usize, charts: Vec<Chart>) -> Self {
+        let (scene, settings) = (&plan.scene, &plan.settings);
+        let marks = scene.frames.iter().map(|frame| Mark {
+            name: &frame.name.value,
+            body: frame.body,
+            pose: seven(&frame.at),
+        });
+        Self {
+            version: 1,
+            name: &scene.name,
+            description: &scene.description,
+            method: format!("{} form, {}", settings.form_name(), plan.method()),
+            gravity: (*scene.mechanism.gravity()).into(),
+            frames,
+            bodies: scene
+                .mechanism
+                .bodies()
+                .iter()
+                .map(BodyHeader::new)
+                .collect(),
+            shapes: scene.shapes.iter().map(Shape::from).collect(),
+            marks: marks.collect(),
+            charts,
+        }
+    }
+}
+
+impl<'a> BodyHeader<'a> {
+    fn new(body: &'a Body) -> Self {
+        let mass = body.mass();
+        Self {
+            name: body.name(),
+            parent: body.parent(),
+            joint: body.joint_name(),
+            joint_type: body.joint().name(),
+            freedoms: body.joint().layout().freedoms,
+            mass: mass.mass,
+            com: mass.com.into(),
+            ellipsoid: Ellipsoid::new(mass),
+            joint_in_parent: seven(body.placement()),
+            joint_in_body: seven(&body.child_placement().inverse()),
+        }
+    }
+}
