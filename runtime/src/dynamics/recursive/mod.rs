@@ -9,6 +9,7 @@
 //! After construction nothing allocates.
 
 mod coupling;
+mod derivatives;
 mod elements;
 mod hamiltonian;
 mod inverse;
@@ -19,6 +20,9 @@ mod mass;
 mod readings;
 mod sweeps;
 
+pub use derivatives::{
+    ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Sensitivity,
+};
 pub use mass::MassMatrix;
 pub use readings::{Frame, Readings};
 
