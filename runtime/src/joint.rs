@@ -349,11 +349,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     ) -> SMatrix<T, 6, K>;
 
     /// ∂(X̄^cᵀ h)/∂ϕ for a wrench or momentum `h` that is fixed in the child frame: its dual.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, S, K>;
+    fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &SVector<T, 6>) -> SMatrix<T, S, K>;
 
     /// Ẋ̄^c at the speeds v̄: `c = Ẋ̄^c v̄`.
     fn twist_map_rate<T: Scalar>(

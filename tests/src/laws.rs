@@ -296,12 +296,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             &joint.bias_momentum(q, speeds, wrench),
             &rate.tr_mul(wrench),
         );
-        close(
-            "Ẋ̄^c",
-            J::NAME,
-            &joint.twist_map_rate(q, speeds),
-            &rate,
-        );
+        close("Ẋ̄^c", J::NAME, &joint.twist_map_rate(q, speeds), &rate);
         self.gradient_laws(speeds, wrench);
         self.slope_laws(speeds, wrench);
     }
@@ -323,7 +318,12 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             let check = |law: &str, got: &[f64], expected: &[D1]| {
                 for (got, expected) in got.iter().zip(expected) {
                     let got = SVector::<f64, 1>::new(*got);
-                    close(law, J::NAME, &got, &SVector::<f64, 1>::new(expected.derivative));
+                    close(
+                        law,
+                        J::NAME,
+                        &got,
+                        &SVector::<f64, 1>::new(expected.derivative),
+                    );
                 }
             };
             let column = of_twist.column(k);

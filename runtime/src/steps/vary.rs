@@ -1,7 +1,7 @@
 //! What one unit of each of a joint's local coordinates and speeds changes of the motion of all that it carries.
 
-use super::place::Parts;
 use super::Motion;
+use super::place::Parts;
 use crate::joint::Joint;
 use crate::scalar::Scalar;
 use crate::spatial::fused::{apply, cross};

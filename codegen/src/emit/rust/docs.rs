@@ -256,9 +256,7 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k."
         }
         KernelKind::BiasAccelerationSlope => "∂c/∂v̄ of c = d/dt(X^c S̄) v̄.",
-        KernelKind::BiasMomentumGradient => {
-            "∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h."
-        }
+        KernelKind::BiasMomentumGradient => "∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.",
         KernelKind::BiasMomentumSlope => "∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.",
     }
 }

@@ -103,6 +103,10 @@ impl Recursive {
 }
 
 /// Gravity's wrench on a body.
-pub(super) fn weight(gravity: &Vector3<f64>, mass: f64, first_moment: &Vector3<f64>) -> Vector6<f64> {
+pub(super) fn weight(
+    gravity: &Vector3<f64>,
+    mass: f64,
+    first_moment: &Vector3<f64>,
+) -> Vector6<f64> {
     join(&cross(first_moment, gravity), &(gravity * mass))
 }

@@ -32,8 +32,11 @@ impl Coriolis {
         let (angular, linear) = split(twist);
         let moment = &rigid.first_moment;
         let [x, y, z] = rigid.inertia.rows();
-        let turned =
-            Matrix3::from_columns(&[cross(&angular, &x), cross(&angular, &y), cross(&angular, &z)]);
+        let turned = Matrix3::from_columns(&[
+            cross(&angular, &x),
+            cross(&angular, &y),
+            cross(&angular, &z),
+        ]);
         let mut turn = turned + turned.transpose() - hat(&rigid.inertia.apply(&angular));
         add_arm(&mut turn, moment, &linear);
         Self {

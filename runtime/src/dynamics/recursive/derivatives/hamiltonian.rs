@@ -126,8 +126,16 @@ impl Recursive {
         }
         let rates_by_speeds = &out.rates_by_speeds;
         out.rates_by_momenta.entries.fill(0.0);
-        add_product(rates_by_speeds, &out.speeds_by_momenta, &mut out.rates_by_momenta);
-        add_product(rates_by_speeds, &out.speeds_by_local, &mut out.rates_by_local);
+        add_product(
+            rates_by_speeds,
+            &out.speeds_by_momenta,
+            &mut out.rates_by_momenta,
+        );
+        add_product(
+            rates_by_speeds,
+            &out.speeds_by_local,
+            &mut out.rates_by_local,
+        );
         Ok(())
     }
 
@@ -309,7 +317,8 @@ impl Recursive {
         }
         if !structures.bias_momentum_gradient.is_zero() {
             let more = &mut more[..rows * freedoms];
-            link.joint.bias_momentum_gradient(q, speeds, &momentum, more);
+            link.joint
+                .bias_momentum_gradient(q, speeds, &momentum, more);
             for (sum, more) in sum.iter_mut().zip(more) {
                 *sum += *more;
             }

@@ -134,7 +134,8 @@ impl Recursive {
             let (turn, _) = split(column);
             let faster = node.rigid.apply(&variation.speed_rate) + coriolis.apply(&turn);
             for (speed, column) in link.speeds.clone().zip(columns) {
-                out.by_speeds.set(speed, branch.speeds.0 + b, column.dot(&faster));
+                out.by_speeds
+                    .set(speed, branch.speeds.0 + b, column.dot(&faster));
             }
             out.above[slot] = above(column, variation);
             let momentum = node.rigid.apply(column);
@@ -158,7 +159,11 @@ impl Recursive {
         let wrench = in_child(node, &node.wrench);
         let q = &q[link.configuration.clone()];
         link.joint.effort_gradient(q, &wrench, gradient);
-        for (slot, column) in link.freedoms.clone().zip(gradient.chunks_exact(rows.max(1))) {
+        for (slot, column) in link
+            .freedoms
+            .clone()
+            .zip(gradient.chunks_exact(rows.max(1)))
+        {
             for (speed, entry) in link.speeds.clone().zip(column) {
                 let entry = out.by_local.entry(speed, slot) + entry;
                 out.by_local.set(speed, slot, entry);
@@ -208,7 +213,12 @@ fn speed_of(branch: &Branch, slot: usize) -> Option<usize> {
 fn above(column: &Vector6<f64>, variation: &Variation<f64>) -> Above {
     let mut above = [[0.0; 4]; 9];
     for i in 0..6 {
-        above[i] = [column[i], column[i], variation.rate[i], variation.speed_rate[i]];
+        above[i] = [
+            column[i],
+            column[i],
+            variation.rate[i],
+            variation.speed_rate[i],
+        ];
     }
     for i in 0..3 {
         above[6 + i] = [0.0, 0.0, variation.drift[i], column[i]];
@@ -217,11 +227,7 @@ fn above(column: &Vector6<f64>, variation: &Variation<f64>) -> Above {
 }
 
 #[inline(always)]
-fn below(
-    raised: &[Vector6<f64>; 2],
-    momentum: &Vector6<f64>,
-    transposed: &Vector3<f64>,
-) -> Below {
+fn below(raised: &[Vector6<f64>; 2], momentum: &Vector6<f64>, transposed: &Vector3<f64>) -> Below {
     let mut below = [[0.0; 4]; 9];
     for i in 0..6 {
         below[i] = [raised[0][i], raised[1][i], momentum[i], momentum[i]];

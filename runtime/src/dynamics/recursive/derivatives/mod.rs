@@ -126,7 +126,9 @@ impl Recursive {
     /// The variations of the joint under body `index` at (q, v̄, v̄̇), one a freedom, after [`Recursive::advance`].
     fn vary(&self, index: usize, state: (&[f64], &[f64], &[f64]), out: &mut [Variation<f64>]) {
         let link = &self.links[index];
-        let parent = link.parent.map_or(&self.world, |parent| &self.nodes[parent]);
+        let parent = link
+            .parent
+            .map_or(&self.world, |parent| &self.nodes[parent]);
         let (q, speeds, accelerations) = state;
         let accelerations = match accelerations.is_empty() {
             true => accelerations,
