@@ -11,8 +11,17 @@ use hamel::elements::JointDamper;
 use hamel::nalgebra::{DMatrix, DVector};
 use hamel::scalar::Dual;
 use hamel_tests::figures::{Largest, difference, size};
-use hamel_tests::random::{Case, cases, library};
+use hamel_tests::peers::{Reference, convert, numbers};
+use hamel_tests::random::{self, Case, cases, library};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::path::Path;
 use std::sync::Arc;
+
+/// Two states of each.
+const ROBOTS: [&str; 8] = [
+    "pendulum", "panda7", "anymal", "g1", "rev8", "rev32", "ball8", "ball32",
+];
 
 /// Every size twice, every kind of joint at the root of some tree.
 const TREES: u64 = 60;
@@ -20,6 +29,37 @@ const LARGEST: usize = 30;
 
 /// What is asked of every derivative, relative to its largest entry; times the condition of M̄ where that is solved with.
 const BOUND: f64 = 1e-12;
+
+/// The first states of the reference robots, with efforts and accelerations of order 1.
+fn robots() -> impl Iterator<Item = Case> {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/robots");
+    ROBOTS.into_iter().flat_map(move |robot| {
+        let text = std::fs::read_to_string(own.join(format!("{robot}.json")));
+        let reference = Reference::parse(&text.expect("the file is beside this crate"));
+        let reference = reference.unwrap_or_else(|error| panic!("{robot}: {error}"));
+        let mechanism = reference.model.mechanism();
+        let mechanism = mechanism.unwrap_or_else(|error| panic!("{robot}: {error}"));
+        let case = |(index, state): (usize, &serde_json::Value)| {
+            let numbers = |name: &str| numbers(&state[name]).expect("a list of numbers");
+            let mut random = ChaCha8Rng::seed_from_u64(index as u64);
+            let layout = *mechanism.layout();
+            Case {
+                seed: index as u64,
+                mechanism: Arc::clone(&mechanism),
+                q: convert::configuration(&reference.model, &numbers("q")),
+                speeds: convert::swap(&reference.model, &numbers("v")),
+                rates: random::numbers(&mut random, layout.speeds),
+                efforts: random::numbers(&mut random, layout.freedoms),
+            }
+        };
+        let states = reference.states.iter().take(2).enumerate();
+        states.map(case).collect::<Vec<_>>()
+    })
+}
+
+fn all() -> Vec<Case> {
+    cases(&library(), LARGEST, TREES).chain(robots()).collect()
+}
 
 fn derivatives(values: &[Dual<f64>]) -> Vec<f64> {
     values.iter().map(|value| value.derivative).collect()
@@ -134,7 +174,7 @@ fn place(case: &Case) -> String {
 #[test]
 fn inverse_dynamics() {
     let mut worst = ["∂τ̄/∂ϕ", "∂τ̄/∂v̄"].map(Largest::new);
-    for case in cases(&library(), LARGEST, TREES) {
+    for case in all() {
         let expected = Expected::new(&case).inverse(&case, &case.rates);
         let mut found = InverseDerivatives::new(&case.mechanism);
         let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
@@ -152,7 +192,7 @@ fn inverse_dynamics() {
 #[test]
 fn forward_dynamics() {
     let mut worst = ["∂v̄̇/∂ϕ", "∂v̄̇/∂v̄", "∂v̄̇/∂τ"].map(Largest::new);
-    for case in cases(&library(), LARGEST, TREES) {
+    for case in all() {
         let oracle = Expected::new(&case);
         let mut found = ForwardDerivatives::new(&case.mechanism);
         let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
@@ -182,7 +222,7 @@ fn forward_dynamics() {
 fn port_hamiltonian_form() {
     let laws = ["∂v̄/∂ϕ", "∂v̄/∂p̄", "∂p̄̇/∂ϕ", "∂p̄̇/∂p̄", "∂p̄̇/∂τ"];
     let mut worst = laws.map(Largest::new);
-    for case in cases(&library(), LARGEST, TREES) {
+    for case in all() {
         let oracle = Expected::new(&case);
         let (form, rows) = (&oracle.form, oracle.rows);
         let p = &oracle.mass * DVector::from_column_slice(&case.speeds);
@@ -235,7 +275,7 @@ fn port_hamiltonian_form() {
 #[test]
 fn energies() {
     let mut worst = ["∂V/∂ϕ", "∂K/∂ϕ"].map(Largest::new);
-    for case in cases(&library(), LARGEST, TREES) {
+    for case in all() {
         let form = DualForm::new(&case.mechanism);
         let freedoms = case.mechanism.layout().freedoms;
         let mut found = [vec![0.0; freedoms], vec![0.0; freedoms]];
