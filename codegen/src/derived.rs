@@ -61,6 +61,22 @@ pub enum KernelKind {
     BiasAcceleration,
     /// Ẋ̄^cᵀ h.
     BiasMomentum,
+    /// X^c S₀: ϕ̇ to the twist in the child frame.
+    LocalTwistMap,
+    /// ∂(X̄^c v̄)/∂ϕ, with X̄^c = X^c S̄.
+    TwistGradient,
+    /// ∂(X̄^cᵀ h)/∂ϕ.
+    EffortGradient,
+    /// Ẋ̄^c.
+    TwistMapRate,
+    /// ∂c/∂ϕ.
+    BiasAccelerationGradient,
+    /// ∂c/∂v̄.
+    BiasAccelerationSlope,
+    /// ∂(Ẋ̄^cᵀ h)/∂ϕ.
+    BiasMomentumGradient,
+    /// ∂(Ẋ̄^cᵀ h)/∂v̄.
+    BiasMomentumSlope,
 }
 
 /// What is known of a kernel's value at compile time.

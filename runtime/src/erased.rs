@@ -101,6 +101,22 @@ pub trait AnyJoint: Steps + Debug + Send + Sync {
     fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64>;
     /// [`Joint::bias_momentum`] into `out` (S).
     fn bias_momentum(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
+    /// [`Joint::local_twist_map`] into `out` (6×K).
+    fn local_twist_map(&self, q: &[f64], out: &mut [f64]);
+    /// [`Joint::twist_gradient`] into `out` (6×K).
+    fn twist_gradient(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
+    /// [`Joint::effort_gradient`] into `out` (S×K).
+    fn effort_gradient(&self, q: &[f64], h: &Vector6<f64>, out: &mut [f64]);
+    /// [`Joint::twist_map_rate`] into `out` (6×S).
+    fn twist_map_rate(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
+    /// [`Joint::bias_acceleration_gradient`] into `out` (6×K).
+    fn bias_acceleration_gradient(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
+    /// [`Joint::bias_acceleration_slope`] into `out` (6×S).
+    fn bias_acceleration_slope(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
+    /// [`Joint::bias_momentum_gradient`] into `out` (S×K).
+    fn bias_momentum_gradient(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
+    /// [`Joint::bias_momentum_slope`] into `out` (S×S).
+    fn bias_momentum_slope(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
 }
 
 /// A finite map of a joint has no value: a Newton iteration does not converge, or its arguments are not finite.
@@ -315,5 +331,41 @@ where
 
     fn bias_momentum(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]) {
         store(&self.0.bias_momentum(&vector(q), &vector(speeds), h), out);
+    }
+
+    fn local_twist_map(&self, q: &[f64], out: &mut [f64]) {
+        store(&self.0.local_twist_map(&vector(q)), out);
+    }
+
+    fn twist_gradient(&self, q: &[f64], speeds: &[f64], out: &mut [f64]) {
+        store(&self.0.twist_gradient(&vector(q), &vector(speeds)), out);
+    }
+
+    fn effort_gradient(&self, q: &[f64], h: &Vector6<f64>, out: &mut [f64]) {
+        store(&self.0.effort_gradient(&vector(q), h), out);
+    }
+
+    fn twist_map_rate(&self, q: &[f64], speeds: &[f64], out: &mut [f64]) {
+        store(&self.0.twist_map_rate(&vector(q), &vector(speeds)), out);
+    }
+
+    fn bias_acceleration_gradient(&self, q: &[f64], speeds: &[f64], out: &mut [f64]) {
+        let (q, speeds) = (vector(q), vector(speeds));
+        store(&self.0.bias_acceleration_gradient(&q, &speeds), out);
+    }
+
+    fn bias_acceleration_slope(&self, q: &[f64], speeds: &[f64], out: &mut [f64]) {
+        let (q, speeds) = (vector(q), vector(speeds));
+        store(&self.0.bias_acceleration_slope(&q, &speeds), out);
+    }
+
+    fn bias_momentum_gradient(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]) {
+        let (q, speeds) = (vector(q), vector(speeds));
+        store(&self.0.bias_momentum_gradient(&q, &speeds, h), out);
+    }
+
+    fn bias_momentum_slope(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]) {
+        let (q, speeds) = (vector(q), vector(speeds));
+        store(&self.0.bias_momentum_slope(&q, &speeds, h), out);
     }
 }

@@ -11,11 +11,11 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Version of the [`Joint`] trait. Generated code asserts it at compile time.
-pub const KERNEL_INTERFACE: u32 = 3;
+pub const KERNEL_INTERFACE: u32 = 4;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(3);`.
+/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(4);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,
@@ -78,6 +78,12 @@ pub struct Structures {
     pub bias_acceleration: Structure,
     /// Ẋ̄^cᵀ h.
     pub bias_momentum: Structure,
+    /// ∂(X̄^c v̄)/∂ϕ, and with it ∂(X̄^cᵀ h)/∂ϕ.
+    pub twist_gradient: Structure,
+    /// ∂c/∂ϕ.
+    pub bias_acceleration_gradient: Structure,
+    /// ∂(Ẋ̄^cᵀ h)/∂ϕ.
+    pub bias_momentum_gradient: Structure,
 }
 
 /// What is known of one entry of a kernel's value at compile time.
@@ -331,4 +337,54 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
         speeds: &SVector<T, S>,
         h: &SVector<T, 6>,
     ) -> SVector<T, S>;
+
+    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
+    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K>;
+
+    /// ∂(X̄^c v̄)/∂ϕ at fixed v̄, with X̄^c = X^c S̄; column k is the derivative along ϕ_k.
+    fn twist_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, K>;
+
+    /// ∂(X̄^cᵀ h)/∂ϕ for a wrench or momentum `h` that is fixed in the child frame: its dual.
+    fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &SVector<T, 6>) -> SMatrix<T, S, K>;
+
+    /// Ẋ̄^c at the speeds v̄: `c = Ẋ̄^c v̄`.
+    fn twist_map_rate<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, S>;
+
+    /// ∂c/∂ϕ at fixed v̄, of [`Joint::bias_acceleration`].
+    fn bias_acceleration_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, K>;
+
+    /// ∂c/∂v̄, of [`Joint::bias_acceleration`].
+    fn bias_acceleration_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, S>;
+
+    /// ∂(Ẋ̄^cᵀ h)/∂ϕ at fixed v̄ and h, of [`Joint::bias_momentum`].
+    fn bias_momentum_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, S, K>;
+
+    /// ∂(Ẋ̄^cᵀ h)/∂v̄ at fixed h, of [`Joint::bias_momentum`].
+    fn bias_momentum_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, S, S>;
 }

@@ -8,7 +8,9 @@
 //! quit
 //! ```
 
-use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
+use hamel::dynamics::{
+    Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive, Sensitivity,
+};
 use hamel::mechanism::Mechanism;
 use hamel_tests::peers::{Model, States, convert};
 use std::error::Error;
@@ -17,7 +19,16 @@ use std::io::{BufRead, Write};
 use std::sync::Arc;
 
 /// What can be measured, by the harness's names.
-const ALGORITHMS: [&str; 6] = ["fk", "rnea", "nle", "crba", "aba", "minverse"];
+const ALGORITHMS: [&str; 8] = [
+    "fk",
+    "rnea",
+    "nle",
+    "crba",
+    "aba",
+    "minverse",
+    "rnea_deriv",
+    "aba_deriv",
+];
 
 /// One model, loaded.
 struct Loaded {
@@ -26,6 +37,8 @@ struct Loaded {
     states: States,
     dynamics: Recursive,
     mass: MassMatrix,
+    inverse: InverseDerivatives,
+    forward: ForwardDerivatives,
     out: Vec<f64>,
 }
 
@@ -81,6 +94,8 @@ impl Loaded {
         Ok(Self {
             dynamics: Recursive::new(Arc::clone(&mechanism)),
             mass: MassMatrix::new(&mechanism),
+            inverse: InverseDerivatives::new(&mechanism),
+            forward: ForwardDerivatives::new(&mechanism),
             out: vec![0.0; mechanism.layout().speeds],
             mechanism,
             model,
@@ -99,6 +114,12 @@ impl Loaded {
             "crba" => dynamics.mass_matrix(q, &mut self.mass)?,
             "aba" => dynamics.accelerations(q, v, tau, &mut self.out)?,
             "minverse" => dynamics.inverse_mass_matrix(q, &mut self.mass)?,
+            "rnea_deriv" => {
+                dynamics.inverse_dynamics_derivatives(q, v, tau, &mut self.inverse)?;
+            }
+            "aba_deriv" => {
+                dynamics.forward_dynamics_derivatives(q, v, tau, &mut self.forward)?;
+            }
             other => return Err(format!("no algorithm `{other}`").into()),
         }
         black_box(&self.out);

@@ -224,10 +224,54 @@ impl Maker<'_> {
         let momentum = rate
             .transpose()
             .times(&Matrix::symbols(&self.x.arguments.wrench));
-        vec![
+        let slopes = self.slopes(&rate, &acceleration, &momentum);
+        let mut kernels = vec![
             plain(KernelKind::BiasAcceleration, vec![acceleration]),
             plain(KernelKind::BiasMomentum, vec![momentum]),
-        ]
+        ];
+        kernels.extend(slopes);
+        kernels
+    }
+
+    /// What derivatives of the dynamics need of a joint, from Ẋ̄^c, `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`.
+    fn slopes(&self, rate: &Matrix, acceleration: &Matrix, momentum: &Matrix) -> Vec<Kernel> {
+        let arguments = &self.x.arguments;
+        let speeds = Matrix::symbols(&arguments.speeds);
+        let wrench = Matrix::symbols(&arguments.wrench);
+        let map = self
+            .x
+            .twist_map_child
+            .times(&self.x.nonholonomic.speed_basis);
+        let map = self.short(&map);
+        // Column k along ϕ_k, of a column.
+        let gradient = |column: &Matrix| {
+            let along = |k| self.x.motion.along_each(column, k).entries().to_vec();
+            let columns: Vec<Vec<_>> = (0..self.x.shape.freedoms).map(along).collect();
+            self.short(&Matrix::from_columns(column.rows(), &columns))
+        };
+        let slope = |column: &Matrix| {
+            let by = |symbol: &Symbol| column.derivative(symbol).entries().to_vec();
+            let columns: Vec<Vec<_>> = arguments.speeds.iter().map(by).collect();
+            self.short(&Matrix::from_columns(column.rows(), &columns))
+        };
+        let local = self.short(&self.x.jacobian.child);
+        let values = [
+            (KernelKind::LocalTwistMap, local),
+            (KernelKind::TwistGradient, gradient(&map.times(&speeds))),
+            (
+                KernelKind::EffortGradient,
+                gradient(&map.transpose().times(&wrench)),
+            ),
+            (KernelKind::TwistMapRate, rate.clone()),
+            (KernelKind::BiasAccelerationGradient, gradient(acceleration)),
+            (KernelKind::BiasAccelerationSlope, slope(acceleration)),
+            (KernelKind::BiasMomentumGradient, gradient(momentum)),
+            (KernelKind::BiasMomentumSlope, slope(momentum)),
+        ];
+        let values = values.into_iter();
+        values
+            .map(|(kind, value)| plain(kind, vec![value]))
+            .collect()
     }
 }
 

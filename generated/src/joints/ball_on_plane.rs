@@ -58,7 +58,7 @@ use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(3);
+const _: () = ::hamel::joint::assert_kernel_interface(4);
 
 /// Ball rolling without slipping on the plane z = 0 of the parent; it may spin about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +104,9 @@ impl Joint<11, 5, 3, 2> for BallOnPlane {
         retract_differential: Structure::General,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
+        twist_gradient: Structure::General,
+        bias_acceleration_gradient: Structure::General,
+        bias_momentum_gradient: Structure::General,
     };
     const PATTERNS: Patterns<5, 3> = Patterns::new(
         ["xxx", "xxx", "xxx"],
@@ -793,6 +796,465 @@ impl Joint<11, 5, 3, 2> for BallOnPlane {
                 ),
             speed_wx * r_q21_h1_plus_r_q22_h2_plus_r_q23_h3
                 - speed_wy * r_q11_h1_plus_r_q12_h2_plus_r_q13_h3,
+        ])
+    }
+
+    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
+    ///
+    /// 6×5. Operations: none.
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`.
+    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 5> {
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, _, _, _, _, _]: [T; 11] = (*q)
+            .into();
+        let zero = T::zero();
+        let one = T::one();
+        from_rows([
+            [one, zero, zero, zero, zero],
+            [zero, one, zero, zero, zero],
+            [zero, zero, one, zero, zero],
+            [zero, zero, zero, r_q11, r_q21],
+            [zero, zero, zero, r_q12, r_q22],
+            [zero, zero, zero, r_q13, r_q23],
+        ])
+    }
+
+    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×5. Operations: 9 additions, 18 multiplications (6 of each fused).
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`, line 16 `X`, line 17 `S_bar`.
+    fn twist_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let sum_of_r_q13_speed_wx_r_q23_speed_wy = r_q13
+            .mul_add(speed_wx, r_q23.mul_add(speed_wy, r_q33 * speed_wz));
+        let sum_of_r_q12_speed_wx_r_q22_speed_wy = r_q12
+            .mul_add(speed_wx, r_q22.mul_add(speed_wy, r_q32 * speed_wz));
+        let sum_of_r_q11_speed_wx_r_q21_speed_wy = r_q11
+            .mul_add(speed_wx, r_q21.mul_add(speed_wy, r_q31 * speed_wz));
+        let product_of_radius_r_q13_speed_wy = radius
+            * (r_q13 * speed_wy - r_q23 * speed_wx);
+        let product_of_radius_r_q12_speed_wy = radius
+            * (r_q12 * speed_wy - r_q22 * speed_wx);
+        let product_of_radius_r_q11_speed_wy = radius
+            * (r_q11 * speed_wy - r_q21 * speed_wx);
+        from_rows([
+            [
+                zero,
+                -sum_of_r_q13_speed_wx_r_q23_speed_wy,
+                sum_of_r_q12_speed_wx_r_q22_speed_wy,
+                zero,
+                zero,
+            ],
+            [
+                sum_of_r_q13_speed_wx_r_q23_speed_wy,
+                zero,
+                -sum_of_r_q11_speed_wx_r_q21_speed_wy,
+                zero,
+                zero,
+            ],
+            [
+                -sum_of_r_q12_speed_wx_r_q22_speed_wy,
+                sum_of_r_q11_speed_wx_r_q21_speed_wy,
+                zero,
+                zero,
+                zero,
+            ],
+            [
+                zero,
+                -product_of_radius_r_q13_speed_wy,
+                product_of_radius_r_q12_speed_wy,
+                zero,
+                zero,
+            ],
+            [
+                product_of_radius_r_q13_speed_wy,
+                zero,
+                -product_of_radius_r_q11_speed_wy,
+                zero,
+                zero,
+            ],
+            [
+                -product_of_radius_r_q12_speed_wy,
+                product_of_radius_r_q11_speed_wy,
+                zero,
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
+    ///
+    /// 3×5. Operations: 21 additions, 36 multiplications (12 of each fused).
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`, line 16 `X`, line 17 `S_bar`.
+    fn effort_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [h1, h2, h3, h4, h5, h6]: [T; 6] = (*h).into();
+        let zero = T::zero();
+        from_rows([
+            [
+                r_q13
+                    .mul_add(h2, r_q12.mul_add(-h3, radius * (r_q22 * h6 - r_q23 * h5))),
+                r_q11
+                    .mul_add(
+                        h3,
+                        r_q13.mul_add(-h1, -radius * (r_q21 * h6 - r_q23 * h4)),
+                    ),
+                r_q12
+                    .mul_add(h1, r_q11.mul_add(-h2, radius * (r_q21 * h5 - r_q22 * h4))),
+                zero,
+                zero,
+            ],
+            [
+                r_q23
+                    .mul_add(
+                        h2,
+                        r_q22.mul_add(-h3, -radius * (r_q12 * h6 - r_q13 * h5)),
+                    ),
+                r_q21
+                    .mul_add(h3, r_q23.mul_add(-h1, radius * (r_q11 * h6 - r_q13 * h4))),
+                r_q22
+                    .mul_add(
+                        h1,
+                        r_q21.mul_add(-h2, -radius * (r_q11 * h5 - r_q12 * h4)),
+                    ),
+                zero,
+                zero,
+            ],
+            [
+                r_q33 * h2 - r_q32 * h3,
+                r_q31 * h3 - r_q33 * h1,
+                r_q32 * h1 - r_q31 * h2,
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// d/dt(X^c S̄) at the speeds v̄.
+    ///
+    /// 6×3. Operations: 9 additions, 24 multiplications.
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`, line 16 `X`, line 17 `S_bar`.
+    fn twist_map_rate<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let r_q21_speed_wz_minus_r_q31_speed_wy = r_q21 * speed_wz - r_q31 * speed_wy;
+        let r_q11_speed_wz_minus_r_q31_speed_wx = r_q11 * speed_wz - r_q31 * speed_wx;
+        let r_q22_speed_wz_minus_r_q32_speed_wy = r_q22 * speed_wz - r_q32 * speed_wy;
+        let r_q12_speed_wz_minus_r_q32_speed_wx = r_q12 * speed_wz - r_q32 * speed_wx;
+        let r_q23_speed_wz_minus_r_q33_speed_wy = r_q23 * speed_wz - r_q33 * speed_wy;
+        let r_q13_speed_wz_minus_r_q33_speed_wx = r_q13 * speed_wz - r_q33 * speed_wx;
+        from_rows([
+            [
+                -r_q21_speed_wz_minus_r_q31_speed_wy,
+                r_q11_speed_wz_minus_r_q31_speed_wx,
+                r_q21 * speed_wx - r_q11 * speed_wy,
+            ],
+            [
+                -r_q22_speed_wz_minus_r_q32_speed_wy,
+                r_q12_speed_wz_minus_r_q32_speed_wx,
+                r_q22 * speed_wx - r_q12 * speed_wy,
+            ],
+            [
+                -r_q23_speed_wz_minus_r_q33_speed_wy,
+                r_q13_speed_wz_minus_r_q33_speed_wx,
+                r_q23 * speed_wx - r_q13 * speed_wy,
+            ],
+            [
+                -radius * r_q11_speed_wz_minus_r_q31_speed_wx,
+                -radius * r_q21_speed_wz_minus_r_q31_speed_wy,
+                zero,
+            ],
+            [
+                -radius * r_q12_speed_wz_minus_r_q32_speed_wx,
+                -radius * r_q22_speed_wz_minus_r_q32_speed_wy,
+                zero,
+            ],
+            [
+                -radius * r_q13_speed_wz_minus_r_q33_speed_wx,
+                -radius * r_q23_speed_wz_minus_r_q33_speed_wy,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×5. Operations: 7 additions, 17 multiplications (4 of each fused).
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`, line 16 `X`, line 17 `S_bar`.
+    fn bias_acceleration_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let sum_of_speed_wx_speed_wy = speed_wx.mul_add(speed_wx, speed_wy * speed_wy);
+        let product_of_radius_speed_wz_r_q13 = radius
+            * (speed_wz * r_q13.mul_add(speed_wx, r_q23 * speed_wy)
+                - r_q33 * sum_of_speed_wx_speed_wy);
+        let product_of_radius_speed_wz_r_q12 = radius
+            * (speed_wz * r_q12.mul_add(speed_wx, r_q22 * speed_wy)
+                - r_q32 * sum_of_speed_wx_speed_wy);
+        let product_of_radius_speed_wz_r_q11 = radius
+            * (speed_wz * r_q11.mul_add(speed_wx, r_q21 * speed_wy)
+                - r_q31 * sum_of_speed_wx_speed_wy);
+        from_rows([
+            [zero, zero, zero, zero, zero],
+            [zero, zero, zero, zero, zero],
+            [zero, zero, zero, zero, zero],
+            [
+                zero,
+                product_of_radius_speed_wz_r_q13,
+                -product_of_radius_speed_wz_r_q12,
+                zero,
+                zero,
+            ],
+            [
+                -product_of_radius_speed_wz_r_q13,
+                zero,
+                product_of_radius_speed_wz_r_q11,
+                zero,
+                zero,
+            ],
+            [
+                product_of_radius_speed_wz_r_q12,
+                -product_of_radius_speed_wz_r_q11,
+                zero,
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
+    ///
+    /// 6×3. Operations: 9 additions, 33 multiplications (3 of each fused).
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`, line 16 `X`, line 17 `S_bar`.
+    fn bias_acceleration_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let two = T::from_f64(2.0);
+        from_rows([
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [
+                radius * (two * r_q31 * speed_wx - r_q11 * speed_wz),
+                radius * (two * r_q31 * speed_wy - r_q21 * speed_wz),
+                -radius * r_q11.mul_add(speed_wx, r_q21 * speed_wy),
+            ],
+            [
+                radius * (two * r_q32 * speed_wx - r_q12 * speed_wz),
+                radius * (two * r_q32 * speed_wy - r_q22 * speed_wz),
+                -radius * r_q12.mul_add(speed_wx, r_q22 * speed_wy),
+            ],
+            [
+                radius * (two * r_q33 * speed_wx - r_q13 * speed_wz),
+                radius * (two * r_q33 * speed_wy - r_q23 * speed_wz),
+                -radius * r_q13.mul_add(speed_wx, r_q23 * speed_wy),
+            ],
+        ])
+    }
+
+    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
+    ///
+    /// 3×5. Operations: 30 additions, 54 multiplications (12 of each fused).
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`, line 16 `X`, line 17 `S_bar`.
+    fn bias_momentum_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let [h1, h2, h3, h4, h5, h6]: [T; 6] = (*h).into();
+        let zero = T::zero();
+        let r_q23_speed_wz_minus_r_q33_speed_wy = r_q23 * speed_wz - r_q33 * speed_wy;
+        let r_q22_speed_wz_minus_r_q32_speed_wy = r_q22 * speed_wz - r_q32 * speed_wy;
+        let r_q13_speed_wz_minus_r_q33_speed_wx = r_q13 * speed_wz - r_q33 * speed_wx;
+        let r_q12_speed_wz_minus_r_q32_speed_wx = r_q12 * speed_wz - r_q32 * speed_wx;
+        let r_q21_speed_wz_minus_r_q31_speed_wy = r_q21 * speed_wz - r_q31 * speed_wy;
+        let r_q11_speed_wz_minus_r_q31_speed_wx = r_q11 * speed_wz - r_q31 * speed_wx;
+        let r_q13_speed_wy_minus_r_q23_speed_wx = r_q13 * speed_wy - r_q23 * speed_wx;
+        let r_q12_speed_wy_minus_r_q22_speed_wx = r_q12 * speed_wy - r_q22 * speed_wx;
+        let r_q11_speed_wy_minus_r_q21_speed_wx = r_q11 * speed_wy - r_q21 * speed_wx;
+        from_rows([
+            [
+                h3
+                    .mul_add(
+                        r_q22_speed_wz_minus_r_q32_speed_wy,
+                        h2
+                            .mul_add(
+                                -r_q23_speed_wz_minus_r_q33_speed_wy,
+                                -radius
+                                    * (h5 * r_q13_speed_wz_minus_r_q33_speed_wx
+                                        - h6 * r_q12_speed_wz_minus_r_q32_speed_wx),
+                            ),
+                    ),
+                h1
+                    .mul_add(
+                        r_q23_speed_wz_minus_r_q33_speed_wy,
+                        h3
+                            .mul_add(
+                                -r_q21_speed_wz_minus_r_q31_speed_wy,
+                                radius
+                                    * (h4 * r_q13_speed_wz_minus_r_q33_speed_wx
+                                        - h6 * r_q11_speed_wz_minus_r_q31_speed_wx),
+                            ),
+                    ),
+                h2
+                    .mul_add(
+                        r_q21_speed_wz_minus_r_q31_speed_wy,
+                        h1
+                            .mul_add(
+                                -r_q22_speed_wz_minus_r_q32_speed_wy,
+                                -radius
+                                    * (h4 * r_q12_speed_wz_minus_r_q32_speed_wx
+                                        - h5 * r_q11_speed_wz_minus_r_q31_speed_wx),
+                            ),
+                    ),
+                zero,
+                zero,
+            ],
+            [
+                h2
+                    .mul_add(
+                        r_q13_speed_wz_minus_r_q33_speed_wx,
+                        h3
+                            .mul_add(
+                                -r_q12_speed_wz_minus_r_q32_speed_wx,
+                                -radius
+                                    * (h5 * r_q23_speed_wz_minus_r_q33_speed_wy
+                                        - h6 * r_q22_speed_wz_minus_r_q32_speed_wy),
+                            ),
+                    ),
+                h3
+                    .mul_add(
+                        r_q11_speed_wz_minus_r_q31_speed_wx,
+                        h1
+                            .mul_add(
+                                -r_q13_speed_wz_minus_r_q33_speed_wx,
+                                radius
+                                    * (h4 * r_q23_speed_wz_minus_r_q33_speed_wy
+                                        - h6 * r_q21_speed_wz_minus_r_q31_speed_wy),
+                            ),
+                    ),
+                h1
+                    .mul_add(
+                        r_q12_speed_wz_minus_r_q32_speed_wx,
+                        h2
+                            .mul_add(
+                                -r_q11_speed_wz_minus_r_q31_speed_wx,
+                                -radius
+                                    * (h4 * r_q22_speed_wz_minus_r_q32_speed_wy
+                                        - h5 * r_q21_speed_wz_minus_r_q31_speed_wy),
+                            ),
+                    ),
+                zero,
+                zero,
+            ],
+            [
+                h3 * r_q12_speed_wy_minus_r_q22_speed_wx
+                    - h2 * r_q13_speed_wy_minus_r_q23_speed_wx,
+                h1 * r_q13_speed_wy_minus_r_q23_speed_wx
+                    - h3 * r_q11_speed_wy_minus_r_q21_speed_wx,
+                h2 * r_q11_speed_wy_minus_r_q21_speed_wx
+                    - h1 * r_q12_speed_wy_minus_r_q22_speed_wx,
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
+    ///
+    /// 3×3. Operations: 14 additions, 21 multiplications (14 of each fused).
+    ///
+    /// From line 12 `basis`, line 13 `let`, line 14 `Phi`, line 15 `H`, line 16 `X`, line 17 `S_bar`.
+    fn bias_momentum_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        _speeds: &SVector<T, 3>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 3> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [h1, h2, h3, h4, h5, h6]: [T; 6] = (*h).into();
+        let zero = T::zero();
+        let product_of_radius_r_q31_h4_r_q32_h5 = radius
+            * r_q31.mul_add(h4, r_q32.mul_add(h5, r_q33 * h6));
+        let r_q31_h1_plus_r_q32_h2_plus_r_q33_h3 = r_q31
+            .mul_add(h1, r_q32.mul_add(h2, r_q33 * h3));
+        let r_q21_h1_plus_r_q22_h2_plus_r_q23_h3 = r_q21
+            .mul_add(h1, r_q22.mul_add(h2, r_q23 * h3));
+        let r_q11_h1_plus_r_q12_h2_plus_r_q13_h3 = r_q11
+            .mul_add(h1, r_q12.mul_add(h2, r_q13 * h3));
+        from_rows([
+            [
+                product_of_radius_r_q31_h4_r_q32_h5,
+                r_q31_h1_plus_r_q32_h2_plus_r_q33_h3,
+                -radius
+                    .mul_add(
+                        r_q11.mul_add(h4, r_q12.mul_add(h5, r_q13 * h6)),
+                        r_q21_h1_plus_r_q22_h2_plus_r_q23_h3,
+                    ),
+            ],
+            [
+                -r_q31_h1_plus_r_q32_h2_plus_r_q33_h3,
+                product_of_radius_r_q31_h4_r_q32_h5,
+                radius
+                    .mul_add(
+                        -r_q21.mul_add(h4, r_q22.mul_add(h5, r_q23 * h6)),
+                        r_q11_h1_plus_r_q12_h2_plus_r_q13_h3,
+                    ),
+            ],
+            [
+                r_q21_h1_plus_r_q22_h2_plus_r_q23_h3,
+                -r_q11_h1_plus_r_q12_h2_plus_r_q13_h3,
+                zero,
+            ],
         ])
     }
 }

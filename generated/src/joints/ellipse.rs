@@ -42,7 +42,7 @@ use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(3);
+const _: () = ::hamel::joint::assert_kernel_interface(4);
 
 /// Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +78,9 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
+        twist_gradient: Structure::General,
+        bias_acceleration_gradient: Structure::General,
+        bias_momentum_gradient: Structure::General,
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(
         ["xx0", "xx0", "001"],
@@ -515,6 +518,402 @@ impl Joint<2, 1, 1, 0> for Ellipse {
                     - two * a * b * h3 * q_c_a_squared_minus_b_squared_q_s
                         / (value_of_a_squared_q_c * value_of_a_squared_q_c
                             * value_of_a_squared_q_c * value_of_a_squared_q_c)),
+        ])
+    }
+
+    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
+    ///
+    /// 6×1. Operations: 3 additions, 9 multiplications (2 of each fused), 2 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let zero = T::zero();
+        let one = T::one();
+        let a_squared = a * a;
+        let q_c_squared = q_c * q_c;
+        let b_squared_q_c_squared = b * b * q_c_squared;
+        let value_of_a_squared_q_c_squared = a_squared
+            .mul_add(one - q_c_squared, b_squared_q_c_squared)
+            .sqrt();
+        let sum_of_b_squared_q_c_squared_q_s = (a_squared * q_s)
+            .mul_add(q_s, b_squared_q_c_squared);
+        from_rows([
+            [zero],
+            [zero],
+            [a * b / (value_of_a_squared_q_c_squared * value_of_a_squared_q_c_squared)],
+            [sum_of_b_squared_q_c_squared_q_s / sum_of_b_squared_q_c_squared_q_s.sqrt()],
+            [zero],
+            [zero],
+        ])
+    }
+
+    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×1. Operations: 4 additions, 20 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn twist_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 2>,
+        speeds: &SVector<T, 1>,
+    ) -> SMatrix<T, 6, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let speed_angle = speeds[0];
+        let zero = T::zero();
+        let two = T::from_f64(2.0);
+        let a_squared = a * a;
+        let b_squared = b * b;
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
+            .sqrt();
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
+        from_rows([
+            [zero],
+            [zero],
+            [
+                -two * a * b * speed_angle * q_c_a_squared_minus_b_squared_q_s
+                    / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                        * value_of_a_squared_q_c * value_of_a_squared_q_c),
+            ],
+            [
+                speed_angle
+                    * two
+                        .mul_add(
+                            q_c_a_squared_minus_b_squared_q_s,
+                            -q_c_a_squared_minus_b_squared_q_s
+                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                        ) / value_of,
+            ],
+            [zero],
+            [zero],
+        ])
+    }
+
+    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
+    ///
+    /// 1×1. Operations: 5 additions, 20 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn effort_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 2>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 1, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let (h3, h4) = (h[2], h[3]);
+        let two = T::from_f64(2.0);
+        let a_squared = a * a;
+        let b_squared = b * b;
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
+            .sqrt();
+        from_rows([
+            [
+                h4
+                    * two
+                        .mul_add(
+                            q_c_a_squared_minus_b_squared_q_s,
+                            -q_c_a_squared_minus_b_squared_q_s
+                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                        ) / value_of
+                    - two * a * b * h3 * q_c_a_squared_minus_b_squared_q_s
+                        / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                            * value_of_a_squared_q_c * value_of_a_squared_q_c),
+            ],
+        ])
+    }
+
+    /// d/dt(X^c S̄) at the speeds v̄.
+    ///
+    /// 6×1. Operations: 4 additions, 20 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn twist_map_rate<T: Scalar>(
+        &self,
+        q: &SVector<T, 2>,
+        speeds: &SVector<T, 1>,
+    ) -> SMatrix<T, 6, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let speed_angle = speeds[0];
+        let zero = T::zero();
+        let two = T::from_f64(2.0);
+        let a_squared = a * a;
+        let b_squared = b * b;
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
+            .sqrt();
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
+        from_rows([
+            [zero],
+            [zero],
+            [
+                -two * a * b * speed_angle * q_c_a_squared_minus_b_squared_q_s
+                    / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                        * value_of_a_squared_q_c * value_of_a_squared_q_c),
+            ],
+            [
+                speed_angle
+                    * two
+                        .mul_add(
+                            q_c_a_squared_minus_b_squared_q_s,
+                            -q_c_a_squared_minus_b_squared_q_s
+                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                        ) / value_of,
+            ],
+            [zero],
+            [zero],
+        ])
+    }
+
+    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×1. Operations: 9 additions, 29 multiplications (5 of each fused), 5 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn bias_acceleration_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 2>,
+        speeds: &SVector<T, 1>,
+    ) -> SMatrix<T, 6, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let speed_angle = speeds[0];
+        let zero = T::zero();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let four = T::from_f64(4.0);
+        let eight = T::from_f64(8.0);
+        let speed_angle_squared = speed_angle * speed_angle;
+        let b_squared = b * b;
+        let q_c_squared = q_c * q_c;
+        let a_squared = a * a;
+        let q_s_squared = q_s * q_s;
+        let sum_of_b_squared_q_c_squared = b_squared
+            .mul_add(q_c_squared, a_squared * q_s_squared);
+        let sum_of_sum_of_b_squared_q_c_squared = a_squared
+            .mul_add(
+                -q_c_squared,
+                b_squared.mul_add(-q_s_squared, sum_of_b_squared_q_c_squared),
+            );
+        let product_of = two * sum_of_sum_of_b_squared_q_c_squared;
+        let a_squared_minus_b_squared = a_squared - b_squared;
+        let q_c_a_squared_minus_b_squared = q_c * a_squared_minus_b_squared;
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
+            .sqrt();
+        let value_of_a_squared_q_c_squared = value_of_a_squared_q_c
+            * value_of_a_squared_q_c;
+        let root_sum_of_b_squared_q_c_squared = sum_of_b_squared_q_c_squared.sqrt();
+        let product_of_2 = root_sum_of_b_squared_q_c_squared
+            * root_sum_of_b_squared_q_c_squared;
+        from_rows([
+            [zero],
+            [zero],
+            [
+                a * b * speed_angle_squared
+                    * (product_of
+                        + eight * q_c_a_squared_minus_b_squared_q_s * q_c * q_s
+                            * a_squared_minus_b_squared / value_of_a_squared_q_c_squared)
+                    / (value_of_a_squared_q_c_squared * value_of_a_squared_q_c_squared),
+            ],
+            [
+                -speed_angle_squared
+                    * (product_of
+                        - (sum_of_sum_of_b_squared_q_c_squared
+                            * sum_of_b_squared_q_c_squared
+                            - q_c_a_squared_minus_b_squared_q_s
+                                * four
+                                    .mul_add(
+                                        q_c_a_squared_minus_b_squared_q_s,
+                                        -three * q_c_a_squared_minus_b_squared_q_s
+                                            * sum_of_b_squared_q_c_squared / product_of_2,
+                                    )) / product_of_2) / root_sum_of_b_squared_q_c_squared,
+            ],
+            [zero],
+            [zero],
+        ])
+    }
+
+    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
+    ///
+    /// 6×1. Operations: 4 additions, 21 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn bias_acceleration_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 2>,
+        speeds: &SVector<T, 1>,
+    ) -> SMatrix<T, 6, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let speed_angle = speeds[0];
+        let zero = T::zero();
+        let two = T::from_f64(2.0);
+        let four = T::from_f64(4.0);
+        let a_squared = a * a;
+        let b_squared = b * b;
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
+            .sqrt();
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
+        from_rows([
+            [zero],
+            [zero],
+            [
+                -four * a * b * speed_angle * q_c_a_squared_minus_b_squared_q_s
+                    / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                        * value_of_a_squared_q_c * value_of_a_squared_q_c),
+            ],
+            [
+                speed_angle
+                    * four
+                        .mul_add(
+                            q_c_a_squared_minus_b_squared_q_s,
+                            -two * q_c_a_squared_minus_b_squared_q_s
+                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                        ) / value_of,
+            ],
+            [zero],
+            [zero],
+        ])
+    }
+
+    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
+    ///
+    /// 1×1. Operations: 10 additions, 29 multiplications (5 of each fused), 5 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn bias_momentum_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 2>,
+        speeds: &SVector<T, 1>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 1, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let speed_angle = speeds[0];
+        let (h3, h4) = (h[2], h[3]);
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let four = T::from_f64(4.0);
+        let eight = T::from_f64(8.0);
+        let b_squared = b * b;
+        let q_c_squared = q_c * q_c;
+        let a_squared = a * a;
+        let q_s_squared = q_s * q_s;
+        let sum_of_b_squared_q_c_squared = b_squared
+            .mul_add(q_c_squared, a_squared * q_s_squared);
+        let sum_of_sum_of_b_squared_q_c_squared = a_squared
+            .mul_add(
+                -q_c_squared,
+                b_squared.mul_add(-q_s_squared, sum_of_b_squared_q_c_squared),
+            );
+        let product_of = two * sum_of_sum_of_b_squared_q_c_squared;
+        let a_squared_minus_b_squared = a_squared - b_squared;
+        let q_c_a_squared_minus_b_squared = q_c * a_squared_minus_b_squared;
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let root_sum_of_b_squared_q_c_squared = sum_of_b_squared_q_c_squared.sqrt();
+        let product_of_2 = root_sum_of_b_squared_q_c_squared
+            * root_sum_of_b_squared_q_c_squared;
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
+            .sqrt();
+        let value_of_a_squared_q_c_squared = value_of_a_squared_q_c
+            * value_of_a_squared_q_c;
+        from_rows([
+            [
+                speed_angle
+                    * (a * b * h3
+                        * (product_of
+                            + eight * q_c_a_squared_minus_b_squared_q_s * q_c * q_s
+                                * a_squared_minus_b_squared
+                                / value_of_a_squared_q_c_squared)
+                        / (value_of_a_squared_q_c_squared
+                            * value_of_a_squared_q_c_squared)
+                        - h4
+                            * (product_of
+                                - (sum_of_sum_of_b_squared_q_c_squared
+                                    * sum_of_b_squared_q_c_squared
+                                    - q_c_a_squared_minus_b_squared_q_s
+                                        * four
+                                            .mul_add(
+                                                q_c_a_squared_minus_b_squared_q_s,
+                                                -three * q_c_a_squared_minus_b_squared_q_s
+                                                    * sum_of_b_squared_q_c_squared / product_of_2,
+                                            )) / product_of_2) / root_sum_of_b_squared_q_c_squared),
+            ],
+        ])
+    }
+
+    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
+    ///
+    /// 1×1. Operations: 5 additions, 20 multiplications (3 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
+    fn bias_momentum_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 2>,
+        _speeds: &SVector<T, 1>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 1, 1> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let [q_c, q_s]: [T; 2] = (*q).into();
+        let (h3, h4) = (h[2], h[3]);
+        let two = T::from_f64(2.0);
+        let a_squared = a * a;
+        let b_squared = b * b;
+        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
+        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
+        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
+            .mul_add(q_c, a_squared * q_s * q_s);
+        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
+        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
+            .mul_add(-q_c, a_squared)
+            .sqrt();
+        from_rows([
+            [
+                h4
+                    * two
+                        .mul_add(
+                            q_c_a_squared_minus_b_squared_q_s,
+                            -q_c_a_squared_minus_b_squared_q_s
+                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
+                        ) / value_of
+                    - two * a * b * h3 * q_c_a_squared_minus_b_squared_q_s
+                        / (value_of_a_squared_q_c * value_of_a_squared_q_c
+                            * value_of_a_squared_q_c * value_of_a_squared_q_c),
+            ],
         ])
     }
 }

@@ -67,7 +67,7 @@ use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(3);
+const _: () = ::hamel::joint::assert_kernel_interface(4);
 
 /// Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +115,9 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         retract_differential: Structure::General,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
+        twist_gradient: Structure::General,
+        bias_acceleration_gradient: Structure::General,
+        bias_momentum_gradient: Structure::General,
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(
         ["xxx", "xxx", "xxx"],
@@ -1349,6 +1352,3179 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
                         ),
                 ) / value_of,
             zero,
+        ])
+    }
+
+    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
+    ///
+    /// 6×3. Operations: 18 additions, 45 multiplications (18 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 19 `let`, line 20 `H`.
+    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let zero = T::zero();
+        let one = T::one();
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let inverse_value_of = one / value_of;
+        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q12_q13_q23_q33
+            * inverse_value_of_squared;
+        from_rows([
+            [one, zero, zero],
+            [zero, one, zero],
+            [zero, zero, one],
+            [
+                sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(
+                        product_of_inverse_value_of_squared,
+                        -sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                a_squared_q11
+                    .mul_add(
+                        q11,
+                        b_squared_q21
+                            .mul_add(
+                                q21,
+                                product_of_inverse_value_of_squared
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q13_q23_q33,
+                                        c_squared_q31 * q31,
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+                zero,
+            ],
+            [
+                a_squared_q12
+                    .mul_add(
+                        -q12,
+                        b_squared_q22
+                            .mul_add(
+                                -q22,
+                                c_squared_q32
+                                    .mul_add(
+                                        -q32,
+                                        product_of_inverse_value_of_squared_2
+                                            * sum_of_a_squared_q12_q13_q23_q33,
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+                product_of_inverse_value_of_squared
+                    .mul_add(
+                        -sum_of_a_squared_q12_q13_q23_q33,
+                        sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                zero,
+            ],
+            [
+                product_of_inverse_value_of_squared_2
+                    .mul_add(
+                        sum_of_a_squared_q13_b_squared_q23,
+                        -sum_of_a_squared_q12_q13_q23_q33,
+                    ) * inverse_value_of,
+                product_of_inverse_value_of_squared
+                    .mul_add(
+                        -sum_of_a_squared_q13_b_squared_q23,
+                        sum_of_a_squared_q11_q13_q23_q33,
+                    ) * inverse_value_of,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×3. Operations: 70 additions, 124 multiplications (44 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
+    fn twist_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 9>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let (speed_tilt_x, speed_tilt_y) = (speeds[0], speeds[1]);
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let product_of_speed_tilt_x = speed_tilt_x * sum_of_a_squared_q11_q13_q23_q33;
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let product_of_speed_tilt_x_2 = speed_tilt_x * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_product_of_speed_tilt_x_2 = two * product_of_speed_tilt_x_2
+            - speed_tilt_y * sum_of_a_squared_q11_q11_q21_q31;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let speed_tilt_x_sum_of = speed_tilt_x * sum_of;
+        let product_of_speed_tilt_y = speed_tilt_y * sum_of_a_squared_q11_q12_q22_q32;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q12_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of_speed_tilt_x_3 = speed_tilt_x * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_tilt_y_2 = speed_tilt_y * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_product_of_speed_tilt_x_3 = product_of_speed_tilt_x_3
+            - product_of_speed_tilt_y_2;
+        let inverse_value_of = one / value_of;
+        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of = product_of_inverse_value_of_squared_2 * three
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_speed_tilt_x = speed_tilt_x * sum_of_a_squared_q12_q12_q22_q32
+            - two * product_of_speed_tilt_y;
+        let product_of_speed_tilt_y_3 = speed_tilt_y * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_product_of_speed_tilt_x = product_of_speed_tilt_x
+            + product_of_speed_tilt_y_3;
+        let speed_tilt_y_sum_of_2 = speed_tilt_y * sum_of_2;
+        let product_of_2 = product_of_inverse_value_of_squared_2 * three
+            * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_3 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_4 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q13_b_squared_q23;
+        from_rows([
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [
+                -sum_of_a_squared_q11_q13_q23_q33
+                    .mul_add(
+                        -(three * product_of_inverse_value_of_squared)
+                            .mul_add(
+                                sum_of_product_of_speed_tilt_x_3,
+                                speed_tilt_x_sum_of + product_of_speed_tilt_y,
+                            ),
+                        product_of_speed_tilt_y
+                            .mul_add(
+                                -sum_of_a_squared_q11_q13_q23_q33,
+                                sum_of_a_squared_q12_q13_q23_q33
+                                    * sum_of_product_of_speed_tilt_x_2,
+                            ),
+                    )
+                    .mul_add(inverse_value_of_squared, product_of_speed_tilt_x)
+                    * inverse_value_of,
+                product_of_speed_tilt_y_2
+                    .mul_add(
+                        -two,
+                        product_of_speed_tilt_x_3
+                            - (speed_tilt_x
+                                * sum_of_a_squared_q11_q13_q23_q33
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q12_q22_q32,
+                                        sum_of_a_squared_q11_q12_q22_q32
+                                            .mul_add(
+                                                -sum_of_a_squared_q11_q13_q23_q33,
+                                                sum_of_a_squared_q12_q13_q23_q33 * (sum_of_2 + product_of),
+                                            ),
+                                    )
+                                - speed_tilt_y
+                                    * sum_of_a_squared_q11_q13_q23_q33
+                                        .mul_add(
+                                            two
+                                                .mul_add(
+                                                    -sum_of_a_squared_q11_q11_q21_q31,
+                                                    sum_of_a_squared_q13_b_squared_q23 + product_of,
+                                                ),
+                                            sum_of_a_squared_q11_q13_q23_q33 * sum_of_2,
+                                        )) * inverse_value_of_squared,
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        sum_of_a_squared_q11_q11_q21_q31,
+                        (sum_of_product_of_speed_tilt_x_3
+                            * sum_of_a_squared_q12_q13_q23_q33
+                            - sum_of_a_squared_q11_q13_q23_q33
+                                * sum_of_product_of_speed_tilt_x) * inverse_value_of_squared
+                            - sum_of_speed_tilt_x,
+                    ) * inverse_value_of,
+            ],
+            [
+                speed_tilt_x
+                    .mul_add(
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                two
+                                    .mul_add(
+                                        -sum_of_a_squared_q12_q12_q22_q32,
+                                        (product_of_inverse_value_of_squared * three)
+                                            .mul_add(
+                                                sum_of_a_squared_q12_q13_q23_q33,
+                                                sum_of_a_squared_q13_b_squared_q23,
+                                            ),
+                                    ),
+                                sum_of * sum_of_a_squared_q12_q13_q23_q33,
+                            ),
+                        speed_tilt_y
+                            * sum_of_a_squared_q12_q13_q23_q33
+                                .mul_add(
+                                    (product_of_inverse_value_of_squared_2 * three)
+                                        .mul_add(
+                                            -sum_of_a_squared_q12_q13_q23_q33,
+                                            sum_of_a_squared_q11_q12_q22_q32,
+                                        ),
+                                    sum_of_a_squared_q11_q13_q23_q33
+                                        .mul_add(
+                                            -sum_of,
+                                            sum_of_a_squared_q11_q12_q22_q32
+                                                * sum_of_a_squared_q12_q13_q23_q33,
+                                        ),
+                                ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        product_of_speed_tilt_x_3
+                            .mul_add(-two, product_of_speed_tilt_y_2),
+                    ) * inverse_value_of,
+                sum_of_a_squared_q11_q13_q23_q33
+                    .mul_add(
+                        sum_of_speed_tilt_x,
+                        product_of_speed_tilt_x_2
+                            .mul_add(
+                                sum_of_a_squared_q12_q13_q23_q33,
+                                sum_of_a_squared_q12_q13_q23_q33
+                                    * (three * product_of_inverse_value_of_squared_2)
+                                        .mul_add(
+                                            -sum_of_product_of_speed_tilt_x_3,
+                                            product_of_speed_tilt_x_2 + speed_tilt_y_sum_of_2,
+                                        ),
+                            ),
+                    )
+                    .mul_add(inverse_value_of_squared, -product_of_speed_tilt_y_3)
+                    * inverse_value_of,
+                speed_tilt_y
+                    .mul_add(
+                        sum_of_a_squared_q12_q12_q22_q32,
+                        sum_of_product_of_speed_tilt_x_3
+                            .mul_add(
+                                sum_of_a_squared_q11_q13_q23_q33,
+                                sum_of_a_squared_q12_q13_q23_q33
+                                    * sum_of_product_of_speed_tilt_x,
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                sum_of_product_of_speed_tilt_x_2,
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [
+                -(speed_tilt_x_sum_of + product_of_speed_tilt_y
+                    + (speed_tilt_x
+                        * (sum_of_a_squared_q12_q13_q23_q33
+                            * (three * sum_of_a_squared_q12_q13_q23_q33
+                                - product_of_inverse_value_of_squared * three
+                                    * sum_of_a_squared_q13_b_squared_q23)
+                            - sum_of * sum_of_a_squared_q13_b_squared_q23)
+                        - speed_tilt_y
+                            * sum_of_a_squared_q12_q13_q23_q33
+                                .mul_add(
+                                    sum_of_a_squared_q11_q13_q23_q33 - product_of_2,
+                                    product_of_3.mul_add(two, product_of_4),
+                                )) * inverse_value_of_squared) * inverse_value_of,
+                ((speed_tilt_x
+                    * sum_of_a_squared_q12_q13_q23_q33
+                        .mul_add(
+                            two.mul_add(sum_of_a_squared_q11_q13_q23_q33, -product_of_2),
+                            product_of_3 + product_of_4,
+                        )
+                    - speed_tilt_y
+                        * (sum_of_a_squared_q11_q13_q23_q33
+                            * three
+                                .mul_add(sum_of_a_squared_q11_q13_q23_q33, -product_of_2)
+                            - sum_of_2 * sum_of_a_squared_q13_b_squared_q23))
+                    * inverse_value_of_squared - product_of_speed_tilt_x_2
+                    - speed_tilt_y_sum_of_2) * inverse_value_of,
+                (sum_of_a_squared_q13_b_squared_q23 * sum_of_product_of_speed_tilt_x)
+                    .mul_add(
+                        -inverse_value_of_squared,
+                        product_of_speed_tilt_x + product_of_speed_tilt_y_3,
+                    ) * inverse_value_of,
+            ],
+        ])
+    }
+
+    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
+    ///
+    /// 3×3. Operations: 62 additions, 92 multiplications (43 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
+    fn effort_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 9>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let (h4, h5, h6) = (h[3], h[4], h[5]);
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let h4_sum_of_a_squared_q11_q13_q23_q33 = h4 * sum_of_a_squared_q11_q13_q23_q33;
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let h5_sum_of_a_squared_q12_q13_q23_q33 = h5 * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let product_of_h6 = h6 * sum_of_a_squared_q13_b_squared_q23;
+        let sum_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
+            + h5_sum_of_a_squared_q12_q13_q23_q33 + product_of_h6;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let h4_sum_of_a_squared_q11_q12_q22_q32 = h4 * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of = h4_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let h6_sum_of_a_squared_q12_q13_q23_q33 = h6 * sum_of_a_squared_q12_q13_q23_q33;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
+            .mul_add(
+                three,
+                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(three, product_of_h6 * three),
+            ) * inverse_value_of_squared;
+        let inverse_value_of = one / value_of;
+        let h4_sum_of_a_squared_q12_q13_q23_q33 = h4 * sum_of_a_squared_q12_q13_q23_q33;
+        let h6_sum_of_a_squared_q11_q12_q22_q32 = h6 * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let h5_sum_of_a_squared_q11_q12_q22_q32 = h5 * sum_of_a_squared_q11_q12_q22_q32;
+        let h6_sum_of_a_squared_q11_q13_q23_q33 = h6 * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_product_of_product_of_h6 = sum_of_a_squared_q11_q13_q23_q33
+            * product_of_product_of_h6;
+        let product_of_sum_of_product_of_h6 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_product_of_h6;
+        let sum_of_3 = sum_of_a_squared_q12_q12_q22_q32
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_2 = h5_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let h5_sum_of_a_squared_q11_q13_q23_q33 = h5 * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_4 = h4_sum_of_a_squared_q12_q13_q23_q33
+            - h5_sum_of_a_squared_q11_q13_q23_q33;
+        from_rows([
+            [
+                h5_sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(
+                        -two,
+                        h6
+                            .mul_add(
+                                -sum_of,
+                                (sum_of * sum_of_product_of_h6
+                                    - sum_of_a_squared_q12_q13_q23_q33
+                                        * h5
+                                            .mul_add(
+                                                two
+                                                    .mul_add(
+                                                        sum_of_a_squared_q12_q12_q22_q32,
+                                                        -sum_of_a_squared_q13_b_squared_q23,
+                                                    ),
+                                                h6_sum_of_a_squared_q12_q13_q23_q33
+                                                    .mul_add(
+                                                        three,
+                                                        sum_of_a_squared_q12_q13_q23_q33
+                                                            .mul_add(-product_of_product_of_h6, product_of),
+                                                    ),
+                                            )) * inverse_value_of_squared
+                                    - h4_sum_of_a_squared_q11_q13_q23_q33,
+                            ),
+                    ) * inverse_value_of,
+                sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(
+                        h4
+                            .mul_add(
+                                sum_of_2,
+                                h6_sum_of_a_squared_q11_q13_q23_q33
+                                    .mul_add(
+                                        -two,
+                                        -h5_sum_of_a_squared_q11_q12_q22_q32
+                                            + product_of_product_of_product_of_h6,
+                                    ),
+                            ),
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                -h5
+                                    .mul_add(
+                                        sum_of_a_squared_q12_q12_q22_q32,
+                                        h4_sum_of_a_squared_q11_q12_q22_q32
+                                            + h6_sum_of_a_squared_q12_q13_q23_q33,
+                                    ),
+                                -product_of_sum_of_product_of_h6,
+                            ),
+                    )
+                    .mul_add(
+                        -inverse_value_of_squared,
+                        h4_sum_of_a_squared_q12_q13_q23_q33
+                            - h6_sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                h4
+                    .mul_add(
+                        -sum_of_3,
+                        product_of_2 + h6_sum_of_a_squared_q11_q13_q23_q33
+                            + (sum_of_a_squared_q12_q13_q23_q33 * sum_of_4
+                                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_product_of_h6)
+                                * inverse_value_of_squared,
+                    ) * inverse_value_of,
+            ],
+            [
+                sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(
+                        h4
+                            .mul_add(
+                                sum_of_a_squared_q11_q11_q21_q31,
+                                h5_sum_of_a_squared_q11_q12_q22_q32
+                                    + h6_sum_of_a_squared_q11_q13_q23_q33
+                                    - product_of_product_of_product_of_h6,
+                            ),
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                h5
+                                    .mul_add(
+                                        -sum_of,
+                                        h6_sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(two, h4_sum_of_a_squared_q11_q12_q22_q32),
+                                    ),
+                                product_of_sum_of_product_of_h6,
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        h5_sum_of_a_squared_q11_q13_q23_q33
+                            - h6_sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                sum_of_a_squared_q11_q13_q23_q33
+                    .mul_add(
+                        h4
+                            .mul_add(
+                                two
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q11_q21_q31,
+                                        sum_of_a_squared_q13_b_squared_q23,
+                                    ),
+                                h6_sum_of_a_squared_q11_q13_q23_q33
+                                    .mul_add(
+                                        -three,
+                                        -product_of_2 + product_of_product_of_product_of_h6,
+                                    ),
+                            ),
+                        sum_of_2 * sum_of_product_of_h6,
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        h4_sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                -two,
+                                h6.mul_add(-sum_of_2, -h5_sum_of_a_squared_q12_q13_q23_q33),
+                            ),
+                    ) * inverse_value_of,
+                h5
+                    .mul_add(
+                        sum_of_3,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                sum_of_product_of_h6,
+                                sum_of_a_squared_q11_q13_q23_q33 * sum_of_4,
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                product_of + h6_sum_of_a_squared_q12_q13_q23_q33,
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [zero, zero, zero],
+        ])
+    }
+
+    /// d/dt(X^c S̄) at the speeds v̄.
+    ///
+    /// 6×3. Operations: 79 additions, 122 multiplications (57 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
+    fn twist_map_rate<T: Scalar>(
+        &self,
+        q: &SVector<T, 9>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let product_of_speed_tilt_x = speed_tilt_x * sum_of_a_squared_q11_q13_q23_q33;
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let product_of_speed_tilt_y = speed_tilt_y * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let product_of_speed_spin = speed_spin
+            * (sum_of_a_squared_q11_q11_q21_q31 - sum_of_a_squared_q12_q12_q22_q32);
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let speed_tilt_x_sum_of = speed_tilt_x * sum_of;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let two_sum_of_a_squared_q11_q12_q22_q32 = two
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of = sum_of_a_squared_q12_q13_q23_q33 * three
+            * product_of_inverse_value_of_squared;
+        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_2 = product_of_inverse_value_of_squared * three
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin_2 = speed_spin * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_3 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin_3 = speed_spin * sum_of_a_squared_q11_q13_q23_q33;
+        let inverse_value_of = one / value_of;
+        let product_of_speed_spin_4 = speed_spin * two
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let speed_tilt_y_sum_of_2 = speed_tilt_y * sum_of_2;
+        let product_of_product_of_speed_spin_3 = product_of_speed_spin_3
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q12_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of_4 = product_of_inverse_value_of_squared_2 * three
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_5 = product_of_inverse_value_of_squared * three
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_6 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_7 = product_of_inverse_value_of_squared * three
+            * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_8 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_9 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        from_rows([
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [
+                speed_tilt_x_sum_of
+                    .mul_add(
+                        sum_of_a_squared_q11_q13_q23_q33,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        product_of - two_sum_of_a_squared_q11_q12_q22_q32,
+                                        speed_tilt_y
+                                            .mul_add(
+                                                -(sum_of_2 + product_of_2),
+                                                product_of_speed_spin_2,
+                                            ),
+                                    ),
+                                product_of_speed_spin_3
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q13_q23_q33,
+                                        speed_tilt_y
+                                            * sum_of_a_squared_q11_q13_q23_q33
+                                                .mul_add(sum_of_a_squared_q11_q12_q22_q32, product_of_3),
+                                    ),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        product_of_speed_tilt_y + product_of_speed_spin
+                            - product_of_speed_tilt_x,
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(sum_of_a_squared_q11_q11_q21_q31, product_of_3),
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        sum_of_a_squared_q11_q12_q22_q32 - product_of,
+                                        speed_tilt_y
+                                            .mul_add(
+                                                two
+                                                    .mul_add(
+                                                        -sum_of_a_squared_q11_q11_q21_q31,
+                                                        sum_of_a_squared_q13_b_squared_q23 + product_of_2,
+                                                    ),
+                                                -product_of_speed_spin_2,
+                                            ),
+                                    ),
+                                speed_tilt_y_sum_of_2
+                                    .mul_add(
+                                        sum_of_a_squared_q11_q13_q23_q33,
+                                        -product_of_product_of_speed_spin_3,
+                                    ),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        (speed_tilt_y * two)
+                            .mul_add(
+                                -sum_of_a_squared_q11_q13_q23_q33,
+                                product_of_speed_spin_4,
+                            ),
+                    ) * inverse_value_of,
+                zero,
+            ],
+            [
+                speed_tilt_x_sum_of
+                    .mul_add(
+                        sum_of_a_squared_q12_q13_q23_q33,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        two
+                                            .mul_add(
+                                                -sum_of_a_squared_q12_q12_q22_q32,
+                                                sum_of_a_squared_q13_b_squared_q23 + product_of_4,
+                                            ),
+                                        speed_tilt_y
+                                            .mul_add(
+                                                sum_of_a_squared_q11_q12_q22_q32 - product_of_5,
+                                                -product_of_speed_spin_3,
+                                            ),
+                                    ),
+                                speed_tilt_y
+                                    .mul_add(
+                                        sum_of_a_squared_q11_q13_q23_q33
+                                            .mul_add(sum_of_a_squared_q12_q12_q22_q32, product_of_6),
+                                        -product_of_product_of_speed_spin_3,
+                                    ),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        (speed_tilt_x * two)
+                            .mul_add(
+                                -sum_of_a_squared_q12_q13_q23_q33,
+                                product_of_speed_spin_4,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(sum_of_a_squared_q11_q12_q22_q32, product_of_6),
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        -(sum_of + product_of_4),
+                                        speed_tilt_y
+                                            .mul_add(
+                                                product_of_5 - two_sum_of_a_squared_q11_q12_q22_q32,
+                                                product_of_speed_spin_3,
+                                            ),
+                                    ),
+                                product_of_speed_spin_2
+                                    .mul_add(
+                                        -sum_of_a_squared_q12_q13_q23_q33,
+                                        speed_tilt_y_sum_of_2 * sum_of_a_squared_q12_q13_q23_q33,
+                                    ),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        product_of_speed_tilt_x - product_of_speed_tilt_y
+                            - product_of_speed_spin,
+                    ) * inverse_value_of,
+                zero,
+            ],
+            [
+                speed_tilt_y
+                    .mul_add(
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                two
+                                    .mul_add(sum_of_a_squared_q11_q13_q23_q33, -product_of_7),
+                                product_of_8 + product_of_9,
+                            ),
+                        product_of_speed_spin_3
+                            .mul_add(
+                                -sum_of_a_squared_q13_b_squared_q23,
+                                speed_tilt_x
+                                    * (sum_of * sum_of_a_squared_q13_b_squared_q23
+                                        - sum_of_a_squared_q12_q13_q23_q33
+                                            * (three * sum_of_a_squared_q12_q13_q23_q33
+                                                - product_of_inverse_value_of_squared_2 * three
+                                                    * sum_of_a_squared_q13_b_squared_q23)),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        speed_tilt_y
+                            .mul_add(
+                                -sum_of_a_squared_q11_q12_q22_q32,
+                                product_of_speed_spin_3 - speed_tilt_x_sum_of,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                sum_of_a_squared_q11_q13_q23_q33 - product_of_7,
+                                product_of_9.mul_add(two, product_of_8),
+                            ),
+                        product_of_speed_spin_2
+                            .mul_add(
+                                -sum_of_a_squared_q13_b_squared_q23,
+                                -speed_tilt_y
+                                    * (sum_of_a_squared_q11_q13_q23_q33
+                                        * three
+                                            .mul_add(sum_of_a_squared_q11_q13_q23_q33, -product_of_7)
+                                        - sum_of_2 * sum_of_a_squared_q13_b_squared_q23),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        speed_tilt_x
+                            .mul_add(
+                                -sum_of_a_squared_q11_q12_q22_q32,
+                                product_of_speed_spin_2 - speed_tilt_y_sum_of_2,
+                            ),
+                    ) * inverse_value_of,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×3. Operations: 323 additions, 450 multiplications (198 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
+    fn bias_acceleration_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 9>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let four = T::from_f64(4.0);
+        let five = T::from_f64(5.0);
+        let six = T::from_f64(6.0);
+        let seven = T::from_f64(7.0);
+        let eight = T::from_f64(8.0);
+        let nine = T::from_f64(9.0);
+        let twelve = T::from_f64(12.0);
+        let number_15 = T::from_f64(15.0);
+        let number_21 = T::from_f64(21.0);
+        let number_30 = T::from_f64(30.0);
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let product_of_speed_tilt_x = speed_tilt_x * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let speed_tilt_y_sum_of = speed_tilt_y * sum_of;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let product_of_speed_spin = speed_spin * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_spin_two = product_of_speed_spin * two;
+        let product_of_speed_tilt_y = speed_tilt_y * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_speed_tilt_y_two = product_of_speed_tilt_y * two;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let product_of_speed_spin_2 = speed_spin * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin_2_two = product_of_speed_spin_2 * two;
+        let speed_tilt_x_sum_of = speed_tilt_x * sum_of;
+        let product_of_speed_tilt_x_2 = speed_tilt_x * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let two_sum_of_a_squared_q12_q12_q22_q32 = two
+            * sum_of_a_squared_q12_q12_q22_q32;
+        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+            - two_sum_of_a_squared_q12_q12_q22_q32;
+        let sum_of_sum_of_2 = sum_of_a_squared_q11_q11_q21_q31 + sum_of_2;
+        let product_of_sum_of = sum_of * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of = nine * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_2 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_product_of_2 = product_of_2 * inverse_value_of_squared;
+        let product_of_product_of_2_number_15 = product_of_product_of_2 * number_15;
+        let product_of_3 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_3_three = product_of_3 * three;
+        let product_of_4 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_4_three = product_of_4 * three;
+        let product_of_speed_spin_3 = speed_spin
+            * (product_of_3_three - product_of_4_three);
+        let product_of_sum_of_2 = sum_of * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_5 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_6 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let two_sum_of_a_squared_q11_q11_q21_q31 = two
+            * sum_of_a_squared_q11_q11_q21_q31;
+        let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
+            - two_sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_7 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_8 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_8_two = product_of_8 * two;
+        let sum_of_4 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_9 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_9_three = product_of_9 * three;
+        let product_of_10 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_sum_of_3 = sum_of_a_squared_q11_q13_q23_q33 * sum_of;
+        let product_of_speed_tilt_x_sum_of = speed_tilt_x_sum_of
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_5_six = product_of_5 * six;
+        let product_of_6_three = product_of_6 * three;
+        let product_of_sum_of_3_2 = sum_of_a_squared_q12_q13_q23_q33 * sum_of_3;
+        let product_of_5_twelve = product_of_5 * twelve;
+        let product_of_11 = twelve * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_product_of_4 = product_of_4 * inverse_value_of_squared;
+        let product_of_product_of_4_number_15 = product_of_product_of_4 * number_15;
+        let product_of_speed_spin_three = product_of_speed_spin * three;
+        let speed_tilt_y_sum_of_4 = speed_tilt_y * sum_of_4;
+        let product_of_speed_tilt_y_sum_of_4 = speed_tilt_y_sum_of_4
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let inverse_value_of = one / value_of;
+        let product_of_3_two = product_of_3 * two;
+        let product_of_7_two = product_of_7 * two;
+        let product_of_12 = three * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_13 = four * sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_12_minus_product_of_13 = product_of_12 - product_of_13;
+        let product_of_8_three = product_of_8 * three;
+        let sum_of_sum_of_3 = sum_of_a_squared_q12_q12_q22_q32 + sum_of_3;
+        let product_of_sum_of_4 = sum_of_4 * sum_of_a_squared_q11_q13_q23_q33;
+        let six_sum_of_a_squared_q11_q12_q22_q32 = six
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_6_six = product_of_6 * six;
+        let product_of_sum_of_4_2 = sum_of_a_squared_q12_q13_q23_q33 * sum_of_4;
+        let product_of_speed_tilt_y_2 = speed_tilt_y * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin_4 = speed_spin * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_speed_spin_4_three = product_of_speed_spin_4 * three;
+        let product_of_14 = two * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_15 = three * sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_14_minus_product_of_15 = product_of_14 - product_of_15;
+        let product_of_2_three = product_of_2 * three;
+        let product_of_speed_spin_5 = speed_spin
+            * (product_of_2_three + product_of_8_three);
+        let product_of_sum_of_4_3 = sum_of_4 * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_tilt_x_3 = speed_tilt_x * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_spin_4_four = product_of_speed_spin_4 * four;
+        let product_of_speed_tilt_y_3 = speed_tilt_y * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_tilt_y_3_two = product_of_speed_tilt_y_3 * two;
+        let sum_of_5 = sum_of_a_squared_q12_q12_q22_q32
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let speed_spin_two_sum_of_5 = speed_spin * two * sum_of_5;
+        let two_sum_of_5 = two * sum_of_5;
+        let product_of_4_six = product_of_4 * six;
+        let product_of_5_two = product_of_5 * two;
+        let product_of_9_six = product_of_9 * six;
+        let product_of_10_two = product_of_10 * two;
+        let product_of_2_six = product_of_2 * six;
+        let product_of_8_six = product_of_8 * six;
+        let product_of_2_two = product_of_2 * two;
+        let product_of_speed_spin_6 = speed_spin * (product_of_2_two + product_of_8_two);
+        let product_of_16 = four * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_4_two = product_of_4 * two;
+        let product_of_speed_spin_7 = speed_spin * (product_of_3_two - product_of_4_two);
+        let product_of_17 = three * sum_of_a_squared_q12_q12_q22_q32;
+        let product_of_14_minus_product_of_17 = product_of_14 - product_of_17;
+        let product_of_product_of_3 = product_of_3 * inverse_value_of_squared;
+        let product_of_product_of_3_number_15 = product_of_product_of_3 * number_15;
+        let product_of_sum_of_5 = sum_of * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_18 = four * sum_of_a_squared_q12_q12_q22_q32;
+        let product_of_12_minus_product_of_18 = product_of_12 - product_of_18;
+        let product_of_speed_tilt_x_sum_of_2 = speed_tilt_x_sum_of
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_10_six = product_of_10 * six;
+        let product_of_10_twelve = product_of_10 * twelve;
+        let product_of_product_of_8 = product_of_8 * inverse_value_of_squared;
+        let product_of_product_of_8_number_15 = product_of_product_of_8 * number_15;
+        let product_of_speed_spin_2_three = product_of_speed_spin_2 * three;
+        let product_of_speed_tilt_y_sum_of_4_2 = speed_tilt_y_sum_of_4
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_tilt_x_two = product_of_speed_tilt_x * two;
+        let product_of_sum_of_2_2 = sum_of_a_squared_q11_q13_q23_q33 * sum_of_2;
+        let product_of_speed_tilt_x_2_two = product_of_speed_tilt_x_2 * two;
+        let product_of_3_six = product_of_3 * six;
+        let product_of_19 = eight * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_sum_of_6 = sum_of * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q13_b_squared_q23 * inverse_value_of_squared;
+        let product_of_20 = product_of_inverse_value_of_squared * number_15;
+        let product_of_21 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_product_of_21 = product_of_21 * inverse_value_of_squared;
+        let product_of_22 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_23 = five * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_22_six = product_of_22 * six;
+        let product_of_24 = nine * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_product_of_21_number_30 = product_of_product_of_21 * number_30;
+        let product_of_22_twelve = product_of_22 * twelve;
+        let product_of_product_of_21_number_15 = product_of_product_of_21 * number_15;
+        let product_of_sum_of_4_4 = sum_of_4 * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_product_of_speed_spin = product_of_speed_spin
+            * sum_of_a_squared_q13_b_squared_q23;
+        let speed_spin_product_of_21 = speed_spin * product_of_21;
+        let sum_of_product_of_product_of_21 = product_of_22
+            .mul_add(
+                two,
+                sum_of_a_squared_q12_q13_q23_q33
+                    * (three * sum_of_a_squared_q11_q13_q23_q33
+                        - product_of_product_of_21 * six) + product_of_8_three,
+            );
+        from_rows([
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [
+                speed_tilt_x
+                    .mul_add(
+                        product_of_speed_tilt_x + speed_tilt_y_sum_of
+                            - product_of_speed_spin_two,
+                        speed_tilt_x
+                            .mul_add(
+                                (speed_tilt_x_sum_of * three)
+                                    .mul_add(
+                                        sum_of_a_squared_q11_q12_q22_q32,
+                                        speed_spin
+                                            .mul_add(
+                                                -(product_of_sum_of_2 + product_of_5 + product_of_6),
+                                                sum_of_a_squared_q12_q13_q23_q33
+                                                    * speed_spin
+                                                        .mul_add(
+                                                            -sum_of_sum_of_2,
+                                                            (speed_tilt_x
+                                                                * (product_of_sum_of * nine
+                                                                    - sum_of_a_squared_q12_q13_q23_q33
+                                                                        * (product_of - product_of_product_of_2_number_15))
+                                                                + product_of_speed_spin_3)
+                                                                .mul_add(
+                                                                    -inverse_value_of_squared,
+                                                                    product_of_speed_tilt_x_2 * seven,
+                                                                ),
+                                                        ),
+                                            ),
+                                    ),
+                                speed_tilt_y
+                                    * speed_tilt_x
+                                        .mul_add(
+                                            sum_of
+                                                .mul_add(
+                                                    sum_of_3,
+                                                    four
+                                                        .mul_add(
+                                                            product_of_7,
+                                                            four.mul_add(-product_of_4, -product_of_3_three),
+                                                        ),
+                                                ),
+                                            speed_tilt_y
+                                                .mul_add(
+                                                    product_of_2
+                                                        .mul_add(
+                                                            four,
+                                                            sum_of_a_squared_q11_q12_q22_q32
+                                                                .mul_add(
+                                                                    sum_of_3,
+                                                                    sum_of_a_squared_q11_q12_q22_q32
+                                                                        .mul_add(sum_of_4, product_of_8_two),
+                                                                ),
+                                                        ),
+                                                    speed_spin
+                                                        .mul_add(
+                                                            product_of_sum_of - product_of_9_three - product_of_10
+                                                                + product_of_sum_of_3,
+                                                            sum_of_a_squared_q11_q13_q23_q33
+                                                                .mul_add(
+                                                                    product_of_speed_tilt_x_sum_of
+                                                                        .mul_add(
+                                                                            six,
+                                                                            speed_tilt_y * (product_of_5_six + product_of_6_three),
+                                                                        ),
+                                                                    sum_of_a_squared_q12_q13_q23_q33
+                                                                        * speed_tilt_x
+                                                                            .mul_add(
+                                                                                product_of_sum_of_3_2.mul_add(three, -product_of_5_twelve),
+                                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                                    .mul_add(
+                                                                                        speed_tilt_x
+                                                                                            .mul_add(
+                                                                                                product_of_product_of_2.mul_add(number_30, -product_of_11),
+                                                                                                speed_tilt_y
+                                                                                                    .mul_add(
+                                                                                                        -three.mul_add(sum_of_3, product_of_product_of_4_number_15),
+                                                                                                        product_of_speed_spin_three,
+                                                                                                    ),
+                                                                                            ),
+                                                                                        product_of_speed_tilt_y_sum_of_4
+                                                                                            .mul_add(-three, speed_spin * product_of_2 * three),
+                                                                                    ),
+                                                                            ),
+                                                                ) * inverse_value_of_squared,
+                                                        ),
+                                                ),
+                                        ),
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                speed_tilt_y
+                                    * (product_of_speed_tilt_y_two
+                                        + product_of_speed_spin_2_two),
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        speed_tilt_x
+                            .mul_add(
+                                sum_of_4,
+                                product_of_speed_tilt_y - product_of_speed_spin_2_two,
+                            ),
+                        speed_tilt_y
+                            .mul_add(
+                                speed_tilt_y_sum_of_4
+                                    .mul_add(two, -product_of_speed_spin_two),
+                                -(speed_tilt_x
+                                    * speed_tilt_x
+                                        .mul_add(
+                                            sum_of
+                                                .mul_add(
+                                                    sum_of_4,
+                                                    -product_of_3_two + product_of_7_two - product_of_4_three,
+                                                ),
+                                            speed_tilt_y
+                                                .mul_add(
+                                                    product_of_2
+                                                        .mul_add(
+                                                            eight,
+                                                            sum_of_a_squared_q11_q12_q22_q32
+                                                                .mul_add(
+                                                                    product_of_12_minus_product_of_13,
+                                                                    (sum_of_4 * two)
+                                                                        .mul_add(
+                                                                            sum_of_a_squared_q11_q12_q22_q32,
+                                                                            product_of_8_three,
+                                                                        ),
+                                                                ),
+                                                        ),
+                                                    speed_spin
+                                                        .mul_add(
+                                                            -sum_of_a_squared_q11_q13_q23_q33
+                                                                .mul_add(
+                                                                    sum_of_sum_of_3,
+                                                                    product_of_9 + product_of_10 + product_of_sum_of_4,
+                                                                ),
+                                                            sum_of_a_squared_q11_q13_q23_q33
+                                                                .mul_add(
+                                                                    product_of_speed_tilt_x_sum_of
+                                                                        .mul_add(
+                                                                            three,
+                                                                            sum_of_a_squared_q12_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    speed_tilt_x
+                                                                                        .mul_add(
+                                                                                            product_of_product_of_2_number_15
+                                                                                                - six_sum_of_a_squared_q11_q12_q22_q32,
+                                                                                            speed_tilt_y
+                                                                                                .mul_add(
+                                                                                                    -three
+                                                                                                        .mul_add(
+                                                                                                            product_of_12_minus_product_of_13,
+                                                                                                            product_of_product_of_4 * number_30,
+                                                                                                        ),
+                                                                                                    product_of_speed_spin_three,
+                                                                                                ),
+                                                                                        ),
+                                                                                    (speed_spin * product_of_4)
+                                                                                        .mul_add(
+                                                                                            -three,
+                                                                                            speed_tilt_y * (product_of_5_twelve + product_of_6_six),
+                                                                                        ),
+                                                                                ),
+                                                                        ),
+                                                                    sum_of_a_squared_q12_q13_q23_q33
+                                                                        * (speed_tilt_x
+                                                                            * product_of_sum_of_4_2.mul_add(three, -product_of_5_six)
+                                                                            - product_of_speed_tilt_y_sum_of_4 * six),
+                                                                ) * inverse_value_of_squared,
+                                                        ),
+                                                ),
+                                        )
+                                    - speed_tilt_y
+                                        * sum_of_a_squared_q11_q13_q23_q33
+                                            .mul_add(
+                                                product_of_speed_tilt_y_2
+                                                    .mul_add(
+                                                        twelve,
+                                                        speed_tilt_y
+                                                            .mul_add(
+                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                    .mul_add(
+                                                                        three
+                                                                            .mul_add(
+                                                                                product_of_14_minus_product_of_15,
+                                                                                product_of_product_of_4_number_15,
+                                                                            ),
+                                                                        product_of_sum_of_4 * nine,
+                                                                    ),
+                                                                -product_of_speed_spin_5,
+                                                            )
+                                                            .mul_add(
+                                                                -inverse_value_of_squared,
+                                                                -product_of_speed_spin_4_three,
+                                                            ),
+                                                    ),
+                                                speed_tilt_y_sum_of_4
+                                                    .mul_add(
+                                                        -product_of_14_minus_product_of_15,
+                                                        speed_spin
+                                                            * (product_of_sum_of_4_2 - product_of_5
+                                                                + product_of_sum_of_4_3),
+                                                    ),
+                                            )) * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        product_of_speed_spin_4_four - product_of_speed_tilt_x_3
+                            - product_of_speed_tilt_y_2,
+                        speed_tilt_y
+                            .mul_add(
+                                speed_spin_two_sum_of_5 - product_of_speed_tilt_y_3_two,
+                                speed_tilt_x
+                                    .mul_add(
+                                        speed_tilt_x
+                                            .mul_add(
+                                                sum_of_a_squared_q12_q13_q23_q33
+                                                    .mul_add(
+                                                        (product_of_3_three - product_of_4_six)
+                                                            .mul_add(inverse_value_of_squared, -two_sum_of_5),
+                                                        product_of_6
+                                                            .mul_add(two, product_of_sum_of_2 + product_of_5_two),
+                                                    ),
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        sum_of_a_squared_q11_q13_q23_q33
+                                                            .mul_add(
+                                                                sum_of_a_squared_q13_b_squared_q23
+                                                                    + two_sum_of_a_squared_q12_q12_q22_q32 - product_of_13,
+                                                                (two * sum_of_a_squared_q11_q13_q23_q33)
+                                                                    .mul_add(
+                                                                        sum_of_5,
+                                                                        product_of_9_six + product_of_10_two
+                                                                            - (sum_of_a_squared_q12_q13_q23_q33
+                                                                                * (product_of_2_six + product_of_8_six)
+                                                                                - product_of_4 * six * sum_of_a_squared_q11_q13_q23_q33)
+                                                                                * inverse_value_of_squared,
+                                                                    ),
+                                                            ),
+                                                        -product_of_speed_spin_6,
+                                                    ),
+                                            ),
+                                        speed_tilt_y
+                                            * speed_tilt_y
+                                                .mul_add(
+                                                    sum_of_a_squared_q11_q13_q23_q33
+                                                        .mul_add(
+                                                            (product_of_2_six + product_of_8_three)
+                                                                .mul_add(inverse_value_of_squared, -product_of_16),
+                                                            product_of_sum_of_3_2 - product_of_5_two
+                                                                + product_of_sum_of_4_3,
+                                                        ),
+                                                    -product_of_speed_spin_7,
+                                                ),
+                                    ) * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [
+                speed_tilt_x
+                    .mul_add(
+                        speed_tilt_x_sum_of
+                            .mul_add(
+                                -two,
+                                product_of_speed_spin_2_two - product_of_speed_tilt_y,
+                            ),
+                        speed_tilt_y
+                            .mul_add(
+                                product_of_speed_spin_two - speed_tilt_y_sum_of,
+                                speed_tilt_x
+                                    .mul_add(
+                                        sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(
+                                                speed_tilt_x
+                                                    .mul_add(
+                                                        product_of_sum_of_2
+                                                            .mul_add(
+                                                                nine,
+                                                                sum_of_a_squared_q12_q13_q23_q33
+                                                                    * three
+                                                                        .mul_add(
+                                                                            product_of_14_minus_product_of_17,
+                                                                            product_of_product_of_3_number_15,
+                                                                        ),
+                                                            ),
+                                                        -product_of_speed_spin_5,
+                                                    )
+                                                    .mul_add(
+                                                        inverse_value_of_squared,
+                                                        product_of_speed_tilt_x_3
+                                                            .mul_add(-twelve, product_of_speed_spin_4_three),
+                                                    ),
+                                                speed_spin
+                                                    .mul_add(
+                                                        product_of_10 - product_of_sum_of_3 - product_of_sum_of,
+                                                        speed_tilt_x_sum_of * product_of_14_minus_product_of_17,
+                                                    ),
+                                            ),
+                                        speed_tilt_y
+                                            * speed_tilt_x
+                                                .mul_add(
+                                                    product_of_sum_of_5
+                                                        .mul_add(
+                                                            two,
+                                                            sum_of_a_squared_q11_q12_q22_q32
+                                                                .mul_add(
+                                                                    product_of_12_minus_product_of_18,
+                                                                    product_of_8.mul_add(eight, product_of_2_three),
+                                                                ),
+                                                        ),
+                                                    speed_tilt_y
+                                                        .mul_add(
+                                                            sum_of_4
+                                                                .mul_add(
+                                                                    sum_of,
+                                                                    product_of_7_two - product_of_4_two - product_of_3_three,
+                                                                ),
+                                                            speed_spin
+                                                                .mul_add(
+                                                                    -sum_of_a_squared_q12_q13_q23_q33
+                                                                        .mul_add(
+                                                                            sum_of_sum_of_2,
+                                                                            product_of_sum_of_2 + product_of_5 + product_of_6,
+                                                                        ),
+                                                                    -(sum_of_a_squared_q11_q13_q23_q33
+                                                                        * product_of_speed_tilt_x_sum_of_2
+                                                                            .mul_add(
+                                                                                six,
+                                                                                speed_tilt_y
+                                                                                    * product_of_sum_of_3.mul_add(-three, product_of_10_six),
+                                                                            )
+                                                                        - sum_of_a_squared_q12_q13_q23_q33
+                                                                            * speed_tilt_x
+                                                                                .mul_add(
+                                                                                    product_of_9_six + product_of_10_twelve,
+                                                                                    sum_of_a_squared_q11_q13_q23_q33
+                                                                                        .mul_add(
+                                                                                            speed_tilt_x
+                                                                                                .mul_add(
+                                                                                                    -three
+                                                                                                        .mul_add(
+                                                                                                            product_of_12_minus_product_of_18,
+                                                                                                            product_of_product_of_3 * number_30,
+                                                                                                        ),
+                                                                                                    speed_tilt_y
+                                                                                                        .mul_add(
+                                                                                                            product_of_product_of_8_number_15
+                                                                                                                - six_sum_of_a_squared_q11_q12_q22_q32,
+                                                                                                            product_of_speed_spin_2_three,
+                                                                                                        ),
+                                                                                                ),
+                                                                                            (speed_spin * product_of_3)
+                                                                                                .mul_add(-three, product_of_speed_tilt_y_sum_of_4_2 * three),
+                                                                                        ),
+                                                                                )) * inverse_value_of_squared,
+                                                                ),
+                                                        ),
+                                                ),
+                                    ) * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        -(product_of_speed_tilt_x_two + speed_tilt_y_sum_of_4
+                            + product_of_speed_spin_two),
+                        speed_tilt_y
+                            .mul_add(
+                                product_of_speed_spin_2_two - product_of_speed_tilt_y,
+                                speed_tilt_x
+                                    .mul_add(
+                                        speed_tilt_x
+                                            .mul_add(
+                                                sum_of_a_squared_q11_q12_q22_q32
+                                                    .mul_add(
+                                                        sum_of_2,
+                                                        product_of_8
+                                                            .mul_add(four, product_of_sum_of_5 + product_of_2_two),
+                                                    ),
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        product_of_7
+                                                            .mul_add(
+                                                                four,
+                                                                sum_of_4
+                                                                    .mul_add(
+                                                                        sum_of_2,
+                                                                        product_of_3.mul_add(-four, -product_of_4_three),
+                                                                    ),
+                                                            ),
+                                                        speed_spin
+                                                            .mul_add(
+                                                                product_of_sum_of_4_2 - product_of_5 - product_of_6_three
+                                                                    + product_of_sum_of_4_3,
+                                                                -(sum_of_a_squared_q11_q13_q23_q33
+                                                                    * product_of_speed_tilt_x_sum_of_2
+                                                                        .mul_add(
+                                                                            three,
+                                                                            sum_of_a_squared_q12_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    speed_tilt_x
+                                                                                        .mul_add(
+                                                                                            three.mul_add(sum_of_2, product_of_product_of_3_number_15),
+                                                                                            speed_tilt_y
+                                                                                                .mul_add(
+                                                                                                    product_of_product_of_8.mul_add(-number_30, product_of_11),
+                                                                                                    -product_of_speed_spin_2_three,
+                                                                                                ),
+                                                                                        ),
+                                                                                    (speed_spin * product_of_8)
+                                                                                        .mul_add(
+                                                                                            -three,
+                                                                                            speed_tilt_y
+                                                                                                * product_of_sum_of_2_2
+                                                                                                    .mul_add(-three, product_of_10_twelve),
+                                                                                        ),
+                                                                                ),
+                                                                        )
+                                                                    - sum_of_a_squared_q12_q13_q23_q33
+                                                                        * speed_tilt_x
+                                                                            .mul_add(
+                                                                                product_of_9_three + product_of_10_six,
+                                                                                product_of_speed_tilt_y_sum_of_4_2 * six,
+                                                                            )) * inverse_value_of_squared,
+                                                            ),
+                                                    ),
+                                            ),
+                                        speed_tilt_y
+                                            * sum_of_a_squared_q11_q13_q23_q33
+                                                .mul_add(
+                                                    product_of_speed_tilt_y_3
+                                                        .mul_add(
+                                                            seven,
+                                                            speed_spin
+                                                                .mul_add(
+                                                                    -sum_of_sum_of_3,
+                                                                    (speed_tilt_y
+                                                                        * (sum_of_a_squared_q11_q13_q23_q33
+                                                                            * (product_of - product_of_product_of_8_number_15)
+                                                                            - product_of_sum_of_4_3 * nine) + product_of_speed_spin_3)
+                                                                        * inverse_value_of_squared,
+                                                                ),
+                                                        ),
+                                                    speed_spin
+                                                        .mul_add(
+                                                            -(product_of_9 + product_of_10 + product_of_sum_of_4),
+                                                            speed_tilt_y_sum_of_4 * three
+                                                                * sum_of_a_squared_q11_q12_q22_q32,
+                                                        ),
+                                                ),
+                                    ) * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        product_of_speed_tilt_x_2_two + product_of_speed_tilt_y_3
+                            + speed_spin_two_sum_of_5,
+                        speed_tilt_x
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(
+                                                (product_of_2_three + product_of_8_six)
+                                                    .mul_add(inverse_value_of_squared, -product_of_16),
+                                                product_of_sum_of - product_of_10_two
+                                                    + product_of_sum_of_2_2,
+                                            ),
+                                        speed_tilt_y
+                                            .mul_add(
+                                                sum_of_a_squared_q12_q13_q23_q33
+                                                    .mul_add(
+                                                        sum_of_a_squared_q13_b_squared_q23 - product_of_18
+                                                            + two_sum_of_a_squared_q11_q11_q21_q31,
+                                                        (sum_of_5 * two)
+                                                            .mul_add(
+                                                                -sum_of_a_squared_q12_q13_q23_q33,
+                                                                product_of_5_two + product_of_6_six
+                                                                    + (sum_of_a_squared_q12_q13_q23_q33
+                                                                        * (product_of_3_six - product_of_4_six)
+                                                                        - product_of_8 * sum_of_a_squared_q11_q13_q23_q33 * six)
+                                                                        * inverse_value_of_squared,
+                                                            ),
+                                                    ),
+                                                product_of_speed_spin_7,
+                                            ),
+                                    ),
+                                speed_tilt_y
+                                    * speed_tilt_y
+                                        .mul_add(
+                                            product_of_9
+                                                .mul_add(
+                                                    two,
+                                                    sum_of_a_squared_q11_q13_q23_q33
+                                                        .mul_add(
+                                                            (product_of_3_six - product_of_4_three)
+                                                                .mul_add(-inverse_value_of_squared, two_sum_of_5),
+                                                            product_of_10_two + product_of_sum_of_4,
+                                                        ),
+                                                ),
+                                            -product_of_speed_spin_6,
+                                        ),
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                speed_tilt_y
+                                    * (product_of_speed_tilt_y_2 - product_of_speed_spin_4_four),
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [
+                speed_tilt_x
+                    .mul_add(
+                        product_of_speed_tilt_x_3
+                            .mul_add(
+                                four,
+                                product_of_speed_tilt_y_2
+                                    .mul_add(-two, -product_of_speed_spin_4),
+                            ),
+                        speed_tilt_y
+                            .mul_add(
+                                speed_spin.mul_add(sum_of, product_of_speed_tilt_y_3_two),
+                                -(speed_tilt_x
+                                    * product_of_speed_tilt_x_sum_of_2
+                                        .mul_add(
+                                            five,
+                                            speed_spin
+                                                .mul_add(
+                                                    -(product_of_22 + product_of_8_two),
+                                                    sum_of_a_squared_q12_q13_q23_q33
+                                                        * (speed_tilt_x
+                                                            * (product_of_19 - product_of_18
+                                                                - (product_of_sum_of_6 * nine
+                                                                    - sum_of_a_squared_q12_q13_q23_q33
+                                                                        * number_15
+                                                                            .mul_add(sum_of_a_squared_q12_q13_q23_q33, -product_of_20))
+                                                                    * inverse_value_of_squared)
+                                                            - speed_spin
+                                                                * product_of_product_of_21
+                                                                    .mul_add(-three, sum_of_a_squared_q11_q13_q23_q33)),
+                                                ),
+                                        )
+                                    - speed_tilt_y
+                                        * speed_tilt_x
+                                            .mul_add(
+                                                product_of_sum_of
+                                                    .mul_add(
+                                                        three,
+                                                        product_of_9
+                                                            .mul_add(
+                                                                -five,
+                                                                product_of_10
+                                                                    .mul_add(
+                                                                        -seven,
+                                                                        sum_of_a_squared_q11_q13_q23_q33
+                                                                            * (product_of_23 - product_of_17),
+                                                                    ),
+                                                            ),
+                                                    ),
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        product_of_5
+                                                            .mul_add(
+                                                                three,
+                                                                product_of_sum_of_4_3
+                                                                    .mul_add(
+                                                                        -two,
+                                                                        sum_of_a_squared_q12_q13_q23_q33
+                                                                            .mul_add(
+                                                                                sum_of_a_squared_q11_q11_q21_q31 - product_of_12,
+                                                                                product_of_6_three,
+                                                                            ),
+                                                                    ),
+                                                            ),
+                                                        speed_spin
+                                                            .mul_add(
+                                                                product_of_3_three - product_of_sum_of_6,
+                                                                -(sum_of_a_squared_q11_q13_q23_q33
+                                                                    * (speed_tilt_x_sum_of * six)
+                                                                        .mul_add(
+                                                                            sum_of_a_squared_q13_b_squared_q23,
+                                                                            speed_tilt_y * (product_of_22_six + product_of_8_six),
+                                                                        )
+                                                                    - sum_of_a_squared_q12_q13_q23_q33
+                                                                        * speed_tilt_x
+                                                                            .mul_add(
+                                                                                sum_of_a_squared_q12_q13_q23_q33
+                                                                                    .mul_add(
+                                                                                        product_of_24 - product_of_product_of_21_number_30,
+                                                                                        product_of_8.mul_add(number_21, product_of_22_twelve),
+                                                                                    ),
+                                                                                product_of_product_of_speed_spin
+                                                                                    .mul_add(
+                                                                                        -three,
+                                                                                        -speed_tilt_y
+                                                                                            * (sum_of_a_squared_q11_q13_q23_q33
+                                                                                                * (product_of_24 - product_of_product_of_21_number_15)
+                                                                                                - product_of_sum_of_4_4 * three),
+                                                                                    ),
+                                                                            )) * inverse_value_of_squared,
+                                                            ),
+                                                    ),
+                                            )) * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        speed_spin
+                            .mul_add(
+                                -sum_of_4,
+                                product_of_speed_tilt_y_3_two
+                                    - product_of_speed_tilt_x_2_two,
+                            ),
+                        speed_tilt_y
+                            .mul_add(
+                                product_of_speed_tilt_y_2
+                                    .mul_add(-four, product_of_speed_spin_4),
+                                speed_tilt_x
+                                    .mul_add(
+                                        speed_tilt_x
+                                            .mul_add(
+                                                product_of_sum_of
+                                                    .mul_add(
+                                                        two,
+                                                        product_of_10
+                                                            .mul_add(
+                                                                -three,
+                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                    .mul_add(
+                                                                        product_of_12 - sum_of_a_squared_q12_q12_q22_q32,
+                                                                        -product_of_9_three,
+                                                                    ),
+                                                            ),
+                                                    ),
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        product_of_5
+                                                            .mul_add(
+                                                                seven,
+                                                                product_of_sum_of_4_3
+                                                                    .mul_add(
+                                                                        -three,
+                                                                        sum_of_a_squared_q12_q13_q23_q33
+                                                                            .mul_add(product_of_15 - product_of_23, product_of_6 * five),
+                                                                    ),
+                                                            ),
+                                                        speed_spin
+                                                            .mul_add(
+                                                                product_of_sum_of_4_4 - product_of_4_three,
+                                                                -(sum_of_a_squared_q11_q13_q23_q33
+                                                                    * speed_tilt_y
+                                                                        .mul_add(
+                                                                            sum_of_a_squared_q12_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    number_21
+                                                                                        .mul_add(
+                                                                                            sum_of_a_squared_q11_q13_q23_q33,
+                                                                                            -product_of_product_of_21_number_30,
+                                                                                        ),
+                                                                                    product_of_8.mul_add(nine, product_of_22_twelve),
+                                                                                ),
+                                                                            speed_spin_product_of_21
+                                                                                .mul_add(
+                                                                                    -three,
+                                                                                    speed_tilt_x
+                                                                                        * (product_of_sum_of_6 * three
+                                                                                            - sum_of_a_squared_q12_q13_q23_q33
+                                                                                                * nine
+                                                                                                    .mul_add(sum_of_a_squared_q12_q13_q23_q33, -product_of_20)),
+                                                                                ),
+                                                                        )
+                                                                    - sum_of_a_squared_q12_q13_q23_q33
+                                                                        * speed_tilt_x
+                                                                            .mul_add(
+                                                                                product_of_2_six + product_of_22_six,
+                                                                                speed_tilt_y_sum_of_4 * six
+                                                                                    * sum_of_a_squared_q13_b_squared_q23,
+                                                                            )) * inverse_value_of_squared,
+                                                            ),
+                                                    ),
+                                            ),
+                                        speed_tilt_y
+                                            * product_of_speed_tilt_y_sum_of_4
+                                                .mul_add(
+                                                    five,
+                                                    speed_spin
+                                                        .mul_add(
+                                                            -(product_of_2_two + product_of_22),
+                                                            sum_of_a_squared_q11_q13_q23_q33
+                                                                * (speed_tilt_y
+                                                                    * (product_of_19 - product_of_13
+                                                                        + (sum_of_a_squared_q11_q13_q23_q33
+                                                                            * number_15
+                                                                                .mul_add(
+                                                                                    sum_of_a_squared_q11_q13_q23_q33,
+                                                                                    -product_of_product_of_21_number_15,
+                                                                                ) - product_of_sum_of_4_4 * nine)
+                                                                            * inverse_value_of_squared)
+                                                                    - speed_spin
+                                                                        * product_of_inverse_value_of_squared
+                                                                            .mul_add(-three, sum_of_a_squared_q12_q13_q23_q33)),
+                                                        ),
+                                                ),
+                                    ) * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_y
+                    .mul_add(
+                        product_of_speed_tilt_y_two - product_of_speed_spin_2,
+                        speed_tilt_x
+                            .mul_add(
+                                (speed_tilt_y * two)
+                                    .mul_add(
+                                        -sum_of_5,
+                                        product_of_speed_spin - product_of_speed_tilt_x_two,
+                                    ),
+                                (speed_tilt_x
+                                    * speed_tilt_x
+                                        .mul_add(
+                                            sum_of_product_of_product_of_21,
+                                            speed_tilt_y
+                                                .mul_add(
+                                                    (sum_of_5 * two)
+                                                        .mul_add(
+                                                            sum_of_a_squared_q13_b_squared_q23,
+                                                            product_of_3_six - product_of_4_six
+                                                                - (product_of_3 * six * sum_of_a_squared_q13_b_squared_q23
+                                                                    - product_of_4 * six * sum_of_a_squared_q13_b_squared_q23)
+                                                                    * inverse_value_of_squared,
+                                                        ),
+                                                    -product_of_product_of_speed_spin,
+                                                ),
+                                        )
+                                    - speed_tilt_y
+                                        * speed_tilt_y
+                                            .mul_add(
+                                                sum_of_product_of_product_of_21,
+                                                -speed_spin_product_of_21,
+                                            )) * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+            ],
+        ])
+    }
+
+    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
+    ///
+    /// 6×3. Operations: 88 additions, 157 multiplications (66 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
+    fn bias_acceleration_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 9>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let four = T::from_f64(4.0);
+        let six = T::from_f64(6.0);
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let product_of_speed_tilt_x = speed_tilt_x * sum_of_a_squared_q11_q13_q23_q33;
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let product_of_speed_tilt_y = speed_tilt_y * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of = sum_of_a_squared_q11_q11_q21_q31 - sum_of_a_squared_q12_q12_q22_q32;
+        let speed_spin_sum_of = speed_spin * sum_of;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let speed_tilt_x_sum_of_2 = speed_tilt_x * sum_of_2;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let product_of = four * sum_of_a_squared_q11_q12_q22_q32;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of_2 = sum_of_a_squared_q12_q13_q23_q33 * six
+            * product_of_inverse_value_of_squared;
+        let sum_of_3 = two
+            .mul_add(
+                -sum_of_a_squared_q11_q11_q21_q31,
+                sum_of_a_squared_q13_b_squared_q23,
+            );
+        let product_of_3 = product_of_inverse_value_of_squared * six
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin = speed_spin * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_4 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin_2 = speed_spin * sum_of_a_squared_q11_q13_q23_q33;
+        let inverse_value_of = one / value_of;
+        let product_of_speed_tilt_x_2 = speed_tilt_x * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_tilt_y_2 = speed_tilt_y * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_speed_spin_3 = speed_spin * two
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let two_sum_of_a_squared_q11_q12_q22_q32 = two
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_4 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let speed_tilt_y_sum_of_4 = speed_tilt_y * sum_of_4;
+        let product_of_product_of_speed_spin_2 = product_of_speed_spin_2
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_tilt_y_3 = speed_tilt_y * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_product_of_speed_tilt_x = product_of_speed_tilt_x
+            + product_of_speed_tilt_y;
+        let sum_of_product_of_speed_tilt_x_2 = product_of_speed_tilt_x_2
+            - product_of_speed_tilt_y_2;
+        let sum_of_5 = two
+            .mul_add(
+                -sum_of_a_squared_q12_q12_q22_q32,
+                sum_of_a_squared_q13_b_squared_q23,
+            );
+        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q12_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of_5 = product_of_inverse_value_of_squared_2 * six
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_6 = product_of_inverse_value_of_squared * six
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_7 = sum_of_a_squared_q11_q12_q22_q32 * two
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_speed_tilt_x_3 = speed_tilt_x * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_8 = product_of_inverse_value_of_squared * six
+            * sum_of_a_squared_q13_b_squared_q23;
+        let sum_of_product_of_8 = sum_of_a_squared_q12_q13_q23_q33
+            .mul_add(
+                three.mul_add(sum_of_a_squared_q11_q13_q23_q33, -product_of_8),
+                (sum_of_a_squared_q11_q12_q22_q32 * two)
+                    .mul_add(
+                        sum_of_a_squared_q13_b_squared_q23,
+                        sum_of_a_squared_q11_q13_q23_q33 * three
+                            * sum_of_a_squared_q12_q13_q23_q33,
+                    ),
+            );
+        from_rows([
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [
+                (speed_tilt_x_sum_of_2 * two)
+                    .mul_add(
+                        sum_of_a_squared_q11_q13_q23_q33,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        product_of_2 - product_of,
+                                        speed_tilt_y
+                                            .mul_add(-(sum_of_3 + product_of_3), product_of_speed_spin),
+                                    ),
+                                product_of_speed_spin_2
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q13_q23_q33,
+                                        speed_tilt_y
+                                            * (two * sum_of_a_squared_q11_q13_q23_q33)
+                                                .mul_add(
+                                                    sum_of_a_squared_q11_q12_q22_q32,
+                                                    two * product_of_4,
+                                                ),
+                                    ),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        product_of_speed_tilt_x
+                            .mul_add(-two, product_of_speed_tilt_y + speed_spin_sum_of),
+                    ) * inverse_value_of,
+                product_of_speed_tilt_y_2
+                    .mul_add(
+                        -four,
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        product_of_2 - two_sum_of_a_squared_q11_q12_q22_q32,
+                                        speed_tilt_y
+                                            .mul_add(
+                                                -two.mul_add(sum_of_3, product_of_3),
+                                                product_of_speed_spin,
+                                            ),
+                                    ),
+                                (speed_tilt_y_sum_of_4 * two)
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q13_q23_q33,
+                                        speed_tilt_x
+                                            * (sum_of_a_squared_q12_q13_q23_q33 * sum_of_3
+                                                - product_of_4 * two) + product_of_product_of_speed_spin_2,
+                                    ),
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                product_of_speed_tilt_x_2 + product_of_speed_spin_3,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        sum_of,
+                        two
+                            .mul_add(
+                                product_of_speed_tilt_y_3,
+                                -(sum_of_a_squared_q11_q13_q23_q33
+                                    * sum_of_product_of_speed_tilt_x
+                                    - sum_of_a_squared_q12_q13_q23_q33
+                                        * sum_of_product_of_speed_tilt_x_2)
+                                    * inverse_value_of_squared,
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [
+                (speed_tilt_x_sum_of_2 * two)
+                    .mul_add(
+                        sum_of_a_squared_q12_q13_q23_q33,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                speed_tilt_x
+                                    .mul_add(
+                                        two.mul_add(sum_of_5, product_of_5),
+                                        speed_tilt_y
+                                            .mul_add(
+                                                two_sum_of_a_squared_q11_q12_q22_q32 - product_of_6,
+                                                -product_of_speed_spin_2,
+                                            ),
+                                    ),
+                                speed_tilt_y
+                                    .mul_add(
+                                        sum_of_a_squared_q11_q13_q23_q33
+                                            .mul_add(-sum_of_5, product_of_7),
+                                        -product_of_product_of_speed_spin_2,
+                                    ),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        product_of_speed_tilt_x_2
+                            .mul_add(
+                                -four,
+                                product_of_speed_tilt_y_2 + product_of_speed_spin_3,
+                            ),
+                    ) * inverse_value_of,
+                product_of_speed_tilt_y
+                    .mul_add(
+                        -two,
+                        speed_tilt_x
+                            .mul_add(
+                                (sum_of_a_squared_q12_q13_q23_q33 * two)
+                                    .mul_add(sum_of_a_squared_q11_q12_q22_q32, product_of_7),
+                                sum_of_a_squared_q11_q13_q23_q33
+                                    .mul_add(
+                                        speed_tilt_x
+                                            .mul_add(
+                                                -(sum_of_5 + product_of_5),
+                                                speed_tilt_y
+                                                    .mul_add(product_of_6 - product_of, product_of_speed_spin_2),
+                                            ),
+                                        product_of_speed_spin
+                                            .mul_add(
+                                                -sum_of_a_squared_q12_q13_q23_q33,
+                                                speed_tilt_y_sum_of_4 * two
+                                                    * sum_of_a_squared_q12_q13_q23_q33,
+                                            ),
+                                    ),
+                            )
+                            .mul_add(
+                                inverse_value_of_squared,
+                                product_of_speed_tilt_x - speed_spin_sum_of,
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_y
+                    .mul_add(
+                        -sum_of,
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                sum_of_product_of_speed_tilt_x_2,
+                                sum_of_a_squared_q12_q13_q23_q33
+                                    * sum_of_product_of_speed_tilt_x,
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                two * product_of_speed_tilt_x_3,
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [
+                speed_tilt_y
+                    .mul_add(
+                        sum_of_product_of_8,
+                        product_of_speed_spin_2
+                            .mul_add(
+                                -sum_of_a_squared_q13_b_squared_q23,
+                                speed_tilt_x
+                                    * (sum_of_2 * two * sum_of_a_squared_q13_b_squared_q23
+                                        - sum_of_a_squared_q12_q13_q23_q33
+                                            * (six * sum_of_a_squared_q12_q13_q23_q33
+                                                - product_of_inverse_value_of_squared_2 * six
+                                                    * sum_of_a_squared_q13_b_squared_q23)),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        speed_tilt_x_sum_of_2
+                            .mul_add(
+                                -two,
+                                product_of_speed_tilt_y_3
+                                    .mul_add(-two, product_of_speed_spin_2),
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        sum_of_product_of_8,
+                        product_of_speed_spin
+                            .mul_add(
+                                -sum_of_a_squared_q13_b_squared_q23,
+                                -speed_tilt_y
+                                    * (sum_of_a_squared_q11_q13_q23_q33
+                                        * six
+                                            .mul_add(sum_of_a_squared_q11_q13_q23_q33, -product_of_8)
+                                        - sum_of_4 * two * sum_of_a_squared_q13_b_squared_q23),
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        product_of_speed_tilt_x_3
+                            .mul_add(
+                                -two,
+                                speed_tilt_y_sum_of_4.mul_add(-two, product_of_speed_spin),
+                            ),
+                    ) * inverse_value_of,
+                (sum_of_a_squared_q13_b_squared_q23 * sum_of_product_of_speed_tilt_x)
+                    .mul_add(
+                        -inverse_value_of_squared,
+                        product_of_speed_tilt_x + product_of_speed_tilt_y,
+                    ) * inverse_value_of,
+            ],
+        ])
+    }
+
+    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
+    ///
+    /// 3×3. Operations: 333 additions, 365 multiplications (186 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
+    fn bias_momentum_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 9>,
+        speeds: &SVector<T, 3>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
+        let (h4, h5, h6) = (h[3], h[4], h[5]);
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let four = T::from_f64(4.0);
+        let five = T::from_f64(5.0);
+        let six = T::from_f64(6.0);
+        let seven = T::from_f64(7.0);
+        let nine = T::from_f64(9.0);
+        let twelve = T::from_f64(12.0);
+        let number_15 = T::from_f64(15.0);
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let h4_sum_of_a_squared_q11_q12_q22_q32 = h4 * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let h5_sum_of = h5 * sum_of;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let h6_sum_of_a_squared_q12_q13_q23_q33 = h6 * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let h6_sum_of_a_squared_q11_q13_q23_q33 = h6 * sum_of_a_squared_q11_q13_q23_q33;
+        let h4_sum_of_a_squared_q12_q13_q23_q33 = h4 * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of = h4_sum_of_a_squared_q12_q13_q23_q33 * two;
+        let h5_sum_of_a_squared_q11_q13_q23_q33 = h5 * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_2 = h5_sum_of_a_squared_q11_q13_q23_q33 * two;
+        let h6_sum_of_a_squared_q11_q12_q22_q32 = h6 * sum_of_a_squared_q11_q12_q22_q32;
+        let speed_tilt_x_sum_of = speed_tilt_x * sum_of;
+        let product_of_3 = h4_sum_of_a_squared_q11_q12_q22_q32 * three;
+        let product_of_4 = two * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_h5_product_of_4 = h5
+            * three.mul_add(-sum_of_a_squared_q12_q12_q22_q32, product_of_4);
+        let h4_sum_of_a_squared_q11_q13_q23_q33 = h4 * sum_of_a_squared_q11_q13_q23_q33;
+        let h5_sum_of_a_squared_q12_q13_q23_q33 = h5 * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_h6_product_of_4 = h6
+            * (product_of_4 - sum_of_a_squared_q12_q12_q22_q32);
+        let product_of_5 = h4_sum_of_a_squared_q12_q13_q23_q33 * three;
+        let product_of_6 = h6_sum_of_a_squared_q11_q12_q22_q32 * three;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let two_sum_of_a_squared_q12_q12_q22_q32 = two
+            * sum_of_a_squared_q12_q12_q22_q32;
+        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+            - two_sum_of_a_squared_q12_q12_q22_q32;
+        let sum_of_sum_of_2 = sum_of_a_squared_q11_q11_q21_q31 + sum_of_2;
+        let h5_sum_of_a_squared_q11_q12_q22_q32 = h5 * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_7 = h5_sum_of_a_squared_q11_q12_q22_q32 * three;
+        let product_of_h6 = h6 * sum_of_a_squared_q13_b_squared_q23;
+        let sum_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
+            .mul_add(
+                nine,
+                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(nine, product_of_h6 * nine),
+            );
+        let sum_of_product_of_h6_2 = h4_sum_of_a_squared_q11_q13_q23_q33
+            .mul_add(
+                number_15,
+                h5_sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(number_15, product_of_h6 * number_15),
+            );
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_sum_of_product_of_h6_2 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_product_of_h6_2 * inverse_value_of_squared;
+        let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let h4_sum_of_3 = h4 * sum_of_3;
+        let h4_sum_of_3_three = h4_sum_of_3 * three;
+        let product_of_8 = h6_sum_of_a_squared_q11_q13_q23_q33 * six;
+        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
+            * inverse_value_of_squared;
+        let product_of_sum_of_product_of_h6_2_2 = product_of_inverse_value_of_squared
+            * sum_of_product_of_h6_2;
+        let product_of_9 = h5_sum_of_a_squared_q11_q13_q23_q33 * three;
+        let product_of_5_minus_product_of_9 = product_of_5 - product_of_9;
+        let product_of_speed_spin = speed_spin * product_of_5_minus_product_of_9;
+        let sum_of_product_of_h6_3 = h4_sum_of_a_squared_q11_q13_q23_q33
+            .mul_add(
+                six,
+                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(six, product_of_h6 * six),
+            );
+        let product_of_sum_of_product_of_h6_3 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_product_of_h6_3;
+        let product_of_10 = h4_sum_of_a_squared_q11_q12_q22_q32 * six;
+        let h5_sum_of_2 = h5 * sum_of_2;
+        let h5_sum_of_2_three = h5_sum_of_2 * three;
+        let product_of_11 = h6_sum_of_a_squared_q12_q13_q23_q33 * nine;
+        let product_of_12 = h4_sum_of_a_squared_q11_q13_q23_q33 * three;
+        let product_of_13 = h5_sum_of_a_squared_q12_q13_q23_q33 * three;
+        let sum_of_product_of_12_product_of_13 = product_of_h6
+            .mul_add(three, product_of_12 + product_of_13);
+        let product_of_speed_spin_2 = speed_spin * sum_of_product_of_12_product_of_13;
+        let product_of_product_of_speed_spin_2 = product_of_speed_spin_2
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_14 = h6_sum_of_a_squared_q11_q13_q23_q33 * two;
+        let product_of_15 = h4_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let product_of_16 = h6_sum_of_a_squared_q12_q13_q23_q33 * three;
+        let product_of_17 = h4_sum_of_a_squared_q11_q13_q23_q33 * two;
+        let product_of_sum_of = sum_of * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_18 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_19 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_sum_of_2 = sum_of * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_20 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_sum_of_3 = sum_of_a_squared_q11_q13_q23_q33 * sum_of;
+        let product_of_21 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_22 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_22_two = product_of_22 * two;
+        let inverse_value_of = one / value_of;
+        let product_of_23 = h5_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let product_of_24 = h5_sum_of_a_squared_q12_q13_q23_q33 * two;
+        let product_of_25 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_25_two = product_of_25 * two;
+        let product_of_26 = sum_of_a_squared_q11_q12_q22_q32 * two
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_27 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_27_three = product_of_27 * three;
+        let product_of_sum_of_4 = sum_of * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_28 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_28_two = product_of_28 * two;
+        let product_of_29 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of_29_three = product_of_29 * three;
+        let product_of_30 = three * sum_of_a_squared_q13_b_squared_q23;
+        let product_of_sum_of_3_2 = sum_of_a_squared_q11_q12_q22_q32 * sum_of_3;
+        let two_sum_of_a_squared_q11_q11_q21_q31 = two
+            * sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_19_two = product_of_19 * two;
+        let product_of_sum_of_3_3 = sum_of_3 * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_4 = sum_of_a_squared_q13_b_squared_q23
+            - two_sum_of_a_squared_q11_q11_q21_q31;
+        let sum_of_sum_of_4 = sum_of_a_squared_q12_q12_q22_q32 + sum_of_4;
+        let product_of_sum_of_sum_of_4 = sum_of_a_squared_q11_q13_q23_q33
+            * sum_of_sum_of_4;
+        let product_of_sum_of_3_4 = sum_of_3 * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_sum_of_3_5 = sum_of_a_squared_q12_q13_q23_q33 * sum_of_3;
+        let product_of_19_three = product_of_19 * three;
+        let product_of_speed_tilt_x_sum_of = speed_tilt_x_sum_of
+            * sum_of_product_of_12_product_of_13;
+        let product_of_31 = h5_sum_of_a_squared_q11_q12_q22_q32 * six;
+        let speed_tilt_y_sum_of_3 = speed_tilt_y * sum_of_3;
+        let product_of_speed_tilt_y_sum_of_3 = speed_tilt_y_sum_of_3
+            * sum_of_product_of_12_product_of_13;
+        let product_of_32 = h6_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let sum_of_5 = sum_of_a_squared_q12_q12_q22_q32
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let h6_sum_of_5 = h6 * sum_of_5;
+        let product_of_33 = h4_sum_of_a_squared_q11_q12_q22_q32 * four;
+        let h5_two_sum_of_5 = h5 * two * sum_of_5;
+        let product_of_18_two = product_of_18 * two;
+        let h4_two_sum_of_5 = h4 * two * sum_of_5;
+        let product_of_34 = h5_sum_of_a_squared_q11_q12_q22_q32 * four;
+        let product_of_35 = h6_sum_of_a_squared_q11_q13_q23_q33 * three;
+        let product_of_20_two = product_of_20 * two;
+        let product_of_21_two = product_of_21 * two;
+        let product_of_sum_of_5 = sum_of_5 * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_25_three = product_of_25 * three;
+        let product_of_h6_product_of_25_three = h6
+            * sum_of_5
+                .mul_add(
+                    sum_of_a_squared_q13_b_squared_q23,
+                    product_of_25_three - product_of_27_three,
+                );
+        let product_of_36 = sum_of_a_squared_q11_q13_q23_q33
+            * product_of_5_minus_product_of_9;
+        let product_of_product_of_36 = (sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_a_squared_q12_q13_q23_q33
+                .mul_add(sum_of_product_of_12_product_of_13, product_of_36)
+            - product_of_27 * sum_of_product_of_12_product_of_13)
+            * inverse_value_of_squared;
+        let sum_of_product_of_17_product_of_24 = product_of_17 + product_of_24
+            + product_of_h6;
+        let product_of_minus_product_of_2 = product_of - product_of_2;
+        let product_of_37 = h6_sum_of_a_squared_q12_q13_q23_q33 * two;
+        let product_of_27_two = product_of_27 * two;
+        let product_of_29_two = product_of_29 * two;
+        let product_of_sum_of_sum_of_2 = sum_of_a_squared_q12_q13_q23_q33
+            * sum_of_sum_of_2;
+        let h5_sum_of_three = h5_sum_of * three;
+        let product_of_38 = h6_sum_of_a_squared_q12_q13_q23_q33 * six;
+        let h4_sum_of_4 = h4 * sum_of_4;
+        let h4_sum_of_4_three = h4_sum_of_4 * three;
+        let product_of_39 = h6_sum_of_a_squared_q11_q13_q23_q33 * nine;
+        let product_of_product_of_speed_spin_2_2 = product_of_speed_spin_2
+            * sum_of_a_squared_q12_q13_q23_q33;
+        let product_of_h6_product_of_4_2 = h6
+            * (product_of_4 - sum_of_a_squared_q11_q11_q21_q31);
+        let product_of_h4_product_of_4 = h4
+            * three.mul_add(-sum_of_a_squared_q11_q11_q21_q31, product_of_4);
+        from_rows([
+            [
+                speed_tilt_x
+                    .mul_add(
+                        h5_sum_of
+                            .mul_add(
+                                -two,
+                                h6_sum_of_a_squared_q12_q13_q23_q33
+                                    .mul_add(four, h4_sum_of_a_squared_q11_q12_q22_q32),
+                            ),
+                        speed_spin
+                            .mul_add(
+                                product_of_2 - h6_sum_of_a_squared_q11_q12_q22_q32
+                                    - product_of,
+                                speed_tilt_x_sum_of
+                                    .mul_add(
+                                        h6_sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(five, product_of_3 - product_of_h5_product_of_4),
+                                        sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        product_of_6 - product_of_5
+                                                            - h5_sum_of_a_squared_q11_q13_q23_q33,
+                                                        speed_spin
+                                                            .mul_add(
+                                                                -h4
+                                                                    .mul_add(
+                                                                        sum_of_sum_of_2,
+                                                                        product_of_7 + h6_sum_of_a_squared_q11_q13_q23_q33,
+                                                                    ),
+                                                                speed_tilt_x_sum_of
+                                                                    .mul_add(
+                                                                        sum_of_product_of_h6,
+                                                                        sum_of_a_squared_q12_q13_q23_q33
+                                                                            .mul_add(
+                                                                                speed_tilt_x
+                                                                                    .mul_add(
+                                                                                        product_of_h5_product_of_4
+                                                                                            .mul_add(
+                                                                                                three,
+                                                                                                h6_sum_of_a_squared_q12_q13_q23_q33
+                                                                                                    .mul_add(
+                                                                                                        -number_15,
+                                                                                                        h4_sum_of_a_squared_q11_q12_q22_q32
+                                                                                                            .mul_add(-nine, product_of_sum_of_product_of_h6_2),
+                                                                                                    ),
+                                                                                            ),
+                                                                                        speed_tilt_y
+                                                                                            .mul_add(
+                                                                                                product_of_7 + product_of_8
+                                                                                                    - product_of_sum_of_product_of_h6_2_2 - h4_sum_of_3_three,
+                                                                                                product_of_speed_spin,
+                                                                                            ),
+                                                                                    ),
+                                                                                speed_tilt_y
+                                                                                    .mul_add(
+                                                                                        sum_of_a_squared_q11_q13_q23_q33
+                                                                                            .mul_add(
+                                                                                                product_of_10 - h5_sum_of_2_three + product_of_11,
+                                                                                                product_of_sum_of_product_of_h6_3,
+                                                                                            ),
+                                                                                        -product_of_product_of_speed_spin_2,
+                                                                                    ),
+                                                                            ),
+                                                                    )
+                                                                    .mul_add(
+                                                                        -inverse_value_of_squared,
+                                                                        speed_tilt_x
+                                                                            * h4_sum_of_a_squared_q11_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    seven,
+                                                                                    h5_sum_of_a_squared_q12_q13_q23_q33
+                                                                                        .mul_add(twelve, product_of_h6_product_of_4 * four),
+                                                                                ),
+                                                                    ),
+                                                            ),
+                                                    ),
+                                                speed_spin
+                                                    .mul_add(
+                                                        h6
+                                                            .mul_add(
+                                                                -(product_of_21 + product_of_22_two),
+                                                                h4
+                                                                    .mul_add(
+                                                                        -(product_of_sum_of + product_of_18 + product_of_19),
+                                                                        h5
+                                                                            * (product_of_sum_of_2 - product_of_20
+                                                                                + product_of_sum_of_3),
+                                                                    ),
+                                                            ),
+                                                        speed_tilt_y
+                                                            * sum_of
+                                                                .mul_add(
+                                                                    product_of_inverse_value_of_squared
+                                                                        .mul_add(
+                                                                            sum_of_product_of_12_product_of_13,
+                                                                            h4_sum_of_3 - h5_sum_of_a_squared_q11_q12_q22_q32
+                                                                                - product_of_14,
+                                                                        ),
+                                                                    sum_of_a_squared_q11_q13_q23_q33
+                                                                        .mul_add(
+                                                                            -(product_of_17 + product_of_13
+                                                                                + product_of_h6_product_of_4),
+                                                                            sum_of_a_squared_q11_q12_q22_q32
+                                                                                * (product_of_15 - h5_sum_of_2 + product_of_16),
+                                                                        ),
+                                                                ),
+                                                    ),
+                                            ),
+                                    )
+                                    .mul_add(
+                                        -inverse_value_of_squared,
+                                        speed_tilt_y
+                                            * h4.mul_add(sum_of, -h6_sum_of_a_squared_q11_q13_q23_q33),
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        h4_sum_of_3 - product_of_23 - product_of_14,
+                        speed_spin
+                            .mul_add(
+                                -h6.mul_add(sum_of_3, product_of_17 + product_of_24),
+                                speed_tilt_x
+                                    .mul_add(
+                                        h5
+                                            .mul_add(
+                                                -sum_of_a_squared_q11_q12_q22_q32
+                                                    .mul_add(
+                                                        sum_of_2,
+                                                        product_of_22
+                                                            .mul_add(four, product_of_sum_of_4 + product_of_28_two),
+                                                    ),
+                                                h6
+                                                    .mul_add(
+                                                        product_of_20
+                                                            .mul_add(
+                                                                three,
+                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                    .mul_add(
+                                                                        sum_of_a_squared_q12_q12_q22_q32 - product_of_30,
+                                                                        product_of_sum_of_2.mul_add(-two, product_of_29_three),
+                                                                    ),
+                                                            ),
+                                                        h4
+                                                            * sum_of
+                                                                .mul_add(
+                                                                    sum_of_3,
+                                                                    -product_of_25_two + product_of_26 - product_of_27_three,
+                                                                ),
+                                                    ),
+                                            ),
+                                        speed_tilt_y
+                                            .mul_add(
+                                                h4
+                                                    .mul_add(
+                                                        product_of_28
+                                                            .mul_add(
+                                                                five,
+                                                                product_of_sum_of_3_2
+                                                                    .mul_add(two, product_of_22_two + product_of_sum_of_3_2),
+                                                            ),
+                                                        h5
+                                                            .mul_add(
+                                                                sum_of_3
+                                                                    .mul_add(
+                                                                        sum_of_a_squared_q12_q12_q22_q32,
+                                                                        product_of_25_two - product_of_26,
+                                                                    ),
+                                                                h6
+                                                                    * sum_of_a_squared_q12_q13_q23_q33
+                                                                        .mul_add(
+                                                                            product_of_30 - two_sum_of_a_squared_q11_q11_q21_q31,
+                                                                            product_of_18
+                                                                                .mul_add(-four, -product_of_19_two + product_of_sum_of_3_3),
+                                                                        ),
+                                                            ),
+                                                    ),
+                                                speed_spin
+                                                    .mul_add(
+                                                        h4
+                                                            .mul_add(
+                                                                -(product_of_29 + product_of_20 + product_of_sum_of_sum_of_4
+                                                                    + product_of_sum_of_3_4),
+                                                                h5
+                                                                    .mul_add(
+                                                                        product_of_18 + product_of_19_three - product_of_sum_of_3_3
+                                                                            - product_of_sum_of_3_5,
+                                                                        h6
+                                                                            * sum_of_3
+                                                                                .mul_add(
+                                                                                    -sum_of_a_squared_q13_b_squared_q23,
+                                                                                    product_of_27_three,
+                                                                                ),
+                                                                    ),
+                                                            ),
+                                                        sum_of_a_squared_q11_q13_q23_q33
+                                                            .mul_add(
+                                                                sum_of_a_squared_q12_q13_q23_q33
+                                                                    .mul_add(
+                                                                        speed_tilt_x
+                                                                            .mul_add(
+                                                                                h5_sum_of_2_three - product_of_11
+                                                                                    + product_of_sum_of_product_of_h6_2 - product_of_10,
+                                                                                speed_tilt_y
+                                                                                    .mul_add(
+                                                                                        h6_sum_of_a_squared_q11_q13_q23_q33
+                                                                                            .mul_add(
+                                                                                                twelve,
+                                                                                                h4_sum_of_3
+                                                                                                    .mul_add(
+                                                                                                        -six,
+                                                                                                        product_of_31 - product_of_sum_of_product_of_h6_2_2,
+                                                                                                    ),
+                                                                                            ),
+                                                                                        product_of_speed_spin,
+                                                                                    ),
+                                                                            ),
+                                                                        speed_tilt_y
+                                                                            .mul_add(
+                                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                                    .mul_add(
+                                                                                        (h5 * three)
+                                                                                            .mul_add(
+                                                                                                sum_of_a_squared_q12_q12_q22_q32,
+                                                                                                product_of_3 + product_of_16,
+                                                                                            ),
+                                                                                        product_of_sum_of_product_of_h6_3,
+                                                                                    ),
+                                                                                product_of_speed_tilt_x_sum_of
+                                                                                    - product_of_product_of_speed_spin_2,
+                                                                            ),
+                                                                    ),
+                                                                sum_of_a_squared_q12_q13_q23_q33
+                                                                    * speed_tilt_x
+                                                                        .mul_add(
+                                                                            sum_of_a_squared_q12_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    h4_sum_of_3_three - product_of_7 - product_of_8,
+                                                                                    -product_of_sum_of_product_of_h6_3,
+                                                                                ),
+                                                                            -product_of_speed_tilt_y_sum_of_3,
+                                                                        ),
+                                                            ) * inverse_value_of_squared,
+                                                    ),
+                                            ),
+                                    )
+                                    .mul_add(
+                                        -inverse_value_of_squared,
+                                        speed_tilt_y
+                                            * (h4_sum_of_a_squared_q11_q12_q22_q32
+                                                + h6_sum_of_a_squared_q12_q13_q23_q33),
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+                speed_spin
+                    .mul_add(
+                        product_of_33 + h5_two_sum_of_5
+                            + h6_sum_of_a_squared_q12_q13_q23_q33,
+                        speed_tilt_x
+                            .mul_add(
+                                product_of_2 - product_of_32
+                                    - h4_sum_of_a_squared_q12_q13_q23_q33,
+                                speed_tilt_y
+                                    .mul_add(
+                                        -(h4_sum_of_a_squared_q11_q13_q23_q33 + h6_sum_of_5),
+                                        speed_tilt_x
+                                            .mul_add(
+                                                h4
+                                                    .mul_add(
+                                                        product_of_sum_of + product_of_18_two + product_of_19_two,
+                                                        sum_of_a_squared_q12_q13_q23_q33
+                                                            .mul_add(
+                                                                product_of_34 + product_of_35
+                                                                    + (sum_of_a_squared_q12_q13_q23_q33
+                                                                        * product_of_5_minus_product_of_9
+                                                                        - sum_of_a_squared_q11_q13_q23_q33 * sum_of_product_of_h6_3)
+                                                                        * inverse_value_of_squared - h4_two_sum_of_5,
+                                                                h5
+                                                                    .mul_add(
+                                                                        sum_of_a_squared_q11_q13_q23_q33
+                                                                            .mul_add(
+                                                                                -sum_of_2,
+                                                                                product_of_20_two - product_of_sum_of_2,
+                                                                            ),
+                                                                        h6 * product_of_22.mul_add(three, product_of_21_two),
+                                                                    ),
+                                                            ),
+                                                    ),
+                                                speed_spin
+                                                    .mul_add(
+                                                        -sum_of_a_squared_q12_q13_q23_q33
+                                                            .mul_add(
+                                                                sum_of_product_of_17_product_of_24,
+                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                    * product_of_minus_product_of_2,
+                                                            ),
+                                                        speed_tilt_y
+                                                            * h4
+                                                                .mul_add(
+                                                                    sum_of_a_squared_q11_q13_q23_q33
+                                                                        .mul_add(
+                                                                            sum_of_5,
+                                                                            product_of_29_three + product_of_20
+                                                                                + product_of_sum_of_sum_of_4,
+                                                                        ),
+                                                                    h5
+                                                                        .mul_add(
+                                                                            sum_of_a_squared_q12_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    two_sum_of_a_squared_q12_q12_q22_q32
+                                                                                        - sum_of_a_squared_q11_q11_q21_q31,
+                                                                                    -product_of_18 - product_of_19_three + product_of_sum_of_5,
+                                                                                ),
+                                                                            product_of_h6_product_of_25_three - product_of_product_of_36,
+                                                                        ),
+                                                                ),
+                                                    ),
+                                            ) * inverse_value_of_squared,
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [
+                speed_tilt_y
+                    .mul_add(
+                        product_of_15 - h5_sum_of + product_of_37,
+                        speed_spin
+                            .mul_add(
+                                h6.mul_add(sum_of, product_of_17 + product_of_24),
+                                speed_tilt_x
+                                    .mul_add(
+                                        -(h5_sum_of_a_squared_q11_q12_q22_q32
+                                            + h6_sum_of_a_squared_q11_q13_q23_q33),
+                                        speed_tilt_x
+                                            .mul_add(
+                                                h4
+                                                    .mul_add(
+                                                        sum_of
+                                                            .mul_add(
+                                                                sum_of_a_squared_q11_q11_q21_q31,
+                                                                -product_of_26 + product_of_27_two,
+                                                            ),
+                                                        h5
+                                                            .mul_add(
+                                                                (sum_of_a_squared_q11_q12_q22_q32 * two)
+                                                                    .mul_add(
+                                                                        sum_of,
+                                                                        product_of_22
+                                                                            .mul_add(five, product_of_sum_of_4 + product_of_28_two),
+                                                                    ),
+                                                                h6
+                                                                    * product_of_20
+                                                                        .mul_add(
+                                                                            -four,
+                                                                            sum_of_a_squared_q11_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    product_of_30 - two_sum_of_a_squared_q12_q12_q22_q32,
+                                                                                    product_of_sum_of_2 - product_of_29_two,
+                                                                                ),
+                                                                        ),
+                                                            ),
+                                                    ),
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        -h4
+                                                            .mul_add(
+                                                                product_of_28
+                                                                    .mul_add(
+                                                                        four,
+                                                                        sum_of_a_squared_q11_q12_q22_q32
+                                                                            .mul_add(
+                                                                                sum_of_4,
+                                                                                sum_of_3
+                                                                                    .mul_add(
+                                                                                        sum_of_a_squared_q11_q12_q22_q32,
+                                                                                        product_of_22_two,
+                                                                                    ),
+                                                                            ),
+                                                                    ),
+                                                                h5
+                                                                    .mul_add(
+                                                                        sum_of_3
+                                                                            .mul_add(
+                                                                                -sum_of,
+                                                                                product_of_25_three - product_of_26 + product_of_27_two,
+                                                                            ),
+                                                                        h6
+                                                                            * sum_of_a_squared_q12_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    product_of_30 - sum_of_a_squared_q11_q11_q21_q31,
+                                                                                    product_of_18
+                                                                                        .mul_add(
+                                                                                            -three,
+                                                                                            product_of_sum_of_3_3.mul_add(two, -product_of_19_three),
+                                                                                        ),
+                                                                                ),
+                                                                    ),
+                                                            ),
+                                                        speed_spin
+                                                            .mul_add(
+                                                                -h4
+                                                                    .mul_add(
+                                                                        product_of_sum_of_2 - product_of_29_three - product_of_20
+                                                                            + product_of_sum_of_3,
+                                                                        h5
+                                                                            .mul_add(
+                                                                                product_of_sum_of + product_of_sum_of_sum_of_2
+                                                                                    + product_of_18 + product_of_19,
+                                                                                h6
+                                                                                    * sum_of
+                                                                                        .mul_add(
+                                                                                            sum_of_a_squared_q13_b_squared_q23,
+                                                                                            -product_of_25_three,
+                                                                                        ),
+                                                                            ),
+                                                                    ),
+                                                                -(sum_of_a_squared_q11_q13_q23_q33
+                                                                    * speed_tilt_y
+                                                                        .mul_add(
+                                                                            sum_of_a_squared_q11_q13_q23_q33
+                                                                                .mul_add(
+                                                                                    product_of_3 - h5_sum_of_three + product_of_38,
+                                                                                    product_of_sum_of_product_of_h6_3,
+                                                                                ),
+                                                                            product_of_speed_tilt_x_sum_of,
+                                                                        )
+                                                                    - sum_of_a_squared_q12_q13_q23_q33
+                                                                        * speed_tilt_x
+                                                                            .mul_add(
+                                                                                sum_of_a_squared_q12_q13_q23_q33
+                                                                                    .mul_add(
+                                                                                        (h4 * three)
+                                                                                            .mul_add(
+                                                                                                sum_of_a_squared_q11_q11_q21_q31,
+                                                                                                product_of_7 + product_of_35,
+                                                                                            ),
+                                                                                        product_of_sum_of_product_of_h6_3,
+                                                                                    ),
+                                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                                    .mul_add(
+                                                                                        speed_tilt_x
+                                                                                            .mul_add(
+                                                                                                h5_sum_of
+                                                                                                    .mul_add(
+                                                                                                        -six,
+                                                                                                        h6_sum_of_a_squared_q12_q13_q23_q33
+                                                                                                            .mul_add(
+                                                                                                                twelve,
+                                                                                                                product_of_10 - product_of_sum_of_product_of_h6_2,
+                                                                                                            ),
+                                                                                                    ),
+                                                                                                speed_tilt_y
+                                                                                                    .mul_add(
+                                                                                                        h4_sum_of_4_three - product_of_31 - product_of_39
+                                                                                                            + product_of_sum_of_product_of_h6_2_2,
+                                                                                                        -product_of_speed_spin,
+                                                                                                    ),
+                                                                                            ),
+                                                                                        product_of_speed_tilt_y_sum_of_3
+                                                                                            - product_of_product_of_speed_spin_2_2,
+                                                                                    ),
+                                                                            )) * inverse_value_of_squared,
+                                                            ),
+                                                    ),
+                                            ) * inverse_value_of_squared,
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+                speed_spin
+                    .mul_add(
+                        product_of_2 + h6_sum_of_a_squared_q11_q12_q22_q32 - product_of,
+                        speed_tilt_x
+                            .mul_add(
+                                sum_of_a_squared_q12_q13_q23_q33
+                                    .mul_add(
+                                        (sum_of_3 * sum_of_product_of_12_product_of_13)
+                                            .mul_add(
+                                                -inverse_value_of_squared,
+                                                product_of_12 + product_of_24 + product_of_h6_product_of_4_2,
+                                            ),
+                                        sum_of_a_squared_q11_q12_q22_q32
+                                            .mul_add(
+                                                h4_sum_of_4 - product_of_23 - product_of_35,
+                                                sum_of_3
+                                                    * (h4_sum_of_a_squared_q11_q12_q22_q32 - h5_sum_of
+                                                        + product_of_37),
+                                            ),
+                                    ),
+                                sum_of_a_squared_q11_q13_q23_q33
+                                    .mul_add(
+                                        speed_tilt_x
+                                            .mul_add(
+                                                h4_sum_of_a_squared_q12_q13_q23_q33 + product_of_9
+                                                    - product_of_6,
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        -h4_sum_of_a_squared_q11_q13_q23_q33
+                                                            .mul_add(
+                                                                twelve,
+                                                                h5_sum_of_a_squared_q12_q13_q23_q33
+                                                                    .mul_add(seven, product_of_h6_product_of_4_2 * four),
+                                                            ),
+                                                        speed_tilt_x
+                                                            .mul_add(
+                                                                sum_of_a_squared_q12_q13_q23_q33
+                                                                    .mul_add(
+                                                                        h4_sum_of_4_three - product_of_31 - product_of_39,
+                                                                        -product_of_sum_of_product_of_h6_3,
+                                                                    ),
+                                                                sum_of_a_squared_q11_q13_q23_q33
+                                                                    .mul_add(
+                                                                        speed_tilt_x
+                                                                            .mul_add(
+                                                                                h5_sum_of_three - product_of_38
+                                                                                    + product_of_sum_of_product_of_h6_2 - product_of_3,
+                                                                                speed_tilt_y
+                                                                                    .mul_add(
+                                                                                        h5_sum_of_a_squared_q11_q12_q22_q32
+                                                                                            .mul_add(
+                                                                                                nine,
+                                                                                                h6_sum_of_a_squared_q11_q13_q23_q33
+                                                                                                    .mul_add(
+                                                                                                        number_15,
+                                                                                                        product_of_h4_product_of_4
+                                                                                                            .mul_add(-three, -product_of_sum_of_product_of_h6_2_2),
+                                                                                                    ),
+                                                                                            ),
+                                                                                        product_of_speed_spin,
+                                                                                    ),
+                                                                            ),
+                                                                        speed_tilt_y_sum_of_3
+                                                                            .mul_add(
+                                                                                -sum_of_product_of_h6,
+                                                                                product_of_product_of_speed_spin_2_2,
+                                                                            ),
+                                                                    ),
+                                                            )
+                                                            .mul_add(
+                                                                -inverse_value_of_squared,
+                                                                speed_spin
+                                                                    * h5
+                                                                        .mul_add(
+                                                                            sum_of_sum_of_4,
+                                                                            product_of_3 + h6_sum_of_a_squared_q12_q13_q23_q33,
+                                                                        ),
+                                                            ),
+                                                    ),
+                                            ),
+                                        speed_spin
+                                            .mul_add(
+                                                h5
+                                                    .mul_add(
+                                                        product_of_29 + product_of_20 + product_of_sum_of_3_4,
+                                                        h4
+                                                            .mul_add(
+                                                                product_of_18 - product_of_sum_of_3_3
+                                                                    - product_of_sum_of_3_5,
+                                                                h6 * (product_of_28_two + product_of_21),
+                                                            ),
+                                                    ),
+                                                speed_tilt_y_sum_of_3
+                                                    * h6_sum_of_a_squared_q11_q13_q23_q33
+                                                        .mul_add(-five, product_of_h4_product_of_4 - product_of_7),
+                                            ),
+                                    ),
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                speed_tilt_x
+                                    .mul_add(
+                                        h5.mul_add(-sum_of_3, h6_sum_of_a_squared_q12_q13_q23_q33),
+                                        speed_tilt_y
+                                            * h4_sum_of_3
+                                                .mul_add(
+                                                    two,
+                                                    h6_sum_of_a_squared_q11_q13_q23_q33
+                                                        .mul_add(-four, -h5_sum_of_a_squared_q11_q12_q22_q32),
+                                                ),
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+                speed_tilt_x
+                    .mul_add(
+                        h5_sum_of_a_squared_q12_q13_q23_q33 - h6_sum_of_5,
+                        speed_tilt_y
+                            .mul_add(
+                                h5_sum_of_a_squared_q11_q13_q23_q33 + product_of_32
+                                    - product_of,
+                                speed_spin
+                                    .mul_add(
+                                        h4_two_sum_of_5 - product_of_34
+                                            - h6_sum_of_a_squared_q11_q13_q23_q33,
+                                        speed_tilt_x
+                                            .mul_add(
+                                                h4
+                                                    .mul_add(
+                                                        sum_of_a_squared_q11_q13_q23_q33
+                                                            .mul_add(
+                                                                sum_of_a_squared_q12_q12_q22_q32
+                                                                    - two_sum_of_a_squared_q11_q11_q21_q31,
+                                                                sum_of_5
+                                                                    .mul_add(
+                                                                        sum_of_a_squared_q11_q13_q23_q33,
+                                                                        product_of_29_three + product_of_20,
+                                                                    ),
+                                                            ),
+                                                        h5
+                                                            .mul_add(
+                                                                product_of_sum_of_5 - product_of_sum_of_sum_of_2
+                                                                    - product_of_18 - product_of_19_three,
+                                                                product_of_h6_product_of_25_three - product_of_product_of_36,
+                                                            ),
+                                                    ),
+                                                speed_tilt_y
+                                                    .mul_add(
+                                                        sum_of_a_squared_q11_q13_q23_q33
+                                                            .mul_add(
+                                                                sum_of_a_squared_q12_q13_q23_q33
+                                                                    .mul_add(sum_of_product_of_h6_3, product_of_36)
+                                                                    .mul_add(
+                                                                        inverse_value_of_squared,
+                                                                        -product_of_33 - h5_two_sum_of_5 - product_of_16,
+                                                                    ),
+                                                                h5
+                                                                    .mul_add(
+                                                                        -(product_of_29_two + product_of_20_two
+                                                                            + product_of_sum_of_3_4),
+                                                                        h6
+                                                                            .mul_add(
+                                                                                -product_of_28.mul_add(three, product_of_21_two),
+                                                                                h4
+                                                                                    * sum_of_a_squared_q12_q13_q23_q33
+                                                                                        .mul_add(
+                                                                                            sum_of_4,
+                                                                                            -product_of_18_two + product_of_sum_of_3_3,
+                                                                                        ),
+                                                                            ),
+                                                                    ),
+                                                            ),
+                                                        -speed_spin
+                                                            * (sum_of_a_squared_q12_q13_q23_q33
+                                                                * product_of_minus_product_of_2
+                                                                - sum_of_a_squared_q11_q13_q23_q33
+                                                                    * sum_of_product_of_17_product_of_24),
+                                                    ),
+                                            ) * inverse_value_of_squared,
+                                    ),
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [zero, zero, zero],
+        ])
+    }
+
+    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
+    ///
+    /// 3×3. Operations: 62 additions, 92 multiplications (43 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
+    fn bias_momentum_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 9>,
+        _speeds: &SVector<T, 3>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 3> {
+        let a = T::from_f64(self.a);
+        let b = T::from_f64(self.b);
+        let c = T::from_f64(self.c);
+        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
+        let (h4, h5, h6) = (h[3], h[4], h[5]);
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let a_squared = a * a;
+        let a_squared_q11 = a_squared * q11;
+        let b_squared = b * b;
+        let b_squared_q21 = b_squared * q21;
+        let c_squared = c * c;
+        let c_squared_q31 = c_squared * q31;
+        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
+            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
+        let h4_sum_of_a_squared_q11_q13_q23_q33 = h4 * sum_of_a_squared_q11_q13_q23_q33;
+        let a_squared_q12 = a_squared * q12;
+        let b_squared_q22 = b_squared * q22;
+        let c_squared_q32 = c_squared * q32;
+        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
+            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
+        let h5_sum_of_a_squared_q12_q13_q23_q33 = h5 * sum_of_a_squared_q12_q13_q23_q33;
+        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
+            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
+        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
+            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
+        let sum_of = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q12_q12_q22_q32;
+        let product_of_h6 = h6 * sum_of_a_squared_q13_b_squared_q23;
+        let sum_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
+            + h5_sum_of_a_squared_q12_q13_q23_q33 + product_of_h6;
+        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
+            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
+        let h4_sum_of_a_squared_q11_q12_q22_q32 = h4 * sum_of_a_squared_q11_q12_q22_q32;
+        let product_of = h4_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let h6_sum_of_a_squared_q12_q13_q23_q33 = h6 * sum_of_a_squared_q12_q13_q23_q33;
+        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
+        let inverse_value_of_squared = one / (value_of * value_of);
+        let product_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
+            .mul_add(
+                three,
+                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(three, product_of_h6 * three),
+            ) * inverse_value_of_squared;
+        let inverse_value_of = one / value_of;
+        let h4_sum_of_a_squared_q12_q13_q23_q33 = h4 * sum_of_a_squared_q12_q13_q23_q33;
+        let h6_sum_of_a_squared_q11_q12_q22_q32 = h6 * sum_of_a_squared_q11_q12_q22_q32;
+        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
+            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
+        let sum_of_2 = sum_of_a_squared_q13_b_squared_q23
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let h5_sum_of_a_squared_q11_q12_q22_q32 = h5 * sum_of_a_squared_q11_q12_q22_q32;
+        let h6_sum_of_a_squared_q11_q13_q23_q33 = h6 * sum_of_a_squared_q11_q13_q23_q33;
+        let product_of_product_of_product_of_h6 = sum_of_a_squared_q11_q13_q23_q33
+            * product_of_product_of_h6;
+        let product_of_sum_of_product_of_h6 = sum_of_a_squared_q11_q12_q22_q32
+            * sum_of_product_of_h6;
+        let sum_of_3 = sum_of_a_squared_q12_q12_q22_q32
+            - sum_of_a_squared_q11_q11_q21_q31;
+        let product_of_2 = h5_sum_of_a_squared_q11_q12_q22_q32 * two;
+        let h5_sum_of_a_squared_q11_q13_q23_q33 = h5 * sum_of_a_squared_q11_q13_q23_q33;
+        let sum_of_4 = h4_sum_of_a_squared_q12_q13_q23_q33
+            - h5_sum_of_a_squared_q11_q13_q23_q33;
+        from_rows([
+            [
+                h5_sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(
+                        -two,
+                        h6
+                            .mul_add(
+                                -sum_of,
+                                (sum_of * sum_of_product_of_h6
+                                    - sum_of_a_squared_q12_q13_q23_q33
+                                        * h5
+                                            .mul_add(
+                                                two
+                                                    .mul_add(
+                                                        sum_of_a_squared_q12_q12_q22_q32,
+                                                        -sum_of_a_squared_q13_b_squared_q23,
+                                                    ),
+                                                h6_sum_of_a_squared_q12_q13_q23_q33
+                                                    .mul_add(
+                                                        three,
+                                                        sum_of_a_squared_q12_q13_q23_q33
+                                                            .mul_add(-product_of_product_of_h6, product_of),
+                                                    ),
+                                            )) * inverse_value_of_squared
+                                    - h4_sum_of_a_squared_q11_q13_q23_q33,
+                            ),
+                    ) * inverse_value_of,
+                sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(
+                        h4
+                            .mul_add(
+                                sum_of_2,
+                                h6_sum_of_a_squared_q11_q13_q23_q33
+                                    .mul_add(
+                                        -two,
+                                        -h5_sum_of_a_squared_q11_q12_q22_q32
+                                            + product_of_product_of_product_of_h6,
+                                    ),
+                            ),
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                -h5
+                                    .mul_add(
+                                        sum_of_a_squared_q12_q12_q22_q32,
+                                        h4_sum_of_a_squared_q11_q12_q22_q32
+                                            + h6_sum_of_a_squared_q12_q13_q23_q33,
+                                    ),
+                                -product_of_sum_of_product_of_h6,
+                            ),
+                    )
+                    .mul_add(
+                        -inverse_value_of_squared,
+                        h4_sum_of_a_squared_q12_q13_q23_q33
+                            - h6_sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                h4
+                    .mul_add(
+                        -sum_of_3,
+                        product_of_2 + h6_sum_of_a_squared_q11_q13_q23_q33
+                            + (sum_of_a_squared_q12_q13_q23_q33 * sum_of_4
+                                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_product_of_h6)
+                                * inverse_value_of_squared,
+                    ) * inverse_value_of,
+            ],
+            [
+                sum_of_a_squared_q12_q13_q23_q33
+                    .mul_add(
+                        h4
+                            .mul_add(
+                                sum_of_a_squared_q11_q11_q21_q31,
+                                h5_sum_of_a_squared_q11_q12_q22_q32
+                                    + h6_sum_of_a_squared_q11_q13_q23_q33
+                                    - product_of_product_of_product_of_h6,
+                            ),
+                        sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                h5
+                                    .mul_add(
+                                        -sum_of,
+                                        h6_sum_of_a_squared_q12_q13_q23_q33
+                                            .mul_add(two, h4_sum_of_a_squared_q11_q12_q22_q32),
+                                    ),
+                                product_of_sum_of_product_of_h6,
+                            ),
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        h5_sum_of_a_squared_q11_q13_q23_q33
+                            - h6_sum_of_a_squared_q11_q12_q22_q32,
+                    ) * inverse_value_of,
+                sum_of_a_squared_q11_q13_q23_q33
+                    .mul_add(
+                        h4
+                            .mul_add(
+                                two
+                                    .mul_add(
+                                        -sum_of_a_squared_q11_q11_q21_q31,
+                                        sum_of_a_squared_q13_b_squared_q23,
+                                    ),
+                                h6_sum_of_a_squared_q11_q13_q23_q33
+                                    .mul_add(
+                                        -three,
+                                        -product_of_2 + product_of_product_of_product_of_h6,
+                                    ),
+                            ),
+                        sum_of_2 * sum_of_product_of_h6,
+                    )
+                    .mul_add(
+                        inverse_value_of_squared,
+                        h4_sum_of_a_squared_q11_q13_q23_q33
+                            .mul_add(
+                                -two,
+                                h6.mul_add(-sum_of_2, -h5_sum_of_a_squared_q12_q13_q23_q33),
+                            ),
+                    ) * inverse_value_of,
+                h5
+                    .mul_add(
+                        sum_of_3,
+                        sum_of_a_squared_q12_q13_q23_q33
+                            .mul_add(
+                                sum_of_product_of_h6,
+                                sum_of_a_squared_q11_q13_q23_q33 * sum_of_4,
+                            )
+                            .mul_add(
+                                -inverse_value_of_squared,
+                                product_of + h6_sum_of_a_squared_q12_q13_q23_q33,
+                            ),
+                    ) * inverse_value_of,
+            ],
+            [zero, zero, zero],
         ])
     }
 }

@@ -52,7 +52,7 @@ use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(3);
+const _: () = ::hamel::joint::assert_kernel_interface(4);
 
 /// Falling disk (rolling coin): a thin disk that rolls without slipping on the plane z = 0 of the parent and may lean (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,6 +98,9 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         retract_differential: Structure::General,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
+        twist_gradient: Structure::General,
+        bias_acceleration_gradient: Structure::General,
+        bias_momentum_gradient: Structure::General,
     };
     const PATTERNS: Patterns<5, 3> = Patterns::new(
         ["xxx", "xxx", "xxx"],
@@ -1473,6 +1476,2311 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
                                     ),
                         ) * inverse_root_one_minus_r_q33_squared,
                 ),
+        ])
+    }
+
+    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
+    ///
+    /// 6×5. Operations: 1 addition, 9 multiplications (1 of each fused), 1 division, 1 function call.
+    ///
+    /// From line 12 `basis`, line 15 `let`, line 19 `H`.
+    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let zero = T::zero();
+        let one = T::one();
+        let product_of_radius_r_q33 = radius * r_q33 / r_q33.mul_add(-r_q33, one).sqrt();
+        let product_of_radius_r_q33_r_q31 = product_of_radius_r_q33 * r_q31;
+        let product_of_radius_r_q33_r_q31_r_q32 = product_of_radius_r_q33_r_q31 * r_q32;
+        let product_of_radius_r_q33_r_q32 = product_of_radius_r_q33 * r_q32;
+        from_rows([
+            [one, zero, zero, zero, zero],
+            [zero, one, zero, zero, zero],
+            [zero, zero, one, zero, zero],
+            [
+                product_of_radius_r_q33_r_q31_r_q32,
+                -product_of_radius_r_q33_r_q31 * r_q31,
+                zero,
+                r_q11,
+                r_q21,
+            ],
+            [
+                product_of_radius_r_q33_r_q32 * r_q32,
+                -product_of_radius_r_q33_r_q31_r_q32,
+                zero,
+                r_q12,
+                r_q22,
+            ],
+            [
+                product_of_radius_r_q33_r_q32 * r_q33,
+                -product_of_radius_r_q33_r_q31 * r_q33,
+                zero,
+                r_q13,
+                r_q23,
+            ],
+        ])
+    }
+
+    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×5. Operations: 38 additions, 72 multiplications (16 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
+    fn twist_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let product_of_r_q33 = r_q33 * inverse_root_one_minus_r_q33_squared;
+        let product_of_r_q33_r_q33 = product_of_r_q33 * r_q33;
+        let sum_of_root_one_minus_r_q33_squared = root_one_minus_r_q33_squared
+            + product_of_r_q33_r_q33;
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let product_of_speed_wy = speed_wy * r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        let product_of_speed_wz = speed_wz * r_q11_r_q22_minus_r_q12_r_q21;
+        let product_of_r_q32 = r_q32 * inverse_root_one_minus_r_q33_squared;
+        let quotient_of_r_q33_squared = r_q33_squared
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let one_plus_quotient_of_r_q33_squared = one + quotient_of_r_q33_squared;
+        let r_q32_speed_wy = r_q32 * speed_wy;
+        let r_q33_speed_wz = r_q33 * speed_wz;
+        let r_q31_speed_wy = r_q31 * speed_wy;
+        let product_of_r_q32_speed_wy_r_q31 = one_plus_quotient_of_r_q33_squared
+            * (r_q11_r_q23_minus_r_q13_r_q21 * (r_q32_speed_wy + r_q33_speed_wz)
+                - r_q31_speed_wy * r_q31);
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let product_of_speed_wy_2 = speed_wy * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_r_q31 = r_q31 * inverse_root_one_minus_r_q33_squared;
+        let product_of_r_q33_2 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let radius_speed_wz = radius * speed_wz;
+        let r_q11_squared_plus_r_q21_squared = r_q11.mul_add(r_q11, r_q21 * r_q21);
+        let r_q12_squared_plus_r_q22_squared = r_q12.mul_add(r_q12, r_q22 * r_q22);
+        let value_of = (two - r_q11_squared_plus_r_q21_squared
+            - r_q12_squared_plus_r_q22_squared)
+            .sqrt();
+        let inverse_value_of = one / value_of;
+        let sum_of_value_of_inverse_value_of = r_q11_squared_plus_r_q21_squared
+            .mul_add(inverse_value_of, value_of);
+        let product_of_speed_wx = speed_wx * r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q31_speed_wx = r_q31 * speed_wx;
+        let r_q32_speed_wx = r_q32 * speed_wx;
+        let product_of_r_q31_speed_wx_r_q32 = one_plus_quotient_of_r_q33_squared
+            * r_q12_r_q23_minus_r_q13_r_q22
+                .mul_add(r_q31_speed_wx + r_q33_speed_wz, r_q32_speed_wx * r_q32);
+        let product_of_speed_wx_2 = speed_wx * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_root_one_minus_r_q33_squared_2 = root_one_minus_r_q33_squared
+            .mul_add(r_q11_r_q22_minus_r_q12_r_q21, product_of_r_q33_r_q33 * r_q33);
+        let product_of_product_of_r_q33 = product_of_r_q33
+            * (two + quotient_of_r_q33_squared)
+                .mul_add(
+                    r_q32_speed_wx - r_q31_speed_wy,
+                    product_of_speed_wx + product_of_speed_wy_2,
+                );
+        from_rows([
+            [zero, zero, zero, zero, zero],
+            [zero, zero, zero, zero, zero],
+            [zero, zero, zero, zero, zero],
+            [
+                radius
+                    * (sum_of_root_one_minus_r_q33_squared
+                        * (product_of_speed_wy - product_of_speed_wz)
+                        - product_of_r_q32 * product_of_r_q32_speed_wy_r_q31),
+                radius
+                    * product_of_speed_wy_2
+                        .mul_add(
+                            root_one_minus_r_q33_squared,
+                            product_of_r_q31
+                                * product_of_r_q33_2
+                                    .mul_add(speed_wy, product_of_r_q32_speed_wy_r_q31),
+                        ),
+                radius_speed_wz
+                    * r_q31
+                        .mul_add(
+                            sum_of_value_of_inverse_value_of,
+                            r_q32 * r_q11.mul_add(r_q12, r_q21 * r_q22)
+                                * inverse_value_of,
+                        ),
+                zero,
+                zero,
+            ],
+            [
+                -radius
+                    * product_of_speed_wx
+                        .mul_add(
+                            root_one_minus_r_q33_squared,
+                            product_of_r_q32
+                                * product_of_r_q33_2
+                                    .mul_add(-speed_wx, product_of_r_q31_speed_wx_r_q32),
+                        ),
+                radius
+                    * (product_of_r_q31 * product_of_r_q31_speed_wx_r_q32
+                        - sum_of_root_one_minus_r_q33_squared
+                            * (product_of_speed_wx_2 + product_of_speed_wz)),
+                radius_speed_wz * r_q32
+                    * (one - r_q12_squared_plus_r_q22_squared)
+                        .mul_add(-inverse_value_of, sum_of_value_of_inverse_value_of),
+                zero,
+                zero,
+            ],
+            [
+                radius
+                    * (speed_wx * sum_of_root_one_minus_r_q33_squared_2
+                        - r_q32 * product_of_product_of_r_q33),
+                radius
+                    * speed_wy
+                        .mul_add(
+                            sum_of_root_one_minus_r_q33_squared_2,
+                            r_q31 * product_of_product_of_r_q33,
+                        ),
+                -radius
+                    * root_one_minus_r_q33_squared
+                        .mul_add(
+                            product_of_speed_wx_2 - product_of_speed_wy,
+                            product_of_r_q33_r_q33 * (r_q31_speed_wx + r_q32_speed_wy),
+                        ),
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
+    ///
+    /// 3×5. Operations: 36 additions, 74 multiplications (20 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
+    fn effort_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let (h4, h5, h6) = (h[3], h[4], h[5]);
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let product_of_r_q33 = r_q33 * inverse_root_one_minus_r_q33_squared;
+        let product_of_h6_product_of_r_q33 = h6
+            * root_one_minus_r_q33_squared
+                .mul_add(
+                    r_q11_r_q22_minus_r_q12_r_q21,
+                    product_of_r_q33 * r_q33_squared,
+                );
+        let product_of_r_q32 = r_q32 * inverse_root_one_minus_r_q33_squared;
+        let r_q33_h6 = r_q33 * h6;
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let quotient_of_r_q33_squared = r_q33_squared
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let two_plus_quotient_of_r_q33_squared = two + quotient_of_r_q33_squared;
+        let one_plus_quotient_of_r_q33_squared = one + quotient_of_r_q33_squared;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let sum_of_r_q33_h6_r_q32_h5_r_q31 = r_q33_h6
+            .mul_add(
+                r_q32
+                    .mul_add(
+                        two_plus_quotient_of_r_q33_squared,
+                        r_q11_r_q23_minus_r_q13_r_q21,
+                    ),
+                h5 * one_plus_quotient_of_r_q33_squared
+                    * r_q31.mul_add(r_q12_r_q23_minus_r_q13_r_q22, r_q32 * r_q32),
+            );
+        let product_of_r_q33_2 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let h5_r_q11_r_q23_minus_r_q13_r_q21 = h5 * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_r_q31 = r_q31 * inverse_root_one_minus_r_q33_squared;
+        let h5_r_q12_r_q23_minus_r_q13_r_q22 = h5 * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_root_one_minus_r_q33_squared = product_of_r_q33
+            .mul_add(r_q33, root_one_minus_r_q33_squared);
+        let radius_h6 = radius * h6;
+        let r_q11_squared_plus_r_q21_squared = r_q11.mul_add(r_q11, r_q21 * r_q21);
+        let r_q12_squared_plus_r_q22_squared = r_q12.mul_add(r_q12, r_q22 * r_q22);
+        let value_of = (two - r_q11_squared_plus_r_q21_squared
+            - r_q12_squared_plus_r_q22_squared)
+            .sqrt();
+        let inverse_value_of = one / value_of;
+        let sum_of_value_of_inverse_value_of = r_q11_squared_plus_r_q21_squared
+            .mul_add(inverse_value_of, value_of);
+        let sum_of_r_q33_h6_r_q31_h4_r_q32 = r_q33_h6
+            * r_q31
+                .mul_add(
+                    -two_plus_quotient_of_r_q33_squared,
+                    r_q12_r_q23_minus_r_q13_r_q22,
+                )
+            - h4 * one_plus_quotient_of_r_q33_squared
+                * (r_q31 * r_q31 - r_q32 * r_q11_r_q23_minus_r_q13_r_q21);
+        let h4_r_q11_r_q23_minus_r_q13_r_q21 = h4 * r_q11_r_q23_minus_r_q13_r_q21;
+        let h4_r_q12_r_q23_minus_r_q13_r_q22 = h4 * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of = r_q11_r_q22_minus_r_q12_r_q21
+            * sum_of_root_one_minus_r_q33_squared;
+        let product_of_product_of_r_q33 = product_of_r_q33
+            * one_plus_quotient_of_r_q33_squared
+            * (h4_r_q11_r_q23_minus_r_q13_r_q21 + h5_r_q12_r_q23_minus_r_q13_r_q22);
+        from_rows([
+            [
+                radius
+                    * product_of_r_q32
+                        .mul_add(
+                            product_of_r_q33_2
+                                .mul_add(h5, -sum_of_r_q33_h6_r_q32_h5_r_q31),
+                            h5_r_q11_r_q23_minus_r_q13_r_q21
+                                .mul_add(
+                                    -root_one_minus_r_q33_squared,
+                                    product_of_h6_product_of_r_q33,
+                                ),
+                        ),
+                radius
+                    * (product_of_r_q31 * sum_of_r_q33_h6_r_q32_h5_r_q31
+                        - h5_r_q12_r_q23_minus_r_q13_r_q22
+                            * sum_of_root_one_minus_r_q33_squared),
+                -radius_h6
+                    * r_q31
+                        .mul_add(
+                            sum_of_value_of_inverse_value_of,
+                            r_q32 * r_q11.mul_add(r_q12, r_q21 * r_q22)
+                                * inverse_value_of,
+                        ),
+                zero,
+                zero,
+            ],
+            [
+                radius
+                    * (h4_r_q11_r_q23_minus_r_q13_r_q21
+                        * sum_of_root_one_minus_r_q33_squared
+                        - product_of_r_q32 * sum_of_r_q33_h6_r_q31_h4_r_q32),
+                radius
+                    * product_of_r_q31
+                        .mul_add(
+                            product_of_r_q33_2
+                                .mul_add(h4, sum_of_r_q33_h6_r_q31_h4_r_q32),
+                            h4_r_q12_r_q23_minus_r_q13_r_q22
+                                .mul_add(
+                                    root_one_minus_r_q33_squared,
+                                    product_of_h6_product_of_r_q33,
+                                ),
+                        ),
+                radius_h6 * r_q32
+                    * (one - r_q12_squared_plus_r_q22_squared)
+                        .mul_add(inverse_value_of, -sum_of_value_of_inverse_value_of),
+                zero,
+                zero,
+            ],
+            [
+                -radius * h4.mul_add(product_of, r_q32 * product_of_product_of_r_q33),
+                radius * (r_q31 * product_of_product_of_r_q33 - h5 * product_of),
+                radius * sum_of_root_one_minus_r_q33_squared
+                    * (h4_r_q12_r_q23_minus_r_q13_r_q22
+                        - h5_r_q11_r_q23_minus_r_q13_r_q21),
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// d/dt(X^c S̄) at the speeds v̄.
+    ///
+    /// 6×3. Operations: 41 additions, 81 multiplications (26 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
+    fn twist_map_rate<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let product_of_speed_wx_radius_speed_wy = root_one_minus_r_q33_squared
+            * (speed_wx * radius)
+                .mul_add(
+                    r_q11_r_q23_minus_r_q13_r_q21,
+                    speed_wy * radius * r_q12_r_q23_minus_r_q13_r_q22,
+                );
+        let sum_of_r_q31_r_q32 = r_q31 * r_q31 - r_q32 * r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q32_sum_of_r_q31_r_q32 = r_q32 * sum_of_r_q31_r_q32;
+        let product_of_r_q33_squared = r_q33_squared
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let radius_product_of_r_q33_squared = radius * product_of_r_q33_squared;
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        let product_of_r_q33 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let product_of_speed_wz_radius_r_q33 = speed_wz * radius * r_q33
+            * (r_q31 * two.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21)
+                - r_q32 * r_q12_r_q23_minus_r_q13_r_q22);
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let sum_of_root_one_minus_r_q33_squared = r_q33_squared
+            .mul_add(inverse_root_one_minus_r_q33_squared, root_one_minus_r_q33_squared);
+        let product_of_speed_wz = speed_wz * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_r_q33_2 = r_q33 * inverse_root_one_minus_r_q33_squared;
+        let r_q31_speed_wy_minus_r_q32_speed_wx = r_q31 * speed_wy - r_q32 * speed_wx;
+        let product_of_product_of_r_q33_2 = product_of_r_q33_2
+            * r_q31_speed_wy_minus_r_q32_speed_wx * (one + product_of_r_q33_squared);
+        let sum_of_r_q31_r_q32_2 = r_q31
+            .mul_add(r_q12_r_q23_minus_r_q13_r_q22, r_q32 * r_q32);
+        let r_q31_sum_of_r_q31_r_q32_2 = r_q31 * sum_of_r_q31_r_q32_2;
+        let product_of_speed_wz_2 = speed_wz * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_root_one_minus_r_q33_squared_2 = root_one_minus_r_q33_squared
+            .mul_add(r_q11_r_q22_minus_r_q12_r_q21, r_q33_squared * product_of_r_q33_2);
+        let two_plus_product_of_r_q33_squared = two + product_of_r_q33_squared;
+        let r_q33_speed_wz = r_q33 * speed_wz;
+        from_rows([
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [
+                zero,
+                speed_wx
+                    .mul_add(
+                        radius
+                            .mul_add(
+                                r_q33_squared
+                                    .mul_add(
+                                        r_q11_r_q23_minus_r_q13_r_q21,
+                                        r_q32_sum_of_r_q31_r_q32,
+                                    ),
+                                radius_product_of_r_q33_squared * r_q32_sum_of_r_q31_r_q32,
+                            ),
+                        speed_wy
+                            .mul_add(
+                                -(radius * r_q31)
+                                    .mul_add(
+                                        sum_of_r_q31_r_q32 - product_of_r_q33,
+                                        radius_product_of_r_q33_squared * r_q31 * sum_of_r_q31_r_q32,
+                                    ),
+                                -product_of_speed_wz_radius_r_q33,
+                            ),
+                    )
+                    .mul_add(
+                        inverse_root_one_minus_r_q33_squared,
+                        product_of_speed_wx_radius_speed_wy,
+                    ),
+                radius
+                    * (product_of_product_of_r_q33_2 * r_q11_r_q23_minus_r_q13_r_q21
+                        - sum_of_root_one_minus_r_q33_squared
+                            * speed_wx
+                                .mul_add(
+                                    r_q11_r_q22_minus_r_q12_r_q21,
+                                    -product_of_speed_wz,
+                                )),
+            ],
+            [
+                -speed_wx
+                    .mul_add(
+                        (radius * r_q32)
+                            .mul_add(
+                                sum_of_r_q31_r_q32_2 - product_of_r_q33,
+                                radius_product_of_r_q33_squared * r_q32
+                                    * sum_of_r_q31_r_q32_2,
+                            ),
+                        speed_wy
+                            .mul_add(
+                                -radius
+                                    .mul_add(
+                                        r_q33_squared
+                                            .mul_add(
+                                                -r_q12_r_q23_minus_r_q13_r_q22,
+                                                r_q31_sum_of_r_q31_r_q32_2,
+                                            ),
+                                        radius_product_of_r_q33_squared * r_q31_sum_of_r_q31_r_q32_2,
+                                    ),
+                                product_of_speed_wz_radius_r_q33,
+                            ),
+                    )
+                    .mul_add(
+                        inverse_root_one_minus_r_q33_squared,
+                        product_of_speed_wx_radius_speed_wy,
+                    ),
+                zero,
+                radius
+                    * (product_of_product_of_r_q33_2 * r_q12_r_q23_minus_r_q13_r_q22
+                        - sum_of_root_one_minus_r_q33_squared
+                            * speed_wy
+                                .mul_add(
+                                    r_q11_r_q22_minus_r_q12_r_q21,
+                                    product_of_speed_wz_2,
+                                )),
+            ],
+            [
+                radius
+                    * speed_wx
+                        .mul_add(
+                            sum_of_root_one_minus_r_q33_squared_2,
+                            product_of_speed_wz
+                                .mul_add(
+                                    -root_one_minus_r_q33_squared,
+                                    product_of_r_q33_2
+                                        * (r_q31_speed_wy_minus_r_q32_speed_wx
+                                            * r_q32
+                                                .mul_add(
+                                                    two_plus_product_of_r_q33_squared,
+                                                    r_q11_r_q23_minus_r_q13_r_q21,
+                                                ) - r_q31 * r_q33_speed_wz),
+                                ),
+                        ),
+                radius
+                    * speed_wy
+                        .mul_add(
+                            sum_of_root_one_minus_r_q33_squared_2,
+                            product_of_speed_wz_2
+                                .mul_add(
+                                    root_one_minus_r_q33_squared,
+                                    product_of_r_q33_2
+                                        * (r_q31_speed_wy_minus_r_q32_speed_wx
+                                            * r_q31
+                                                .mul_add(
+                                                    -two_plus_product_of_r_q33_squared,
+                                                    r_q12_r_q23_minus_r_q13_r_q22,
+                                                ) - r_q32 * r_q33_speed_wz),
+                                ),
+                        ),
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
+    ///
+    /// 6×5. Operations: 213 additions, 386 multiplications (136 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
+    fn bias_acceleration_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let four = T::from_f64(4.0);
+        let five = T::from_f64(5.0);
+        let seven = T::from_f64(7.0);
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let speed_wy_radius = speed_wy * radius;
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        let speed_wz_radius = speed_wz * radius;
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let speed_wx_radius = speed_wx * radius;
+        let r_q31_squared = r_q31 * r_q31;
+        let r_q32_r_q11_r_q23_minus_r_q13_r_q21 = r_q32 * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_r_q31_squared = three
+            .mul_add(-r_q32_r_q11_r_q23_minus_r_q13_r_q21, r_q31_squared);
+        let r_q32_squared = r_q32 * r_q32;
+        let r_q32_squared_minus_r_q33_squared = r_q32_squared - r_q33_squared;
+        let radius_r_q33 = radius * r_q33;
+        let speed_wy_radius_r_q33 = speed_wy * radius_r_q33;
+        let speed_wy_radius_r_q33_r_q32 = speed_wy_radius_r_q33 * r_q32;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let two_r_q31 = two * r_q31;
+        let sum_of_two_r_q31 = two_r_q31 - r_q12_r_q23_minus_r_q13_r_q22;
+        let speed_wx_radius_r_q33 = speed_wx * radius_r_q33;
+        let sum_of_r_q31_squared_2 = r_q31_squared - r_q32_r_q11_r_q23_minus_r_q13_r_q21;
+        let three_sum_of_r_q31_squared_2 = three * sum_of_r_q31_squared_2;
+        let r_q33_r_q11_r_q22_minus_r_q12_r_q21 = r_q33 * r_q11_r_q22_minus_r_q12_r_q21;
+        let r_q32_sum_of_r_q31_squared_2 = r_q32 * sum_of_r_q31_squared_2;
+        let two_r_q32 = two * r_q32;
+        let sum_of_two_r_q32 = two_r_q32 - r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_r_q32_sum_of_r_q31_squared_2 = three * r_q32_sum_of_r_q31_squared_2
+            - r_q33_squared * sum_of_two_r_q32;
+        let radius_r_q33_r_q33 = radius_r_q33 * r_q33;
+        let speed_wz_radius_r_q33_r_q33 = speed_wz * radius_r_q33_r_q33;
+        let r_q31_r_q11_r_q23_minus_r_q13_r_q21 = r_q31 * r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q32_sum_of_two_r_q31 = r_q32 * sum_of_two_r_q31;
+        let sum_of_r_q32_sum_of_two_r_q31 = three
+            .mul_add(r_q31_r_q11_r_q23_minus_r_q13_r_q21, -r_q32_sum_of_two_r_q31);
+        let r_q31_r_q11_r_q22_minus_r_q12_r_q21 = r_q31 * r_q11_r_q22_minus_r_q12_r_q21;
+        let radius_r_q33_r_q33_r_q33 = radius_r_q33_r_q33 * r_q33;
+        let product_of_radius_r_q33_r_q33_r_q33 = radius_r_q33_r_q33_r_q33
+            * r_q32_squared;
+        let product_of_speed_wx = speed_wx * product_of_radius_r_q33_r_q33_r_q33;
+        let radius_r_q33_r_q33_r_q33_r_q31 = radius_r_q33_r_q33_r_q33 * r_q31;
+        let product_of_speed_wy = speed_wy * radius_r_q33_r_q33_r_q33_r_q31;
+        let speed_wz_r_q33 = speed_wz * r_q33;
+        let product_of_speed_wz_r_q33 = speed_wz_r_q33 * radius_r_q33_r_q33_r_q33_r_q31;
+        let quotient_of = one
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let r_q32_r_q11_r_q22_minus_r_q12_r_q21 = r_q32 * r_q11_r_q22_minus_r_q12_r_q21;
+        let r_q33_r_q11_r_q23_minus_r_q13_r_q21 = r_q33 * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_r_q33 = r_q33
+            * (r_q32_r_q11_r_q22_minus_r_q12_r_q21
+                - r_q33_r_q11_r_q23_minus_r_q13_r_q21);
+        let product_of_r_q32_squared = r_q32_squared * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_r_q33_2 = r_q33
+            * two
+                .mul_add(
+                    r_q32_r_q11_r_q22_minus_r_q12_r_q21,
+                    -r_q33_r_q11_r_q23_minus_r_q13_r_q21,
+                );
+        let r_q33_quotient_of = r_q33 * quotient_of;
+        let r_q32_r_q12_r_q23_minus_r_q13_r_q22 = r_q32 * r_q12_r_q23_minus_r_q13_r_q22;
+        let radius_r_q33_r_q33_r_q33_quotient_of = radius_r_q33_r_q33_r_q33
+            * quotient_of;
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let speed_wx_radius_r_q33_r_q31 = speed_wx_radius_r_q33 * r_q31;
+        let sum_of_r_q33 = seven.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let r_q31_r_q12_r_q23_minus_r_q13_r_q22 = r_q31 * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of = two * r_q31_r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_r_q33_3 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let r_q31_sum_of_two_r_q31 = r_q31 * sum_of_two_r_q31;
+        let product_of_r_q33_4 = r_q33
+            * five.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let product_of_r_q33_squared = r_q33_squared * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_speed_wx_2 = speed_wx * radius_r_q33_r_q33_r_q33_r_q31;
+        let r_q33_r_q12_r_q23_minus_r_q13_r_q22 = r_q33 * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_r_q33_5 = r_q33
+            * (r_q31_r_q11_r_q22_minus_r_q12_r_q21
+                + r_q33_r_q12_r_q23_minus_r_q13_r_q22);
+        let radius_r_q33_r_q33_r_q31 = radius_r_q33_r_q33 * r_q31;
+        let product_of_r_q33_quotient_of = radius_r_q33_r_q33_r_q33_r_q31
+            * r_q33_quotient_of;
+        let product_of_quotient_of = radius_r_q33_r_q33_r_q33_r_q31 * quotient_of;
+        let product_of_speed_wx_radius = speed_wx_radius * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_speed_wz_radius = speed_wz_radius * r_q11_r_q22_minus_r_q12_r_q21;
+        let sum_of_product_of_speed_wx_radius = product_of_speed_wx_radius
+            + product_of_speed_wz_radius;
+        let speed_wy_radius_speed_wy = speed_wy_radius * speed_wy;
+        let product_of_speed_wy_radius = speed_wy_radius * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_product_of_speed_wx_radius_2 = product_of_speed_wx_radius
+            - product_of_speed_wy_radius;
+        let speed_wz_radius_speed_wz = speed_wz_radius * speed_wz;
+        let product_of_2 = two * r_q32_r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_r_q31_r_q31_squared = r_q31 * (r_q31_squared - product_of_2)
+            - r_q32_squared * sum_of_two_r_q31;
+        let product_of_r_q33_squared_2 = r_q33_squared * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of = r_q31_r_q11_r_q23_minus_r_q13_r_q21
+            - r_q32_r_q12_r_q23_minus_r_q13_r_q22;
+        let r_q31_r_q32 = r_q31 * r_q32;
+        let sum_of_plus_three_r_q31_r_q32 = three.mul_add(r_q31_r_q32, sum_of);
+        let sum_of_r_q31 = r_q31
+            .mul_add(sum_of_plus_three_r_q31_r_q32, -product_of_r_q32_squared);
+        let speed_wz_radius_r_q33 = speed_wz * radius_r_q33;
+        let sum_of_two_r_q32_2 = two_r_q32 + r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q32_sum_of_two_r_q32_2 = r_q32 * sum_of_two_r_q32_2;
+        let sum_of_r_q31_sum_of_two_r_q31 = r_q31_sum_of_two_r_q31
+            - r_q32_sum_of_two_r_q32_2;
+        let product_of_speed_wz_radius_r_q33 = speed_wz_radius_r_q33
+            * sum_of_r_q31_sum_of_two_r_q31;
+        let speed_wx_radius_r_q33_r_q33 = speed_wx * radius_r_q33_r_q33;
+        let speed_wy_radius_r_q33_r_q33 = speed_wy * radius_r_q33_r_q33;
+        let product_of_speed_wz = speed_wz * radius_r_q33_r_q33_r_q33
+            * (r_q31_r_q12_r_q23_minus_r_q13_r_q22
+                + r_q32_r_q11_r_q23_minus_r_q13_r_q21);
+        let sum_of_radius_r_q33_sum_of = radius_r_q33
+            .mul_add(sum_of, radius_r_q33_r_q33_r_q33_quotient_of * sum_of);
+        let speed_wx_radius_speed_wx = speed_wx_radius * speed_wx;
+        let sum_of_product_of_speed_wy_radius = product_of_speed_wy_radius
+            - product_of_speed_wz_radius;
+        let sum_of_two_r_q31_2 = two_r_q31 + r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q32_squared = r_q31_r_q12_r_q23_minus_r_q13_r_q22 + r_q32_squared;
+        let three_sum_of_r_q32_squared = three * sum_of_r_q32_squared;
+        let r_q31_sum_of_r_q32_squared = r_q31 * sum_of_r_q32_squared;
+        let sum_of_r_q31_sum_of_r_q32_squared = three * r_q31_sum_of_r_q32_squared
+            - r_q33_squared * sum_of_two_r_q31_2;
+        let r_q31_sum_of_two_r_q32_2 = r_q31 * sum_of_two_r_q32_2;
+        let sum_of_r_q31_sum_of_two_r_q32_2 = three
+            .mul_add(r_q32_r_q12_r_q23_minus_r_q13_r_q22, r_q31_sum_of_two_r_q32_2);
+        let r_q32_sum_of_r_q32_squared = r_q32 * sum_of_r_q32_squared;
+        let radius_r_q33_r_q33_r_q32 = radius_r_q33_r_q33 * r_q32;
+        let sum_of_r_q32_squared_2 = three
+            .mul_add(r_q31_r_q12_r_q23_minus_r_q13_r_q22, r_q32_squared);
+        let r_q31_squared_minus_r_q33_squared = r_q31_squared - r_q33_squared;
+        let product_of_r_q31_squared = r_q31_squared * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_r_q33_6 = r_q33
+            * two
+                .mul_add(
+                    r_q31_r_q11_r_q22_minus_r_q12_r_q21,
+                    r_q33_r_q12_r_q23_minus_r_q13_r_q22,
+                );
+        let sum_of_r_q32 = r_q32
+            .mul_add(sum_of_plus_three_r_q31_r_q32, product_of_r_q31_squared);
+        let sum_of_r_q32_product_of = r_q32 * (product_of + r_q32_squared)
+            - r_q31_squared * sum_of_two_r_q32_2;
+        let seven_r_q33_squared = seven * r_q33_squared;
+        let radius_r_q33_r_q33_quotient_of = radius_r_q33_r_q33 * quotient_of;
+        let radius_r_q33_r_q33_quotient_of_r_q32 = radius_r_q33_r_q33_quotient_of
+            * r_q32;
+        let three_r_q33_squared = three * r_q33_squared;
+        let r_q32_sum_of = r_q32 * sum_of;
+        let sum_of_r_q32_squared_r_q33_squared = five
+            .mul_add(r_q32_squared, -r_q33_squared);
+        let product_of_r_q33_7 = r_q33
+            * three.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let sum_of_r_q31_squared_r_q33_squared = five
+            .mul_add(r_q31_squared, -r_q33_squared);
+        let r_q31_speed_wx = r_q31 * speed_wx;
+        let r_q32_speed_wy = r_q32 * speed_wy;
+        let sum_of_r_q31_speed_wx_speed_wz = r_q31_speed_wx
+            .mul_add(
+                speed_wz,
+                (three * r_q33_quotient_of)
+                    .mul_add(
+                        (r_q31_squared * speed_wy)
+                            .mul_add(
+                                speed_wy,
+                                (two * r_q31_r_q32 * speed_wx)
+                                    .mul_add(-speed_wy, r_q32_squared * speed_wx * speed_wx),
+                            ),
+                        r_q32_speed_wy * speed_wz,
+                    ),
+            );
+        let radius_r_q33_r_q33_quotient_of_r_q31 = radius_r_q33_r_q33_quotient_of
+            * r_q31;
+        let r_q31_sum_of = r_q31 * sum_of;
+        let sum_of_plus_four_r_q31_r_q32 = four.mul_add(r_q31_r_q32, sum_of);
+        from_rows([
+            [zero, zero, zero, zero, zero],
+            [zero, zero, zero, zero, zero],
+            [zero, zero, zero, zero, zero],
+            [
+                speed_wy
+                    .mul_add(
+                        speed_wx_radius
+                            .mul_add(
+                                r_q33
+                                    .mul_add(
+                                        sum_of_r_q31_squared,
+                                        r_q11_r_q22_minus_r_q12_r_q21
+                                            * r_q32_squared_minus_r_q33_squared,
+                                    ),
+                                speed_wy_radius_r_q33_r_q32
+                                    .mul_add(
+                                        four.mul_add(-r_q31, r_q12_r_q23_minus_r_q13_r_q22),
+                                        (speed_wy_radius_r_q33 * r_q31)
+                                            .mul_add(
+                                                -sum_of_r_q32_sum_of_r_q31_squared_2,
+                                                speed_wz_radius_r_q33_r_q33
+                                                    .mul_add(
+                                                        r_q32
+                                                            .mul_add(
+                                                                sum_of_r_q32_sum_of_two_r_q31,
+                                                                r_q31_r_q11_r_q22_minus_r_q12_r_q21 * r_q33,
+                                                            ),
+                                                        (product_of_speed_wx * three)
+                                                            .mul_add(
+                                                                sum_of_r_q31_squared_2,
+                                                                (product_of_speed_wy * three)
+                                                                    .mul_add(
+                                                                        -r_q32_sum_of_r_q31_squared_2,
+                                                                        product_of_speed_wz_r_q33 * three
+                                                                            * r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+                                                                    ),
+                                                            )
+                                                            .mul_add(
+                                                                quotient_of,
+                                                                speed_wx_radius_r_q33
+                                                                    * (r_q32_squared
+                                                                        * (three_sum_of_r_q31_squared_2
+                                                                            - r_q33_r_q11_r_q22_minus_r_q12_r_q21)
+                                                                        - r_q33_squared * sum_of_r_q31_squared),
+                                                            ),
+                                                    ),
+                                            )
+                                            .mul_add(
+                                                -quotient_of,
+                                                speed_wz_radius * sum_of_two_r_q31
+                                                    * r_q32_squared_minus_r_q33_squared,
+                                            ),
+                                    ),
+                            ),
+                        speed_wz
+                            * (speed_wx
+                                * radius
+                                    .mul_add(
+                                        two.mul_add(product_of_r_q33, product_of_r_q32_squared),
+                                        radius_r_q33_r_q33
+                                            .mul_add(
+                                                four.mul_add(product_of_r_q32_squared, product_of_r_q33_2),
+                                                three * product_of_radius_r_q33_r_q33_r_q33
+                                                    * r_q33_quotient_of * r_q11_r_q23_minus_r_q13_r_q21,
+                                            ) * quotient_of,
+                                    )
+                                - speed_wz
+                                    * radius_r_q33
+                                        .mul_add(
+                                            r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                            radius_r_q33_r_q33_r_q33_quotient_of
+                                                * r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                        )),
+                    ) * inverse_root_one_minus_r_q33_squared
+                    - speed_wx * root_one_minus_r_q33_squared
+                        * speed_wy_radius
+                            .mul_add(
+                                r_q11_r_q22_minus_r_q12_r_q21,
+                                speed_wz_radius * r_q11_r_q23_minus_r_q13_r_q21,
+                            ),
+                -speed_wy
+                    .mul_add(
+                        speed_wx_radius_r_q33_r_q31
+                            .mul_add(
+                                sum_of_two_r_q32,
+                                (speed_wz_radius * r_q32)
+                                    .mul_add(
+                                        r_q31_sum_of_two_r_q31 - product_of_r_q33_3,
+                                        speed_wx_radius_r_q33_r_q31
+                                            .mul_add(
+                                                sum_of_r_q32_sum_of_r_q31_squared_2,
+                                                speed_wy_radius_r_q33
+                                                    .mul_add(
+                                                        -r_q31_squared
+                                                            .mul_add(
+                                                                three_sum_of_r_q31_squared_2 - product_of_r_q33_4,
+                                                                r_q32_r_q11_r_q23_minus_r_q13_r_q21 * r_q33_squared,
+                                                            ),
+                                                        speed_wz_radius_r_q33_r_q33
+                                                            .mul_add(
+                                                                r_q31
+                                                                    .mul_add(
+                                                                        sum_of_r_q32_sum_of_two_r_q31,
+                                                                        -product_of_r_q33_squared,
+                                                                    ),
+                                                                (product_of_speed_wx_2 * three)
+                                                                    .mul_add(
+                                                                        r_q32_sum_of_r_q31_squared_2,
+                                                                        (product_of_speed_wy * three * r_q31)
+                                                                            .mul_add(
+                                                                                -sum_of_r_q31_squared_2,
+                                                                                product_of_speed_wz_r_q33 * three
+                                                                                    * r_q31_r_q11_r_q23_minus_r_q13_r_q21,
+                                                                            ),
+                                                                    ) * quotient_of,
+                                                            ),
+                                                    ),
+                                            )
+                                            .mul_add(
+                                                -quotient_of,
+                                                -speed_wy_radius
+                                                    * (r_q31_squared * sum_of_r_q33
+                                                        - r_q33
+                                                            * (product_of + r_q32_r_q11_r_q23_minus_r_q13_r_q21
+                                                                + product_of_r_q33_3)),
+                                            ),
+                                    ),
+                            ),
+                        speed_wz
+                            * (speed_wx
+                                * radius
+                                    .mul_add(
+                                        r_q31
+                                            .mul_add(
+                                                r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+                                                product_of_r_q33_5,
+                                            ),
+                                        radius_r_q33_r_q33_r_q31
+                                            .mul_add(
+                                                four
+                                                    .mul_add(
+                                                        r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+                                                        r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                                    ),
+                                                three * product_of_r_q33_quotient_of
+                                                    * r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+                                            ) * quotient_of,
+                                    )
+                                - speed_wz
+                                    * radius_r_q33
+                                        .mul_add(
+                                            r_q31_r_q12_r_q23_minus_r_q13_r_q22
+                                                - r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                            product_of_quotient_of * r_q12_r_q23_minus_r_q13_r_q22,
+                                        )),
+                    )
+                    .mul_add(
+                        inverse_root_one_minus_r_q33_squared,
+                        root_one_minus_r_q33_squared
+                            * speed_wz
+                                .mul_add(
+                                    sum_of_product_of_speed_wx_radius,
+                                    speed_wy_radius_speed_wy * r_q11_r_q22_minus_r_q12_r_q21,
+                                ),
+                    ),
+                root_one_minus_r_q33_squared
+                    * (speed_wy * sum_of_product_of_speed_wx_radius_2
+                        - speed_wz_radius_speed_wz * r_q11_r_q23_minus_r_q13_r_q21)
+                    - (speed_wy
+                        * speed_wx_radius
+                            .mul_add(
+                                sum_of_r_q31_r_q31_squared - product_of_r_q33_squared_2,
+                                speed_wy_radius
+                                    .mul_add(
+                                        r_q32.mul_add(-product_of_r_q33_3, sum_of_r_q31),
+                                        speed_wx_radius_r_q33_r_q33
+                                            .mul_add(
+                                                sum_of_r_q31_r_q31_squared,
+                                                speed_wy_radius_r_q33_r_q33
+                                                    .mul_add(sum_of_r_q31, -product_of_speed_wz),
+                                            )
+                                            .mul_add(quotient_of, -product_of_speed_wz_radius_r_q33),
+                                    ),
+                            )
+                        - speed_wz
+                            * (speed_wx * sum_of_radius_r_q33_sum_of
+                                - speed_wz_radius_r_q33_r_q33
+                                    * r_q11_r_q23_minus_r_q13_r_q21))
+                        * inverse_root_one_minus_r_q33_squared,
+                zero,
+                zero,
+            ],
+            [
+                root_one_minus_r_q33_squared
+                    * (speed_wx_radius_speed_wx * r_q11_r_q22_minus_r_q12_r_q21
+                        - speed_wz * sum_of_product_of_speed_wy_radius)
+                    - (speed_wx
+                        * speed_wy_radius_r_q33_r_q32
+                            .mul_add(
+                                -sum_of_two_r_q31_2,
+                                (speed_wz_radius * r_q31)
+                                    .mul_add(
+                                        product_of_r_q33_3 - r_q32_sum_of_two_r_q32_2,
+                                        speed_wy_radius_r_q33_r_q32
+                                            .mul_add(
+                                                -sum_of_r_q31_sum_of_r_q32_squared,
+                                                speed_wz_radius_r_q33_r_q33
+                                                    .mul_add(
+                                                        r_q32
+                                                            .mul_add(
+                                                                sum_of_r_q31_sum_of_two_r_q32_2,
+                                                                -product_of_r_q33_squared_2,
+                                                            ),
+                                                        (product_of_speed_wx * three)
+                                                            .mul_add(
+                                                                sum_of_r_q32_squared,
+                                                                (product_of_speed_wy * three)
+                                                                    .mul_add(
+                                                                        -r_q32_sum_of_r_q32_squared,
+                                                                        speed_wz_r_q33 * three * product_of_radius_r_q33_r_q33_r_q33
+                                                                            * r_q12_r_q23_minus_r_q13_r_q22,
+                                                                    ),
+                                                            )
+                                                            .mul_add(
+                                                                quotient_of,
+                                                                speed_wx_radius_r_q33
+                                                                    * (r_q32_squared
+                                                                        * (three_sum_of_r_q32_squared - product_of_r_q33_4)
+                                                                        - r_q31_r_q12_r_q23_minus_r_q13_r_q22 * r_q33_squared),
+                                                            ),
+                                                    ),
+                                            )
+                                            .mul_add(
+                                                -quotient_of,
+                                                speed_wx_radius
+                                                    * r_q33
+                                                        .mul_add(
+                                                            r_q31_r_q12_r_q23_minus_r_q13_r_q22 + product_of_2
+                                                                - product_of_r_q33_3,
+                                                            r_q32_squared * sum_of_r_q33,
+                                                        ),
+                                            ),
+                                    ),
+                            )
+                        - speed_wz
+                            * speed_wz
+                                .mul_add(
+                                    radius_r_q33
+                                        .mul_add(
+                                            r_q32_r_q11_r_q23_minus_r_q13_r_q21
+                                                + r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                            radius_r_q33_r_q33_r_q33_quotient_of
+                                                * r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+                                        ),
+                                    speed_wy
+                                        * (radius
+                                            * r_q31_r_q12_r_q23_minus_r_q13_r_q22
+                                                .mul_add(-r_q32, product_of_r_q33)
+                                            - radius_r_q33_r_q33_r_q32
+                                                .mul_add(
+                                                    four
+                                                        .mul_add(
+                                                            r_q31_r_q12_r_q23_minus_r_q13_r_q22,
+                                                            -r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                                                        ),
+                                                    three * product_of_r_q33_quotient_of
+                                                        * r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                                ) * quotient_of),
+                                )) * inverse_root_one_minus_r_q33_squared,
+                (speed_wx
+                    * speed_wy_radius
+                        .mul_add(
+                            -r_q33
+                                .mul_add(
+                                    sum_of_r_q32_squared_2,
+                                    r_q11_r_q22_minus_r_q12_r_q21
+                                        * r_q31_squared_minus_r_q33_squared,
+                                ),
+                            (speed_wz_radius * sum_of_two_r_q32_2)
+                                .mul_add(
+                                    -r_q31_squared_minus_r_q33_squared,
+                                    (speed_wx_radius_r_q33 * r_q32)
+                                        .mul_add(
+                                            sum_of_r_q31_sum_of_r_q32_squared,
+                                            (product_of_speed_wx_2 * three)
+                                                .mul_add(
+                                                    r_q32_sum_of_r_q32_squared,
+                                                    (product_of_speed_wy * three)
+                                                        .mul_add(
+                                                            -r_q31_sum_of_r_q32_squared,
+                                                            product_of_speed_wz_r_q33 * three
+                                                                * r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                                        ),
+                                                )
+                                                .mul_add(
+                                                    quotient_of,
+                                                    -speed_wy_radius_r_q33
+                                                        * (r_q31_squared
+                                                            * (three_sum_of_r_q32_squared
+                                                                - r_q33_r_q11_r_q22_minus_r_q12_r_q21)
+                                                            - r_q33_squared * sum_of_r_q32_squared_2)
+                                                        + speed_wz_radius_r_q33_r_q33
+                                                            * (r_q31 * sum_of_r_q31_sum_of_two_r_q32_2
+                                                                - r_q32_r_q11_r_q22_minus_r_q12_r_q21 * r_q33),
+                                                ),
+                                        )
+                                        .mul_add(
+                                            -quotient_of,
+                                            speed_wx_radius_r_q33_r_q31
+                                                * four.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21),
+                                        ),
+                                ),
+                        )
+                    - speed_wz
+                        * speed_wy
+                            .mul_add(
+                                radius
+                                    .mul_add(
+                                        two.mul_add(product_of_r_q33_5, -product_of_r_q31_squared),
+                                        (radius_r_q33_r_q33
+                                            * four
+                                                .mul_add(-product_of_r_q31_squared, product_of_r_q33_6)
+                                            - three * product_of_r_q33_quotient_of
+                                                * r_q31_r_q12_r_q23_minus_r_q13_r_q22) * quotient_of,
+                                    ),
+                                speed_wz
+                                    * radius_r_q33
+                                        .mul_add(
+                                            r_q31_r_q11_r_q23_minus_r_q13_r_q21,
+                                            product_of_quotient_of * r_q11_r_q23_minus_r_q13_r_q21,
+                                        ),
+                            )) * inverse_root_one_minus_r_q33_squared
+                    + speed_wy * root_one_minus_r_q33_squared
+                        * (speed_wx_radius * r_q11_r_q22_minus_r_q12_r_q21
+                            - speed_wz_radius * r_q12_r_q23_minus_r_q13_r_q22),
+                (speed_wx
+                    * speed_wx_radius
+                        .mul_add(
+                            r_q31.mul_add(-product_of_r_q33_3, sum_of_r_q32),
+                            speed_wy_radius
+                                .mul_add(
+                                    sum_of_r_q32_product_of + product_of_r_q33_squared,
+                                    speed_wx_radius_r_q33_r_q33
+                                        .mul_add(
+                                            sum_of_r_q32,
+                                            speed_wy_radius_r_q33_r_q33
+                                                .mul_add(sum_of_r_q32_product_of, product_of_speed_wz),
+                                        )
+                                        .mul_add(quotient_of, product_of_speed_wz_radius_r_q33),
+                                ),
+                        )
+                    - speed_wz
+                        * speed_wy
+                            .mul_add(
+                                sum_of_radius_r_q33_sum_of,
+                                speed_wz_radius_r_q33_r_q33 * r_q12_r_q23_minus_r_q13_r_q22,
+                            )) * inverse_root_one_minus_r_q33_squared
+                    - root_one_minus_r_q33_squared
+                        * speed_wx
+                            .mul_add(
+                                sum_of_product_of_speed_wx_radius_2,
+                                speed_wz_radius_speed_wz * r_q12_r_q23_minus_r_q13_r_q22,
+                            ),
+                zero,
+                zero,
+            ],
+            [
+                root_one_minus_r_q33_squared
+                    .mul_add(
+                        speed_wx_radius_speed_wx
+                            .mul_add(
+                                r_q11_r_q23_minus_r_q13_r_q21,
+                                speed_wy * sum_of_product_of_speed_wy_radius,
+                            ),
+                        speed_wx
+                            .mul_add(
+                                speed_wx
+                                    .mul_add(
+                                        radius
+                                            .mul_add(
+                                                r_q32
+                                                    .mul_add(
+                                                        r_q32_sum_of_two_r_q32_2 - seven_r_q33_squared,
+                                                        product_of_r_q33_2,
+                                                    ),
+                                                radius_r_q33_r_q33_quotient_of_r_q32
+                                                    * r_q32
+                                                        .mul_add(
+                                                            five.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21),
+                                                            -three_r_q33_squared,
+                                                        ),
+                                            ),
+                                        speed_wy
+                                            .mul_add(
+                                                -radius
+                                                    .mul_add(
+                                                        (four * r_q31)
+                                                            .mul_add(
+                                                                r_q32_squared_minus_r_q33_squared,
+                                                                r_q32_sum_of + product_of_r_q33_5,
+                                                            ),
+                                                        radius_r_q33_r_q33_quotient_of
+                                                            * (two * r_q31)
+                                                                .mul_add(sum_of_r_q32_squared_r_q33_squared, r_q32_sum_of),
+                                                    ),
+                                                speed_wz_radius_r_q33 * r_q32_sum_of_two_r_q31,
+                                            ),
+                                    ),
+                                speed_wy
+                                    .mul_add(
+                                        speed_wy
+                                            .mul_add(
+                                                (radius * r_q32)
+                                                    .mul_add(
+                                                        r_q31_sum_of_two_r_q31 - product_of_r_q33_7,
+                                                        radius_r_q33_r_q33_quotient_of_r_q32
+                                                            * (sum_of_r_q31_squared_r_q33_squared
+                                                                - r_q31_r_q12_r_q23_minus_r_q13_r_q22),
+                                                    ),
+                                                speed_wz_radius_r_q33
+                                                    * (r_q32_sum_of_two_r_q32_2 - r_q33_squared),
+                                            ),
+                                        radius_r_q33_r_q33_r_q33_quotient_of * r_q32
+                                            * sum_of_r_q31_speed_wx_speed_wz,
+                                    ),
+                            ) * inverse_root_one_minus_r_q33_squared,
+                    ),
+                root_one_minus_r_q33_squared
+                    * speed_wx
+                        .mul_add(
+                            sum_of_product_of_speed_wx_radius,
+                            speed_wy_radius_speed_wy * r_q12_r_q23_minus_r_q13_r_q22,
+                        )
+                    - speed_wx
+                        .mul_add(
+                            speed_wx
+                                .mul_add(
+                                    (radius * r_q31)
+                                        .mul_add(
+                                            r_q32_sum_of_two_r_q32_2 - product_of_r_q33_7,
+                                            radius_r_q33_r_q33_quotient_of_r_q31
+                                                * (sum_of_r_q32_squared_r_q33_squared
+                                                    + r_q32_r_q11_r_q23_minus_r_q13_r_q21),
+                                        ),
+                                    speed_wy
+                                        .mul_add(
+                                            -radius
+                                                .mul_add(
+                                                    (four * r_q32)
+                                                        .mul_add(
+                                                            r_q31_squared_minus_r_q33_squared,
+                                                            r_q31_sum_of + product_of_r_q33,
+                                                        ),
+                                                    radius_r_q33_r_q33_quotient_of
+                                                        * (two * r_q32)
+                                                            .mul_add(sum_of_r_q31_squared_r_q33_squared, r_q31_sum_of),
+                                                ),
+                                            speed_wz_radius_r_q33
+                                                * (r_q31_sum_of_two_r_q31 - r_q33_squared),
+                                        ),
+                                ),
+                            speed_wy
+                                .mul_add(
+                                    speed_wy
+                                        .mul_add(
+                                            radius
+                                                .mul_add(
+                                                    r_q31
+                                                        .mul_add(
+                                                            r_q31_sum_of_two_r_q31 - seven_r_q33_squared,
+                                                            product_of_r_q33_6,
+                                                        ),
+                                                    radius_r_q33_r_q33_quotient_of_r_q31
+                                                        * r_q31
+                                                            .mul_add(
+                                                                five.mul_add(r_q31, -r_q12_r_q23_minus_r_q13_r_q22),
+                                                                -three_r_q33_squared,
+                                                            ),
+                                                ),
+                                            speed_wz_radius_r_q33 * r_q31_sum_of_two_r_q32_2,
+                                        ),
+                                    product_of_quotient_of * sum_of_r_q31_speed_wx_speed_wz,
+                                ),
+                        ) * inverse_root_one_minus_r_q33_squared,
+                (speed_wz * root_one_minus_r_q33_squared)
+                    .mul_add(
+                        speed_wx_radius
+                            .mul_add(
+                                r_q11_r_q23_minus_r_q13_r_q21,
+                                speed_wy_radius * r_q12_r_q23_minus_r_q13_r_q22,
+                            ),
+                        (speed_wx
+                            * speed_wy
+                                .mul_add(
+                                    -(two * radius_r_q33)
+                                        .mul_add(
+                                            sum_of_r_q31_sum_of_two_r_q31,
+                                            radius_r_q33_r_q33_r_q33_quotient_of * two
+                                                * (r_q31_squared - r_q32_squared),
+                                        ),
+                                    radius_r_q33_r_q33_r_q32
+                                        .mul_add(
+                                            (two * r_q31_speed_wx)
+                                                .mul_add(r_q33_quotient_of, -speed_wz),
+                                            speed_wx_radius_r_q33 * sum_of_plus_four_r_q31_r_q32,
+                                        ),
+                                )
+                            - speed_wy
+                                * (speed_wy_radius_r_q33 * sum_of_plus_four_r_q31_r_q32
+                                    - radius_r_q33_r_q33_r_q31
+                                        * (two * r_q32_speed_wy)
+                                            .mul_add(-r_q33_quotient_of, speed_wz)))
+                            * inverse_root_one_minus_r_q33_squared,
+                    ),
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
+    ///
+    /// 6×3. Operations: 56 additions, 125 multiplications (40 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
+    fn bias_acceleration_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+    ) -> SMatrix<T, 6, 3> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let product_of_r_q33_squared = r_q33_squared
+            * inverse_root_one_minus_r_q33_squared;
+        let sum_of_root_one_minus_r_q33_squared = root_one_minus_r_q33_squared
+            + product_of_r_q33_squared;
+        let product_of = r_q11_r_q22_minus_r_q12_r_q21
+            * sum_of_root_one_minus_r_q33_squared;
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let r_q32_r_q11_r_q23_minus_r_q13_r_q21 = r_q32 * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_r_q33 = r_q33 * inverse_root_one_minus_r_q33_squared;
+        let quotient_of = one
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let r_q33_squared_quotient_of = r_q33_squared * quotient_of;
+        let one_plus_r_q33_squared_quotient_of = one + r_q33_squared_quotient_of;
+        let product_of_product_of_r_q33 = product_of_r_q33
+            * one_plus_r_q33_squared_quotient_of;
+        let sum_of_product_of = r_q32_r_q11_r_q23_minus_r_q13_r_q21
+            .mul_add(product_of_product_of_r_q33, product_of);
+        let sum_of_r_q31 = r_q31.mul_add(r_q31, -r_q32_r_q11_r_q23_minus_r_q13_r_q21);
+        let r_q32_sum_of_r_q31 = r_q32 * sum_of_r_q31;
+        let product_of_2 = one_plus_r_q33_squared_quotient_of
+            * inverse_root_one_minus_r_q33_squared;
+        let speed_wx_radius = speed_wx * radius;
+        let product_of_speed_wx_radius = speed_wx_radius * r_q11_r_q23_minus_r_q13_r_q21;
+        let speed_wy_radius = speed_wy * radius;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let product_of_speed_wy_radius = speed_wy_radius * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_r_q33_2 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let speed_wz_r_q33 = speed_wz * r_q33;
+        let speed_wz_r_q33_radius = speed_wz_r_q33 * radius;
+        let product_of_r_q32_r_q31 = r_q32
+            * two.mul_add(r_q31, -r_q12_r_q23_minus_r_q13_r_q22);
+        let radius_r_q33_squared = radius * r_q33_squared;
+        let speed_wx_radius_r_q33_squared = speed_wx * radius_r_q33_squared;
+        let speed_wy_radius_r_q33_squared = speed_wy * radius_r_q33_squared;
+        let speed_wz_r_q33_radius_r_q33_squared = speed_wz_r_q33 * radius_r_q33_squared;
+        let r_q31_r_q11_r_q23_minus_r_q13_r_q21 = r_q31 * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_speed_wz = speed_wz * sum_of_root_one_minus_r_q33_squared;
+        let r_q31_r_q12_r_q23_minus_r_q13_r_q22 = r_q31 * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q32 = r_q32.mul_add(r_q32, r_q31_r_q12_r_q23_minus_r_q13_r_q22);
+        let r_q31_sum_of_r_q32 = r_q31 * sum_of_r_q32;
+        let product_of_r_q31_r_q32 = r_q31
+            * two.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21);
+        let r_q32_r_q12_r_q23_minus_r_q13_r_q22 = r_q32 * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_product_of_2 = r_q31_r_q12_r_q23_minus_r_q13_r_q22
+            .mul_add(-product_of_product_of_r_q33, product_of);
+        let sum_of_root_one_minus_r_q33_squared_2 = root_one_minus_r_q33_squared
+            .mul_add(r_q11_r_q22_minus_r_q12_r_q21, r_q33_squared * product_of_r_q33);
+        let sum_of_root_one_minus_r_q33_squared_3 = root_one_minus_r_q33_squared
+            .mul_add(r_q12_r_q23_minus_r_q13_r_q22, r_q31 * product_of_r_q33_squared);
+        let sum_of = r_q31_r_q11_r_q23_minus_r_q13_r_q21
+            - r_q32_r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_r_q31_speed_wy_r_q32 = (r_q31 * speed_wy - r_q32 * speed_wx)
+            * (two + r_q33_squared_quotient_of);
+        let sum_of_root_one_minus_r_q33_squared_4 = root_one_minus_r_q33_squared
+            * r_q11_r_q23_minus_r_q13_r_q21 - r_q32 * product_of_r_q33_squared;
+        from_rows([
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [zero, zero, zero],
+            [
+                radius
+                    * (speed_wy
+                        * r_q11_r_q23_minus_r_q13_r_q21
+                            .mul_add(
+                                sum_of_root_one_minus_r_q33_squared,
+                                r_q32_sum_of_r_q31 * product_of_2,
+                            ) - speed_wz * sum_of_product_of),
+                root_one_minus_r_q33_squared
+                    .mul_add(
+                        product_of_speed_wy_radius
+                            .mul_add(two, product_of_speed_wx_radius),
+                        speed_wx_radius
+                            .mul_add(
+                                r_q33_squared
+                                    .mul_add(r_q11_r_q23_minus_r_q13_r_q21, r_q32_sum_of_r_q31),
+                                (speed_wy_radius * r_q31 * two)
+                                    .mul_add(
+                                        product_of_r_q33_2 - sum_of_r_q31,
+                                        speed_wz_r_q33_radius
+                                            .mul_add(
+                                                -product_of_r_q32_r_q31,
+                                                speed_wx_radius_r_q33_squared
+                                                    .mul_add(
+                                                        r_q32_sum_of_r_q31,
+                                                        (speed_wy_radius_r_q33_squared * two * r_q31)
+                                                            .mul_add(
+                                                                -sum_of_r_q31,
+                                                                speed_wz_r_q33_radius_r_q33_squared
+                                                                    * r_q31_r_q11_r_q23_minus_r_q13_r_q21,
+                                                            ),
+                                                    ) * quotient_of,
+                                            ),
+                                    ),
+                            ) * inverse_root_one_minus_r_q33_squared,
+                    ),
+                radius
+                    * (product_of_r_q33 * speed_wy)
+                        .mul_add(
+                            r_q31_r_q11_r_q23_minus_r_q13_r_q21
+                                .mul_add(
+                                    r_q33_squared_quotient_of,
+                                    -product_of_r_q32_r_q31,
+                                ),
+                            speed_wx
+                                .mul_add(
+                                    -sum_of_product_of,
+                                    two * product_of_speed_wz * r_q12_r_q23_minus_r_q13_r_q22,
+                                ),
+                        ),
+            ],
+            [
+                -root_one_minus_r_q33_squared
+                    .mul_add(
+                        product_of_speed_wx_radius
+                            .mul_add(two, product_of_speed_wy_radius),
+                        (speed_wx_radius * r_q32 * two)
+                            .mul_add(
+                                sum_of_r_q32 - product_of_r_q33_2,
+                                speed_wy_radius
+                                    .mul_add(
+                                        r_q33_squared
+                                            .mul_add(
+                                                r_q12_r_q23_minus_r_q13_r_q22,
+                                                -r_q31_sum_of_r_q32,
+                                            ),
+                                        speed_wz_r_q33_radius
+                                            .mul_add(
+                                                product_of_r_q31_r_q32,
+                                                (speed_wx_radius_r_q33_squared * two * r_q32)
+                                                    .mul_add(
+                                                        sum_of_r_q32,
+                                                        speed_wy_radius_r_q33_squared
+                                                            .mul_add(
+                                                                -r_q31_sum_of_r_q32,
+                                                                speed_wz_r_q33_radius_r_q33_squared
+                                                                    * r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                                            ),
+                                                    ) * quotient_of,
+                                            ),
+                                    ),
+                            ) * inverse_root_one_minus_r_q33_squared,
+                    ),
+                -radius
+                    * speed_wz
+                        .mul_add(
+                            sum_of_product_of_2,
+                            speed_wx
+                                * (r_q12_r_q23_minus_r_q13_r_q22
+                                    * sum_of_root_one_minus_r_q33_squared
+                                    - r_q31_sum_of_r_q32 * product_of_2),
+                        ),
+                -radius
+                    * speed_wy
+                        .mul_add(
+                            sum_of_product_of_2,
+                            (two * product_of_speed_wz)
+                                .mul_add(
+                                    r_q11_r_q23_minus_r_q13_r_q21,
+                                    product_of_r_q33 * speed_wx
+                                        * r_q32_r_q12_r_q23_minus_r_q13_r_q22
+                                            .mul_add(r_q33_squared_quotient_of, product_of_r_q31_r_q32),
+                                ),
+                        ),
+            ],
+            [
+                radius
+                    * (two * speed_wx)
+                        .mul_add(
+                            sum_of_root_one_minus_r_q33_squared_2,
+                            speed_wz
+                                .mul_add(
+                                    -sum_of_root_one_minus_r_q33_squared_3,
+                                    product_of_r_q33
+                                        * (speed_wy * sum_of
+                                            - r_q32 * two
+                                                * speed_wx
+                                                    .mul_add(
+                                                        r_q11_r_q23_minus_r_q13_r_q21,
+                                                        -product_of_r_q31_speed_wy_r_q32,
+                                                    )),
+                                ),
+                        ),
+                radius
+                    * (two * speed_wy)
+                        .mul_add(
+                            sum_of_root_one_minus_r_q33_squared_2,
+                            speed_wz
+                                .mul_add(
+                                    sum_of_root_one_minus_r_q33_squared_4,
+                                    product_of_r_q33
+                                        * speed_wx
+                                            .mul_add(
+                                                sum_of,
+                                                r_q31 * two
+                                                    * speed_wy
+                                                        .mul_add(
+                                                            r_q12_r_q23_minus_r_q13_r_q22,
+                                                            -product_of_r_q31_speed_wy_r_q32,
+                                                        ),
+                                            ),
+                                ),
+                        ),
+                radius
+                    * (speed_wy * sum_of_root_one_minus_r_q33_squared_4
+                        - speed_wx * sum_of_root_one_minus_r_q33_squared_3),
+            ],
+        ])
+    }
+
+    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
+    ///
+    /// 3×5. Operations: 219 additions, 387 multiplications (135 of each fused), 2 divisions, 1 function call.
+    ///
+    /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
+    fn bias_momentum_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        speeds: &SVector<T, 3>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 5> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let [speed_wx, speed_wy, speed_wz]: [T; 3] = (*speeds).into();
+        let (h4, h5, h6) = (h[3], h[4], h[5]);
+        let zero = T::zero();
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let three = T::from_f64(3.0);
+        let four = T::from_f64(4.0);
+        let five = T::from_f64(5.0);
+        let seven = T::from_f64(7.0);
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        let radius_r_q11_r_q22_minus_r_q12_r_q21 = radius
+            * r_q11_r_q22_minus_r_q12_r_q21;
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let radius_r_q11_r_q23_minus_r_q13_r_q21 = radius
+            * r_q11_r_q23_minus_r_q13_r_q21;
+        let speed_wx_radius = speed_wx * radius;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let r_q31_r_q12_r_q23_minus_r_q13_r_q22 = r_q31 * r_q12_r_q23_minus_r_q13_r_q22;
+        let r_q32_r_q11_r_q23_minus_r_q13_r_q21 = r_q32 * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of = two * r_q32_r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_r_q33 = two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let r_q33_sum_of_r_q33 = r_q33 * sum_of_r_q33;
+        let r_q32_squared = r_q32 * r_q32;
+        let seven_r_q33 = seven * r_q33;
+        let sum_of_seven_r_q33 = seven_r_q33 - r_q11_r_q22_minus_r_q12_r_q21;
+        let radius_r_q33 = radius * r_q33;
+        let speed_wy_radius_r_q33 = speed_wy * radius_r_q33;
+        let speed_wy_radius_r_q33_r_q32 = speed_wy_radius_r_q33 * r_q32;
+        let two_r_q31 = two * r_q31;
+        let sum_of_two_r_q31 = two_r_q31 + r_q12_r_q23_minus_r_q13_r_q22;
+        let speed_wz_radius = speed_wz * radius;
+        let two_r_q32 = two * r_q32;
+        let sum_of_two_r_q32 = two_r_q32 + r_q11_r_q23_minus_r_q13_r_q21;
+        let r_q31_sum_of_two_r_q32 = r_q31 * sum_of_two_r_q32;
+        let r_q32_r_q12_r_q23_minus_r_q13_r_q22 = r_q32 * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q31_sum_of_two_r_q32 = r_q31_sum_of_two_r_q32
+            - r_q32_r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_two_r_q31_2 = two_r_q31 - r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_speed_wz_radius_r_q32 = speed_wz_radius
+            * r_q32
+                .mul_add(
+                    sum_of_r_q31_sum_of_two_r_q32,
+                    r_q33
+                        * (r_q31 * r_q11_r_q22_minus_r_q12_r_q21
+                            - r_q33 * sum_of_two_r_q31_2),
+                );
+        let sum_of_r_q32_squared = r_q31_r_q12_r_q23_minus_r_q13_r_q22 + r_q32_squared;
+        let three_sum_of_r_q32_squared = three * sum_of_r_q32_squared;
+        let product_of_r_q33 = r_q33
+            * five.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let radius_r_q33_r_q33 = radius_r_q33 * r_q33;
+        let radius_r_q33_r_q33_r_q33 = radius_r_q33_r_q33 * r_q33;
+        let quotient_of = one
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let radius_r_q33_r_q33_r_q33_quotient_of = radius_r_q33_r_q33_r_q33
+            * quotient_of;
+        let product_of_sum_of_r_q32_squared = radius_r_q33_r_q33_r_q33_quotient_of
+            * sum_of_r_q32_squared;
+        let r_q31_r_q32 = r_q31 * r_q32;
+        let sum_of_radius_r_q33_r_q32_r_q31 = (three * product_of_sum_of_r_q32_squared)
+            .mul_add(
+                r_q31_r_q32,
+                radius_r_q33 * r_q32
+                    * (three * r_q31 * sum_of_r_q32_squared
+                        - r_q33_squared * sum_of_two_r_q31),
+            );
+        let product_of_speed_wz = speed_wz * sum_of_r_q31_sum_of_two_r_q32;
+        let radius_r_q33_r_q33_r_q32 = radius_r_q33_r_q33 * r_q32;
+        let product_of_product_of_speed_wz = product_of_speed_wz
+            * radius_r_q33_r_q33_r_q32;
+        let r_q32_sum_of_two_r_q32 = r_q32 * sum_of_two_r_q32;
+        let product_of_r_q33_seven_r_q33 = r_q33
+            * two.mul_add(-r_q11_r_q22_minus_r_q12_r_q21, seven_r_q33);
+        let product_of_r_q33_squared = r_q33_squared * r_q11_r_q23_minus_r_q13_r_q21;
+        let speed_wy_radius = speed_wy * radius;
+        let speed_wz_radius_r_q33 = speed_wz * radius_r_q33;
+        let speed_wx_radius_r_q33_r_q33_r_q32 = speed_wx * radius_r_q33_r_q33_r_q32;
+        let sum_of_r_q32 = five.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21);
+        let r_q32_sum_of_r_q32 = r_q32 * sum_of_r_q32;
+        let three_r_q33_squared = three * r_q33_squared;
+        let radius_r_q33_r_q33_r_q31 = radius_r_q33_r_q33 * r_q31;
+        let speed_wy_radius_r_q33_r_q33_r_q31 = speed_wy * radius_r_q33_r_q33_r_q31;
+        let sum_of_r_q32_sum_of_r_q32 = r_q32_sum_of_r_q32 - r_q33_squared;
+        let radius_r_q33_r_q33_r_q33_r_q32 = radius_r_q33_r_q33_r_q33 * r_q32;
+        let r_q32_r_q33 = r_q32 * r_q33;
+        let product_of_r_q31_speed_wy_r_q32 = (r_q31 * speed_wy - r_q32 * speed_wx)
+            * quotient_of;
+        let sum_of_r_q31_speed_wz_r_q32_r_q33 = r_q31 * speed_wz
+            - three * r_q32_r_q33 * product_of_r_q31_speed_wy_r_q32;
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let speed_wx_radius_r_q33 = speed_wx * radius_r_q33;
+        let speed_wx_radius_r_q33_r_q31 = speed_wx_radius_r_q33 * r_q31;
+        let sum_of_r_q32_squared_2 = three
+            .mul_add(r_q31_r_q12_r_q23_minus_r_q13_r_q22, r_q32_squared);
+        let r_q31_squared = r_q31 * r_q31;
+        let r_q31_squared_minus_r_q33_squared = r_q31_squared - r_q33_squared;
+        let product_of_speed_wz_radius_r_q31 = speed_wz_radius
+            * r_q31
+                .mul_add(
+                    sum_of_r_q31_sum_of_two_r_q32,
+                    r_q33
+                        * (r_q32 * r_q11_r_q22_minus_r_q12_r_q21
+                            - r_q33 * sum_of_two_r_q32),
+                );
+        let r_q33_r_q11_r_q22_minus_r_q12_r_q21 = r_q33 * r_q11_r_q22_minus_r_q12_r_q21;
+        let product_of_product_of_speed_wz_2 = product_of_speed_wz
+            * radius_r_q33_r_q33_r_q31;
+        let product_of_r_q33_2 = r_q33
+            * three.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let r_q31_sum_of_two_r_q31_2 = r_q31 * sum_of_two_r_q31_2;
+        let radius_r_q33_r_q33_r_q33_r_q31 = radius_r_q33_r_q33_r_q33 * r_q31;
+        let product_of_speed_wx_radius = speed_wx_radius * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of_speed_wz_radius = speed_wz_radius * r_q11_r_q22_minus_r_q12_r_q21;
+        let sum_of_product_of_speed_wx_radius = product_of_speed_wx_radius
+            + product_of_speed_wz_radius;
+        let speed_wy_radius_h5 = speed_wy_radius * h5;
+        let product_of_speed_wy_radius = speed_wy_radius * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_product_of_speed_wx_radius_2 = product_of_speed_wx_radius
+            - product_of_speed_wy_radius;
+        let speed_wz_radius_h6 = speed_wz_radius * h6;
+        let r_q31_r_q11_r_q23_minus_r_q13_r_q21 = r_q31 * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of = r_q31_r_q11_r_q23_minus_r_q13_r_q21
+            - r_q32_r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_plus_three_r_q31_r_q32 = three.mul_add(r_q31_r_q32, sum_of);
+        let product_of_r_q31_squared = r_q31_squared * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q32_2 = r_q32
+            .mul_add(sum_of_plus_three_r_q31_r_q32, product_of_r_q31_squared);
+        let r_q31_r_q33 = r_q31 * r_q33;
+        let radius_r_q33_r_q33_quotient_of = radius_r_q33_r_q33 * quotient_of;
+        let product_of_2 = two * r_q31_r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q32_product_of_2 = r_q32 * (product_of_2 + r_q32_squared)
+            - r_q31_squared * sum_of_two_r_q32;
+        let sum_of_r_q31_squared = r_q31_squared - r_q32_r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_speed_wz_radius_r_q33 = speed_wz_radius_r_q33 * two
+            * (sum_of_r_q31_squared - sum_of_r_q32_squared);
+        let sum_of_plus_four_r_q31_r_q32 = four.mul_add(r_q31_r_q32, sum_of);
+        let sum_of_radius_r_q33_r_q31_squared = radius_r_q33
+            .mul_add(
+                r_q31_sum_of_two_r_q31_2 - r_q32_sum_of_two_r_q32,
+                radius_r_q33_r_q33_r_q33_quotient_of * (r_q31_squared - r_q32_squared),
+            );
+        let speed_wx_radius_h4 = speed_wx_radius * h4;
+        let sum_of_product_of_speed_wy_radius = product_of_speed_wy_radius
+            - product_of_speed_wz_radius;
+        let sum_of_r_q31_squared_2 = three
+            .mul_add(-r_q32_r_q11_r_q23_minus_r_q13_r_q21, r_q31_squared);
+        let r_q32_squared_minus_r_q33_squared = r_q32_squared - r_q33_squared;
+        let three_sum_of_r_q31_squared = three * sum_of_r_q31_squared;
+        let product_of_sum_of_r_q31_squared = radius_r_q33_r_q33_r_q33_quotient_of
+            * sum_of_r_q31_squared;
+        let sum_of_two_r_q32_2 = two_r_q32 - r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_radius_r_q33_r_q31_r_q32 = (three * product_of_sum_of_r_q31_squared)
+            .mul_add(
+                r_q31_r_q32,
+                radius_r_q33 * r_q31
+                    * (three * r_q32 * sum_of_r_q31_squared
+                        - r_q33_squared * sum_of_two_r_q32_2),
+            );
+        let sum_of_r_q31 = five.mul_add(r_q31, -r_q12_r_q23_minus_r_q13_r_q22);
+        let r_q31_sum_of_r_q31 = r_q31 * sum_of_r_q31;
+        let sum_of_r_q31_sum_of_r_q31 = r_q31_sum_of_r_q31 - r_q33_squared;
+        let sum_of_r_q32_speed_wz_r_q31_r_q33 = r_q32
+            .mul_add(speed_wz, three * r_q31_r_q33 * product_of_r_q31_speed_wy_r_q32);
+        let product_of_r_q33_squared_2 = r_q33_squared * r_q12_r_q23_minus_r_q13_r_q22;
+        let radius_r_q12_r_q23_minus_r_q13_r_q22 = radius
+            * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_r_q31_r_q31_squared = r_q31 * (r_q31_squared - product_of)
+            - r_q32_squared * sum_of_two_r_q31_2;
+        let product_of_r_q32_squared = r_q32_squared * r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_r_q31_2 = r_q31
+            .mul_add(sum_of_plus_three_r_q31_r_q32, -product_of_r_q32_squared);
+        let product_of_3 = two * r_q33_r_q11_r_q22_minus_r_q12_r_q21;
+        let sum_of_2 = r_q32_r_q11_r_q23_minus_r_q13_r_q21
+            + r_q33_r_q11_r_q22_minus_r_q12_r_q21;
+        let r_q31_sum_of_2 = r_q31 * sum_of_2;
+        let sum_of_3 = r_q31_r_q12_r_q23_minus_r_q13_r_q22
+            - r_q33_r_q11_r_q22_minus_r_q12_r_q21;
+        let r_q32_sum_of_3 = r_q32 * sum_of_3;
+        let sum_of_r_q32_squared_r_q33_squared = four
+            .mul_add(r_q32_squared, -r_q33_squared);
+        let product_of_r_q33_3 = radius_r_q33_r_q33_r_q33_quotient_of * r_q33;
+        let sum_of_radius_r_q33_r_q33_r_q31 = radius_r_q33_r_q33_r_q31
+            .mul_add(
+                four
+                    .mul_add(
+                        r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+                        r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                    ),
+                three * product_of_r_q33_3 * r_q31 * r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+            );
+        let speed_wz_radius_r_q33_r_q33_r_q33 = speed_wz * radius_r_q33_r_q33_r_q33;
+        let sum_of_radius_r_q33_r_q33_r_q32 = radius_r_q33_r_q33_r_q32
+            .mul_add(
+                four
+                    .mul_add(
+                        r_q31_r_q12_r_q23_minus_r_q13_r_q22,
+                        -r_q33_r_q11_r_q22_minus_r_q12_r_q21,
+                    ),
+                three * product_of_r_q33_3 * r_q31_r_q12_r_q23_minus_r_q13_r_q22 * r_q32,
+            );
+        let sum_of_r_q31_squared_r_q33_squared = four
+            .mul_add(r_q31_squared, -r_q33_squared);
+        let sum_of_radius_r_q33_sum_of = radius_r_q33
+            .mul_add(sum_of, radius_r_q33_r_q33_r_q33_quotient_of * sum_of);
+        let sum_of_4 = r_q31_r_q12_r_q23_minus_r_q13_r_q22
+            + r_q32_r_q11_r_q23_minus_r_q13_r_q21;
+        let sum_of_radius_r_q33_sum_of_4 = radius_r_q33
+            .mul_add(sum_of_4, radius_r_q33_r_q33_r_q33_quotient_of * sum_of_4);
+        let speed_wz_radius_r_q33_r_q33 = speed_wz * radius_r_q33_r_q33;
+        from_rows([
+            [
+                speed_wx * root_one_minus_r_q33_squared
+                    * h5
+                        .mul_add(
+                            radius_r_q11_r_q22_minus_r_q12_r_q21,
+                            h6 * radius_r_q11_r_q23_minus_r_q13_r_q21,
+                        )
+                    - (h5
+                        * speed_wx_radius
+                            .mul_add(
+                                r_q33
+                                    .mul_add(
+                                        r_q31_r_q12_r_q23_minus_r_q13_r_q22 + product_of
+                                            - r_q33_sum_of_r_q33,
+                                        r_q32_squared * sum_of_seven_r_q33,
+                                    ),
+                                speed_wy_radius_r_q33_r_q32
+                                    .mul_add(
+                                        -sum_of_two_r_q31,
+                                        speed_wx
+                                            .mul_add(
+                                                (three * product_of_sum_of_r_q32_squared)
+                                                    .mul_add(
+                                                        r_q32_squared,
+                                                        radius_r_q33
+                                                            * (r_q32_squared
+                                                                * (three_sum_of_r_q32_squared - product_of_r_q33)
+                                                                - r_q31_r_q12_r_q23_minus_r_q13_r_q22 * r_q33_squared),
+                                                    ),
+                                                speed_wy
+                                                    .mul_add(
+                                                        -sum_of_radius_r_q33_r_q32_r_q31,
+                                                        product_of_product_of_speed_wz,
+                                                    ),
+                                            )
+                                            .mul_add(-quotient_of, -product_of_speed_wz_radius_r_q32),
+                                    ),
+                            )
+                        - h6
+                            * speed_wx_radius
+                                .mul_add(
+                                    r_q32
+                                        .mul_add(
+                                            r_q32_sum_of_two_r_q32 - product_of_r_q33_seven_r_q33,
+                                            -product_of_r_q33_squared,
+                                        ),
+                                    (speed_wy_radius * r_q31)
+                                        .mul_add(
+                                            r_q33_sum_of_r_q33 - r_q32_sum_of_two_r_q32,
+                                            (speed_wz_radius_r_q33 * r_q32)
+                                                .mul_add(
+                                                    sum_of_two_r_q31_2,
+                                                    speed_wx_radius_r_q33_r_q33_r_q32
+                                                        .mul_add(
+                                                            r_q32_sum_of_r_q32 - three_r_q33_squared,
+                                                            speed_wy_radius_r_q33_r_q33_r_q31
+                                                                .mul_add(
+                                                                    -sum_of_r_q32_sum_of_r_q32,
+                                                                    radius_r_q33_r_q33_r_q33_r_q32
+                                                                        * sum_of_r_q31_speed_wz_r_q32_r_q33,
+                                                                ),
+                                                        ) * quotient_of,
+                                                ),
+                                        ),
+                                )) * inverse_root_one_minus_r_q33_squared,
+                root_one_minus_r_q33_squared
+                    .mul_add(
+                        h6
+                            .mul_add(
+                                sum_of_product_of_speed_wx_radius,
+                                speed_wy_radius_h5 * r_q11_r_q22_minus_r_q12_r_q21,
+                            ),
+                        (h5
+                            * speed_wx_radius_r_q33_r_q31
+                                .mul_add(
+                                    four.mul_add(r_q32, r_q11_r_q23_minus_r_q13_r_q21),
+                                    speed_wy_radius
+                                        .mul_add(
+                                            -r_q33
+                                                .mul_add(
+                                                    sum_of_r_q32_squared_2,
+                                                    r_q11_r_q22_minus_r_q12_r_q21
+                                                        * r_q31_squared_minus_r_q33_squared,
+                                                ),
+                                            speed_wx
+                                                .mul_add(
+                                                    sum_of_radius_r_q33_r_q32_r_q31,
+                                                    speed_wy
+                                                        .mul_add(
+                                                            -(three * product_of_sum_of_r_q32_squared)
+                                                                .mul_add(
+                                                                    r_q31_squared,
+                                                                    radius_r_q33
+                                                                        * (r_q31_squared
+                                                                            * (three_sum_of_r_q32_squared
+                                                                                - r_q33_r_q11_r_q22_minus_r_q12_r_q21)
+                                                                            - r_q33_squared * sum_of_r_q32_squared_2),
+                                                                ),
+                                                            product_of_product_of_speed_wz_2,
+                                                        ),
+                                                )
+                                                .mul_add(-quotient_of, -product_of_speed_wz_radius_r_q31),
+                                        ),
+                                )
+                            - h6
+                                * (speed_wx_radius * r_q31)
+                                    .mul_add(
+                                        r_q32_sum_of_two_r_q32 - product_of_r_q33_2,
+                                        (speed_wy_radius * sum_of_two_r_q32)
+                                            .mul_add(
+                                                -r_q31_squared_minus_r_q33_squared,
+                                                speed_wz_radius_r_q33
+                                                    .mul_add(
+                                                        r_q31_sum_of_two_r_q31_2 - r_q33_squared,
+                                                        (speed_wx * radius_r_q33_r_q33_r_q31)
+                                                            .mul_add(
+                                                                sum_of_r_q32_sum_of_r_q32,
+                                                                radius_r_q33_r_q33_r_q33_r_q31
+                                                                    .mul_add(
+                                                                        sum_of_r_q31_speed_wz_r_q32_r_q33,
+                                                                        -speed_wy * radius_r_q33_r_q33
+                                                                            * (r_q31_squared * sum_of_r_q32 - r_q32 * r_q33_squared),
+                                                                    ),
+                                                            ) * quotient_of,
+                                                    ),
+                                            ),
+                                    )) * inverse_root_one_minus_r_q33_squared,
+                    ),
+                h5
+                    .mul_add(
+                        speed_wx
+                            .mul_add(
+                                radius
+                                    .mul_add(
+                                        r_q31_r_q33.mul_add(-sum_of_r_q33, sum_of_r_q32_2),
+                                        radius_r_q33_r_q33_quotient_of * sum_of_r_q32_2,
+                                    ),
+                                speed_wy
+                                    .mul_add(
+                                        radius
+                                            .mul_add(
+                                                sum_of_r_q32_product_of_2 + product_of_r_q33_squared,
+                                                radius_r_q33_r_q33_quotient_of * sum_of_r_q32_product_of_2,
+                                            ),
+                                        product_of_speed_wz_radius_r_q33,
+                                    ),
+                            ),
+                        h6
+                            * speed_wy
+                                .mul_add(
+                                    -sum_of_radius_r_q33_r_q31_squared,
+                                    radius_r_q33_r_q33_r_q32
+                                        .mul_add(
+                                            (two * r_q31_r_q33 * speed_wx)
+                                                .mul_add(quotient_of, -speed_wz),
+                                            speed_wx_radius_r_q33 * sum_of_plus_four_r_q31_r_q32,
+                                        ),
+                                ),
+                    ) * inverse_root_one_minus_r_q33_squared
+                    - root_one_minus_r_q33_squared
+                        * (h5 * sum_of_product_of_speed_wx_radius_2
+                            - speed_wz_radius_h6 * r_q11_r_q23_minus_r_q13_r_q21),
+                zero,
+                zero,
+            ],
+            [
+                (h4
+                    * speed_wx_radius
+                        .mul_add(
+                            r_q33
+                                .mul_add(
+                                    sum_of_r_q31_squared_2,
+                                    r_q11_r_q22_minus_r_q12_r_q21
+                                        * r_q32_squared_minus_r_q33_squared,
+                                ),
+                            speed_wy_radius_r_q33_r_q32
+                                .mul_add(
+                                    four.mul_add(-r_q31, r_q12_r_q23_minus_r_q13_r_q22),
+                                    speed_wx
+                                        .mul_add(
+                                            (three * product_of_sum_of_r_q31_squared)
+                                                .mul_add(
+                                                    r_q32_squared,
+                                                    radius_r_q33
+                                                        * (r_q32_squared
+                                                            * (three_sum_of_r_q31_squared
+                                                                - r_q33_r_q11_r_q22_minus_r_q12_r_q21)
+                                                            - r_q33_squared * sum_of_r_q31_squared_2),
+                                                ),
+                                            speed_wy
+                                                .mul_add(
+                                                    -sum_of_radius_r_q33_r_q31_r_q32,
+                                                    -product_of_product_of_speed_wz,
+                                                ),
+                                        )
+                                        .mul_add(-quotient_of, product_of_speed_wz_radius_r_q32),
+                                ),
+                        )
+                    - h6
+                        * (speed_wy_radius * r_q32)
+                            .mul_add(
+                                product_of_r_q33_2 - r_q31_sum_of_two_r_q31_2,
+                                speed_wz_radius_r_q33
+                                    .mul_add(
+                                        r_q33_squared - r_q32_sum_of_two_r_q32,
+                                        (speed_wy * radius_r_q33_r_q33_r_q32)
+                                            .mul_add(
+                                                sum_of_r_q31_sum_of_r_q31,
+                                                radius_r_q33_r_q33_r_q33_r_q32
+                                                    .mul_add(
+                                                        sum_of_r_q32_speed_wz_r_q31_r_q33,
+                                                        speed_wx * radius_r_q33_r_q33
+                                                            * (r_q31 * r_q33_squared - r_q32_squared * sum_of_r_q31),
+                                                    ),
+                                            )
+                                            .mul_add(
+                                                -quotient_of,
+                                                speed_wx_radius * sum_of_two_r_q31_2
+                                                    * r_q32_squared_minus_r_q33_squared,
+                                            ),
+                                    ),
+                            )) * inverse_root_one_minus_r_q33_squared
+                    - root_one_minus_r_q33_squared
+                        * (speed_wx_radius_h4 * r_q11_r_q22_minus_r_q12_r_q21
+                            - h6 * sum_of_product_of_speed_wy_radius),
+                -((h4
+                    * speed_wx_radius_r_q33_r_q31
+                        .mul_add(
+                            sum_of_two_r_q32_2,
+                            speed_wx
+                                .mul_add(
+                                    sum_of_radius_r_q33_r_q31_r_q32,
+                                    speed_wy
+                                        .mul_add(
+                                            -radius_r_q33
+                                                .mul_add(
+                                                    r_q31_squared
+                                                        .mul_add(
+                                                            three_sum_of_r_q31_squared - product_of_r_q33,
+                                                            r_q32_r_q11_r_q23_minus_r_q13_r_q21 * r_q33_squared,
+                                                        ),
+                                                    three * product_of_sum_of_r_q31_squared * r_q31_squared,
+                                                ),
+                                            -product_of_product_of_speed_wz_2,
+                                        ),
+                                )
+                                .mul_add(
+                                    -quotient_of,
+                                    -speed_wy_radius
+                                        * (r_q31_squared * sum_of_seven_r_q33
+                                            - r_q33
+                                                * (product_of_2 + r_q32_r_q11_r_q23_minus_r_q13_r_q21
+                                                    + r_q33_sum_of_r_q33)) + product_of_speed_wz_radius_r_q31,
+                                ),
+                        )
+                    - h6
+                        * (speed_wx_radius * r_q32)
+                            .mul_add(
+                                r_q31_sum_of_two_r_q31_2 - r_q33_sum_of_r_q33,
+                                speed_wy_radius
+                                    .mul_add(
+                                        -r_q31
+                                            .mul_add(
+                                                r_q31_sum_of_two_r_q31_2 - product_of_r_q33_seven_r_q33,
+                                                product_of_r_q33_squared_2,
+                                            ),
+                                        speed_wz_radius_r_q33
+                                            .mul_add(
+                                                -r_q31_sum_of_two_r_q32,
+                                                speed_wy_radius_r_q33_r_q33_r_q31
+                                                    .mul_add(
+                                                        three_r_q33_squared - r_q31_sum_of_r_q31,
+                                                        radius_r_q33_r_q33_r_q33_r_q31
+                                                            .mul_add(
+                                                                -sum_of_r_q32_speed_wz_r_q31_r_q33,
+                                                                speed_wx_radius_r_q33_r_q33_r_q32
+                                                                    * sum_of_r_q31_sum_of_r_q31,
+                                                            ),
+                                                    ) * quotient_of,
+                                            ),
+                                    ),
+                            )) * inverse_root_one_minus_r_q33_squared
+                    + speed_wy * root_one_minus_r_q33_squared
+                        * (h4 * radius_r_q11_r_q22_minus_r_q12_r_q21
+                            - h6 * radius_r_q12_r_q23_minus_r_q13_r_q22)),
+                root_one_minus_r_q33_squared
+                    * h4
+                        .mul_add(
+                            sum_of_product_of_speed_wx_radius_2,
+                            speed_wz_radius_h6 * r_q12_r_q23_minus_r_q13_r_q22,
+                        )
+                    - h4
+                        .mul_add(
+                            speed_wx
+                                .mul_add(
+                                    radius
+                                        .mul_add(
+                                            sum_of_r_q31_r_q31_squared - product_of_r_q33_squared_2,
+                                            radius_r_q33_r_q33_quotient_of * sum_of_r_q31_r_q31_squared,
+                                        ),
+                                    speed_wy
+                                        .mul_add(
+                                            radius
+                                                .mul_add(
+                                                    r_q32_r_q33.mul_add(-sum_of_r_q33, sum_of_r_q31_2),
+                                                    radius_r_q33_r_q33_quotient_of * sum_of_r_q31_2,
+                                                ),
+                                            -product_of_speed_wz_radius_r_q33,
+                                        ),
+                                ),
+                            h6
+                                * speed_wx
+                                    .mul_add(
+                                        sum_of_radius_r_q33_r_q31_squared,
+                                        radius_r_q33_r_q33_r_q31
+                                            .mul_add(
+                                                (two * r_q32_r_q33 * speed_wy)
+                                                    .mul_add(quotient_of, -speed_wz),
+                                                speed_wy_radius_r_q33 * sum_of_plus_four_r_q31_r_q32,
+                                            ),
+                                    ),
+                        ) * inverse_root_one_minus_r_q33_squared,
+                zero,
+                zero,
+            ],
+            [
+                h4
+                    .mul_add(
+                        speed_wy_radius
+                            .mul_add(
+                                -r_q31_sum_of_2,
+                                speed_wz_radius_r_q33
+                                    .mul_add(
+                                        -r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                        speed_wx_radius
+                                            * (r_q32
+                                                * (r_q32_r_q11_r_q23_minus_r_q13_r_q21 + product_of_3)
+                                                - two * product_of_r_q33_squared),
+                                    ),
+                            ),
+                        h5
+                            .mul_add(
+                                product_of_speed_wx_radius
+                                    .mul_add(
+                                        r_q32_squared_minus_r_q33_squared,
+                                        speed_wy_radius
+                                            .mul_add(
+                                                -(r_q32_sum_of_3 + product_of_r_q33_squared),
+                                                speed_wz_radius_r_q33 * sum_of_2,
+                                            ),
+                                    ),
+                                h4
+                                    .mul_add(
+                                        speed_wy
+                                            .mul_add(
+                                                -sum_of_radius_r_q33_r_q33_r_q31,
+                                                speed_wz_radius_r_q33_r_q33_r_q33
+                                                    .mul_add(
+                                                        -r_q32_r_q12_r_q23_minus_r_q13_r_q22,
+                                                        speed_wx
+                                                            * radius_r_q33_r_q33
+                                                                .mul_add(
+                                                                    r_q11_r_q23_minus_r_q13_r_q21
+                                                                        .mul_add(
+                                                                            sum_of_r_q32_squared_r_q33_squared,
+                                                                            two * r_q32_r_q33 * r_q11_r_q22_minus_r_q12_r_q21,
+                                                                        ),
+                                                                    three * product_of_r_q33_3 * product_of_r_q32_squared,
+                                                                ),
+                                                    ),
+                                            ),
+                                        h5
+                                            * speed_wx
+                                                .mul_add(
+                                                    (radius_r_q33_r_q33 * r_q12_r_q23_minus_r_q13_r_q22)
+                                                        .mul_add(
+                                                            sum_of_r_q32_squared_r_q33_squared,
+                                                            three * product_of_r_q33_3 * r_q32_squared
+                                                                * r_q12_r_q23_minus_r_q13_r_q22,
+                                                        ),
+                                                    speed_wy
+                                                        .mul_add(
+                                                            -sum_of_radius_r_q33_r_q33_r_q32,
+                                                            speed_wz_radius_r_q33_r_q33_r_q33
+                                                                * r_q32_r_q11_r_q23_minus_r_q13_r_q21,
+                                                        ),
+                                                ),
+                                    ) * quotient_of,
+                            ),
+                    ) * inverse_root_one_minus_r_q33_squared
+                    - root_one_minus_r_q33_squared
+                        * speed_wx_radius_h4
+                            .mul_add(
+                                r_q11_r_q23_minus_r_q13_r_q21,
+                                h5 * sum_of_product_of_speed_wy_radius,
+                            ),
+                -root_one_minus_r_q33_squared
+                    .mul_add(
+                        h4
+                            .mul_add(
+                                sum_of_product_of_speed_wx_radius,
+                                speed_wy_radius_h5 * r_q12_r_q23_minus_r_q13_r_q22,
+                            ),
+                        h4
+                            .mul_add(
+                                product_of_speed_wy_radius
+                                    .mul_add(
+                                        -r_q31_squared_minus_r_q33_squared,
+                                        speed_wz_radius_r_q33
+                                            .mul_add(
+                                                -sum_of_3,
+                                                speed_wx_radius
+                                                    * (r_q31_sum_of_2 + product_of_r_q33_squared_2),
+                                            ),
+                                    ),
+                                h5
+                                    .mul_add(
+                                        speed_wx_radius
+                                            .mul_add(
+                                                r_q32_sum_of_3,
+                                                speed_wz_radius_r_q33
+                                                    .mul_add(
+                                                        r_q31_r_q11_r_q23_minus_r_q13_r_q21,
+                                                        -speed_wy_radius
+                                                            * (r_q31
+                                                                * (r_q31_r_q12_r_q23_minus_r_q13_r_q22 - product_of_3)
+                                                                - two * product_of_r_q33_squared_2),
+                                                    ),
+                                            ),
+                                        h4
+                                            .mul_add(
+                                                speed_wy
+                                                    .mul_add(
+                                                        -(radius_r_q33_r_q33 * r_q11_r_q23_minus_r_q13_r_q21)
+                                                            .mul_add(
+                                                                sum_of_r_q31_squared_r_q33_squared,
+                                                                three * product_of_r_q33_3 * r_q31_squared
+                                                                    * r_q11_r_q23_minus_r_q13_r_q21,
+                                                            ),
+                                                        speed_wz_radius_r_q33_r_q33_r_q33
+                                                            .mul_add(
+                                                                -r_q31_r_q12_r_q23_minus_r_q13_r_q22,
+                                                                speed_wx * sum_of_radius_r_q33_r_q33_r_q31,
+                                                            ),
+                                                    ),
+                                                h5
+                                                    * speed_wx
+                                                        .mul_add(
+                                                            sum_of_radius_r_q33_r_q33_r_q32,
+                                                            speed_wy
+                                                                .mul_add(
+                                                                    -(three * product_of_r_q33_3)
+                                                                        .mul_add(
+                                                                            product_of_r_q31_squared,
+                                                                            radius_r_q33_r_q33
+                                                                                * (r_q12_r_q23_minus_r_q13_r_q22
+                                                                                    * sum_of_r_q31_squared_r_q33_squared
+                                                                                    - two * r_q31_r_q33 * r_q11_r_q22_minus_r_q12_r_q21),
+                                                                        ),
+                                                                    speed_wz_radius_r_q33_r_q33_r_q33
+                                                                        * r_q31_r_q11_r_q23_minus_r_q13_r_q21,
+                                                                ),
+                                                        ),
+                                            ) * quotient_of,
+                                    ),
+                            ) * inverse_root_one_minus_r_q33_squared,
+                    ),
+                h4
+                    .mul_add(
+                        speed_wx
+                            .mul_add(
+                                sum_of_radius_r_q33_sum_of,
+                                speed_wz_radius_r_q33_r_q33
+                                    .mul_add(
+                                        -r_q11_r_q23_minus_r_q13_r_q21,
+                                        speed_wy * sum_of_radius_r_q33_sum_of_4,
+                                    ),
+                            ),
+                        h5
+                            * speed_wy
+                                .mul_add(
+                                    -sum_of_radius_r_q33_sum_of,
+                                    speed_wz_radius_r_q33_r_q33
+                                        .mul_add(
+                                            -r_q12_r_q23_minus_r_q13_r_q22,
+                                            speed_wx * sum_of_radius_r_q33_sum_of_4,
+                                        ),
+                                ),
+                    ) * inverse_root_one_minus_r_q33_squared
+                    - speed_wz * root_one_minus_r_q33_squared
+                        * h4
+                            .mul_add(
+                                radius_r_q11_r_q23_minus_r_q13_r_q21,
+                                h5 * radius_r_q12_r_q23_minus_r_q13_r_q22,
+                            ),
+                zero,
+                zero,
+            ],
+        ])
+    }
+
+    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
+    ///
+    /// 3×3. Operations: 36 additions, 74 multiplications (20 of each fused), 3 divisions, 2 function calls.
+    ///
+    /// From line 12 `basis`, line 13 `velocity`, line 15 `let`, line 17 `let`, line 18 `let`, line 19 `H`, line 20 `S_bar`.
+    fn bias_momentum_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, 11>,
+        _speeds: &SVector<T, 3>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, 3, 3> {
+        let radius = T::from_f64(self.radius);
+        let [r_q11, r_q12, r_q13, r_q21, r_q22, r_q23, r_q31, r_q32, r_q33, _, _,
+        ]: [T; 11] = (*q).into();
+        let (h4, h5, h6) = (h[3], h[4], h[5]);
+        let one = T::one();
+        let two = T::from_f64(2.0);
+        let r_q33_squared = r_q33 * r_q33;
+        // line 19 `H`: root_one_minus_r_q33_squared
+        let root_one_minus_r_q33_squared = (one - r_q33_squared).sqrt();
+        let r_q11_r_q22_minus_r_q12_r_q21 = r_q11 * r_q22 - r_q12 * r_q21;
+        // line 20 `S_bar`: inverse_root_one_minus_r_q33_squared
+        let inverse_root_one_minus_r_q33_squared = one / root_one_minus_r_q33_squared;
+        let product_of_r_q33 = r_q33 * inverse_root_one_minus_r_q33_squared;
+        let product_of_h6_product_of_r_q33 = h6
+            * root_one_minus_r_q33_squared
+                .mul_add(
+                    r_q11_r_q22_minus_r_q12_r_q21,
+                    product_of_r_q33 * r_q33_squared,
+                );
+        let product_of_r_q32 = r_q32 * inverse_root_one_minus_r_q33_squared;
+        let r_q33_h6 = r_q33 * h6;
+        let r_q11_r_q23_minus_r_q13_r_q21 = r_q11 * r_q23 - r_q13 * r_q21;
+        let quotient_of_r_q33_squared = r_q33_squared
+            / (root_one_minus_r_q33_squared * root_one_minus_r_q33_squared);
+        let two_plus_quotient_of_r_q33_squared = two + quotient_of_r_q33_squared;
+        let one_plus_quotient_of_r_q33_squared = one + quotient_of_r_q33_squared;
+        let r_q12_r_q23_minus_r_q13_r_q22 = r_q12 * r_q23 - r_q13 * r_q22;
+        let sum_of_r_q33_h6_r_q32_h5_r_q31 = r_q33_h6
+            .mul_add(
+                r_q32
+                    .mul_add(
+                        two_plus_quotient_of_r_q33_squared,
+                        r_q11_r_q23_minus_r_q13_r_q21,
+                    ),
+                h5 * one_plus_quotient_of_r_q33_squared
+                    * r_q31.mul_add(r_q12_r_q23_minus_r_q13_r_q22, r_q32 * r_q32),
+            );
+        let product_of_r_q33_2 = r_q33
+            * two.mul_add(r_q33, -r_q11_r_q22_minus_r_q12_r_q21);
+        let h5_r_q11_r_q23_minus_r_q13_r_q21 = h5 * r_q11_r_q23_minus_r_q13_r_q21;
+        let product_of_r_q31 = r_q31 * inverse_root_one_minus_r_q33_squared;
+        let h5_r_q12_r_q23_minus_r_q13_r_q22 = h5 * r_q12_r_q23_minus_r_q13_r_q22;
+        let sum_of_root_one_minus_r_q33_squared = product_of_r_q33
+            .mul_add(r_q33, root_one_minus_r_q33_squared);
+        let radius_h6 = radius * h6;
+        let r_q11_squared_plus_r_q21_squared = r_q11.mul_add(r_q11, r_q21 * r_q21);
+        let r_q12_squared_plus_r_q22_squared = r_q12.mul_add(r_q12, r_q22 * r_q22);
+        let value_of = (two - r_q11_squared_plus_r_q21_squared
+            - r_q12_squared_plus_r_q22_squared)
+            .sqrt();
+        let inverse_value_of = one / value_of;
+        let sum_of_value_of_inverse_value_of = r_q11_squared_plus_r_q21_squared
+            .mul_add(inverse_value_of, value_of);
+        let sum_of_r_q33_h6_r_q31_h4_r_q32 = r_q33_h6
+            * r_q31
+                .mul_add(
+                    -two_plus_quotient_of_r_q33_squared,
+                    r_q12_r_q23_minus_r_q13_r_q22,
+                )
+            - h4 * one_plus_quotient_of_r_q33_squared
+                * (r_q31 * r_q31 - r_q32 * r_q11_r_q23_minus_r_q13_r_q21);
+        let h4_r_q11_r_q23_minus_r_q13_r_q21 = h4 * r_q11_r_q23_minus_r_q13_r_q21;
+        let h4_r_q12_r_q23_minus_r_q13_r_q22 = h4 * r_q12_r_q23_minus_r_q13_r_q22;
+        let product_of = r_q11_r_q22_minus_r_q12_r_q21
+            * sum_of_root_one_minus_r_q33_squared;
+        let product_of_product_of_r_q33 = product_of_r_q33
+            * one_plus_quotient_of_r_q33_squared
+            * (h4_r_q11_r_q23_minus_r_q13_r_q21 + h5_r_q12_r_q23_minus_r_q13_r_q22);
+        from_rows([
+            [
+                radius
+                    * product_of_r_q32
+                        .mul_add(
+                            product_of_r_q33_2
+                                .mul_add(h5, -sum_of_r_q33_h6_r_q32_h5_r_q31),
+                            h5_r_q11_r_q23_minus_r_q13_r_q21
+                                .mul_add(
+                                    -root_one_minus_r_q33_squared,
+                                    product_of_h6_product_of_r_q33,
+                                ),
+                        ),
+                radius
+                    * (product_of_r_q31 * sum_of_r_q33_h6_r_q32_h5_r_q31
+                        - h5_r_q12_r_q23_minus_r_q13_r_q22
+                            * sum_of_root_one_minus_r_q33_squared),
+                -radius_h6
+                    * r_q31
+                        .mul_add(
+                            sum_of_value_of_inverse_value_of,
+                            r_q32 * r_q11.mul_add(r_q12, r_q21 * r_q22)
+                                * inverse_value_of,
+                        ),
+            ],
+            [
+                radius
+                    * (h4_r_q11_r_q23_minus_r_q13_r_q21
+                        * sum_of_root_one_minus_r_q33_squared
+                        - product_of_r_q32 * sum_of_r_q33_h6_r_q31_h4_r_q32),
+                radius
+                    * product_of_r_q31
+                        .mul_add(
+                            product_of_r_q33_2
+                                .mul_add(h4, sum_of_r_q33_h6_r_q31_h4_r_q32),
+                            h4_r_q12_r_q23_minus_r_q13_r_q22
+                                .mul_add(
+                                    root_one_minus_r_q33_squared,
+                                    product_of_h6_product_of_r_q33,
+                                ),
+                        ),
+                radius_h6 * r_q32
+                    * (one - r_q12_squared_plus_r_q22_squared)
+                        .mul_add(inverse_value_of, -sum_of_value_of_inverse_value_of),
+            ],
+            [
+                -radius * h4.mul_add(product_of, r_q32 * product_of_product_of_r_q33),
+                radius * (r_q31 * product_of_product_of_r_q33 - h5 * product_of),
+                radius * sum_of_root_one_minus_r_q33_squared
+                    * (h4_r_q12_r_q23_minus_r_q13_r_q22
+                        - h5_r_q11_r_q23_minus_r_q13_r_q21),
+            ],
         ])
     }
 }

@@ -49,6 +49,12 @@ pub enum DynamicsError {
         /// How much of it is taken for rounding.
         limit: f64,
     },
+    /// Derivatives of this mechanism are not covered.
+    #[error("derivatives of the dynamics do not cover {what}")]
+    NotDifferentiable {
+        /// What stands in the way.
+        what: &'static str,
+    },
     /// A vector has the wrong size or holds a number that is not finite.
     #[error(transparent)]
     State(#[from] StateError),

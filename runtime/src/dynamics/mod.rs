@@ -12,7 +12,10 @@ pub mod recursive;
 pub mod reference;
 
 pub use error::DynamicsError;
-pub use recursive::{Frame, MassMatrix, Readings, Recursive};
+pub use recursive::{
+    ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, MassMatrix, Readings,
+    Recursive, Sensitivity,
+};
 pub use reference::Reference;
 
 use crate::mechanism::Mechanism;

@@ -9,9 +9,11 @@
 
 mod articulate;
 mod place;
+mod vary;
 
 pub use articulate::{Pivot, PivotFailure};
 pub use place::Placement;
+pub use vary::Variation;
 
 use crate::erased::Erased;
 use crate::joint::Joint;
@@ -126,6 +128,16 @@ pub trait Steps {
 
     /// `S̄ᵀ τ` into `out`, for efforts τ with one entry a freedom.
     fn reduce_efforts(&self, q: &[f64], efforts: &[f64], out: &mut [f64]);
+
+    /// What one unit of each ϕ and speed changes at the `state` (q, v̄, v̄̇), one entry a freedom; `motions` are those of the child frames of
+    /// this joint and of its parent, `columns` those of X̄. An empty v̄̇ is zero.
+    fn vary(
+        &self,
+        state: (&[f64], &[f64], &[f64]),
+        motions: (&Motion<f64>, &Motion<f64>),
+        columns: &[Vector6<f64>],
+        out: &mut [Variation<f64>],
+    );
 }
 
 /// A slice as an array of the size that the joint's type has.
@@ -277,5 +289,23 @@ where
         let basis = self.joint().speed_basis(&SVector::from(*sized::<_, N>(q)));
         let reduced = basis.tr_mul(&SVector::from(*sized::<_, K>(efforts)));
         out.copy_from_slice(reduced.as_slice());
+    }
+
+    fn vary(
+        &self,
+        (q, speeds, accelerations): (&[f64], &[f64], &[f64]),
+        motions: (&Motion<f64>, &Motion<f64>),
+        columns: &[Vector6<f64>],
+        out: &mut [Variation<f64>],
+    ) {
+        let q = SVector::from(*sized::<_, N>(q));
+        let speeds = SVector::from(*sized::<_, S>(speeds));
+        let accelerations = match accelerations.is_empty() {
+            true => SVector::zeros(),
+            false => SVector::from(*sized::<_, S>(accelerations)),
+        };
+        let state = (&q, &speeds, &accelerations);
+        let (columns, out) = (sized::<_, S>(columns), sized_mut::<_, K>(out));
+        vary::variations::<J, N, K, S, C>(self.joint(), state, motions, columns, out);
     }
 }

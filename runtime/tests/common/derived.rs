@@ -132,6 +132,26 @@ impl<D> Derived<D> {
         slope(&function(&moved))
     }
 
+    /// Derivatives of a column along every ϕ_k.
+    fn gradient<
+        T: Scalar,
+        const N: usize,
+        const K: usize,
+        const S: usize,
+        const C: usize,
+        const R: usize,
+    >(
+        &self,
+        q: &SVector<T, N>,
+        function: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, R>,
+    ) -> SMatrix<T, R, K>
+    where
+        D: Declared<N, K, S, C>,
+    {
+        let columns: [_; K] = array::from_fn(|k| self.slope_along(q, &unit(k), &function));
+        SMatrix::from_columns(&columns)
+    }
+
     fn twist_basis_slope<
         T: Scalar,
         const N: usize,
@@ -180,6 +200,9 @@ where
         retract_differential: Structure::General,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
+        twist_gradient: Structure::General,
+        bias_acceleration_gradient: Structure::General,
+        bias_momentum_gradient: Structure::General,
     };
     const PATTERNS: Patterns<K, S> = Patterns::DENSE;
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
@@ -315,5 +338,77 @@ where
         h: &Vector6<T>,
     ) -> SVector<T, S> {
         self.twist_basis_slope(q, speeds).transpose() * h
+    }
+
+    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+        self.twist_map_child(q) * self.velocity_map(q)
+    }
+
+    fn twist_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, K> {
+        self.gradient(q, |q| {
+            self.twist_map_child(q) * self.0.speed_basis(q) * constant(speeds)
+        })
+    }
+
+    fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &Vector6<T>) -> SMatrix<T, S, K> {
+        self.gradient(q, |q| {
+            let map = self.twist_map_child(q) * self.0.speed_basis(q);
+            map.transpose() * constant(h)
+        })
+    }
+
+    fn twist_map_rate<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, S> {
+        self.twist_basis_slope(q, speeds)
+    }
+
+    fn bias_acceleration_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, K> {
+        self.gradient(q, |q| self.bias_acceleration(q, &constant(speeds)))
+    }
+
+    fn bias_acceleration_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, S> {
+        let columns: [_; S] = array::from_fn(|a| {
+            slope(&self.bias_acceleration(&constant(q), &along(speeds, &unit(a))))
+        });
+        SMatrix::from_columns(&columns)
+    }
+
+    fn bias_momentum_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+        h: &Vector6<T>,
+    ) -> SMatrix<T, S, K> {
+        self.gradient(q, |q| {
+            self.bias_momentum(q, &constant(speeds), &constant(h))
+        })
+    }
+
+    fn bias_momentum_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+        h: &Vector6<T>,
+    ) -> SMatrix<T, S, S> {
+        let columns: [_; S] = array::from_fn(|a| {
+            let speeds = along(speeds, &unit(a));
+            slope(&self.bias_momentum(&constant(q), &speeds, &constant(h)))
+        });
+        SMatrix::from_columns(&columns)
     }
 }

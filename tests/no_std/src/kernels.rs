@@ -50,6 +50,14 @@ where
         + joint.singularity(&q)
         + sum(&joint.bias_acceleration(&q, &speeds))
         + sum(&joint.bias_momentum(&q, &speeds, &wrench))
+        + sum(&joint.local_twist_map(&q))
+        + sum(&joint.twist_gradient(&q, &speeds))
+        + sum(&joint.effort_gradient(&q, &wrench))
+        + sum(&joint.twist_map_rate(&q, &speeds))
+        + sum(&joint.bias_acceleration_gradient(&q, &speeds))
+        + sum(&joint.bias_acceleration_slope(&q, &speeds))
+        + sum(&joint.bias_momentum_gradient(&q, &speeds, &wrench))
+        + sum(&joint.bias_momentum_slope(&q, &speeds, &wrench))
 }
 
 fn sum<T: Scalar, const R: usize, const M: usize>(m: &SMatrix<T, R, M>) -> T {

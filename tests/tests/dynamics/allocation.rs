@@ -1,7 +1,10 @@
 //! After construction nothing allocates: every method of the recursive form and of its mass matrix, and steps of the integrators.
 
 use allocation_counter::measure;
-use hamel::dynamics::{Dynamics, Frame, MassMatrix, Recursive};
+use hamel::dynamics::{
+    Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, MassMatrix,
+    Recursive,
+};
 use hamel::integrate::{
     Control, Form, Method, Options, Pair, State, Statistics, integrate, no_inputs, no_observer,
 };
@@ -94,6 +97,42 @@ fn inverse_dynamics_and_wrenches_do_not_allocate() {
         });
     }
     counts.assert_none(6);
+}
+
+#[test]
+fn derivatives_do_not_allocate() {
+    let mut counts = Counts::default();
+    for case in trees() {
+        let (q, v, tau) = (&case.q[..], &case.speeds[..], &case.efforts[..]);
+        let freedoms = case.mechanism.layout().freedoms;
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let mut inverse = InverseDerivatives::new(&case.mechanism);
+        let mut forward = ForwardDerivatives::new(&case.mechanism);
+        let mut hamiltonian = HamiltonianDerivatives::new(&case.mechanism);
+        let mut gradients = [vec![0.0; freedoms], vec![0.0; freedoms]];
+        counts.of("inverse_dynamics_derivatives", || {
+            let found = dynamics.inverse_dynamics_derivatives(q, v, &case.rates, &mut inverse);
+            found.expect("nothing else acts");
+        });
+        counts.of("forward_dynamics_derivatives", || {
+            let found = dynamics.forward_dynamics_derivatives(q, v, tau, &mut forward);
+            found.expect("every body has mass");
+        });
+        counts.of("hamiltonian_derivatives", || {
+            let found = dynamics.hamiltonian_derivatives(q, v, tau, &mut hamiltonian);
+            found.expect("every body has mass");
+        });
+        counts.of("energy_gradients", || {
+            let [potential, kinetic] = &mut gradients;
+            let found = dynamics.energy_gradients(q, v, potential, kinetic);
+            found.expect("sizes fit");
+        });
+        counts.of("entries", || {
+            std::hint::black_box(inverse.by_local().entry(0, 0));
+            std::hint::black_box(forward.by_efforts().entries());
+        });
+    }
+    counts.assert_none(5);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod allocation;
 mod chains;
+mod derivatives;
 mod errata;
 mod euler_lagrange;
 mod random_trees;

@@ -204,6 +204,12 @@ fn structures(derived: &Derived) -> TokenStream {
         ),
         ("bias_acceleration", KernelKind::BiasAcceleration),
         ("bias_momentum", KernelKind::BiasMomentum),
+        ("twist_gradient", KernelKind::TwistGradient),
+        (
+            "bias_acceleration_gradient",
+            KernelKind::BiasAccelerationGradient,
+        ),
+        ("bias_momentum_gradient", KernelKind::BiasMomentumGradient),
     ];
     let fields = fields.iter().map(|(field, kind)| {
         let field = ident(field);

@@ -12,11 +12,10 @@ use nalgebra::Vector6;
 impl Recursive {
     /// The momentum of each body alone into its node, from twists and inertias.
     pub(super) fn set_momenta(&mut self) {
-        let gravity = *self.mechanism.gravity();
         for (link, node) in self.links.iter().zip(&mut self.nodes) {
             node.wrench = node.rigid.apply(&node.motion.twist);
             if let Some(number) = link.slender {
-                self.slender[number].set_momentum(link, &gravity, node);
+                self.slender[number].set_momentum(link, node);
             }
         }
     }
@@ -33,9 +32,10 @@ impl Recursive {
         self.set_momenta();
         let bodies = self.links.iter().zip(&mut self.nodes).zip(&self.external);
         for ((link, node), external) in bodies {
-            node.motion.rate = *external;
-            if link.slender.is_none() {
-                node.motion.rate += node.rigid.weight(&gravity);
+            let weight = node.rigid.weight(&gravity);
+            node.motion.rate = weight + external;
+            if let Some(number) = link.slender {
+                self.slender[number].set_weight(link, &gravity, node, &weight);
             }
         }
     }

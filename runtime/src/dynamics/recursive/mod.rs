@@ -9,6 +9,7 @@
 //! After construction nothing allocates.
 
 mod coupling;
+mod derivatives;
 mod elements;
 mod hamiltonian;
 mod inverse;
@@ -20,6 +21,9 @@ mod readings;
 mod slender;
 mod sweeps;
 
+pub use derivatives::{
+    ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Sensitivity,
+};
 pub use mass::MassMatrix;
 pub use readings::{Frame, Readings};
 

@@ -11,7 +11,7 @@ use crate::spatial::fused::{add_cross, apply, apply_transposed, cross};
 use crate::spatial::{
     ArticulatedInertia, SpatialInertia, add_weighted, bracket_product, join, shift_twist, split,
 };
-use crate::steps::Motion;
+use crate::steps::{Motion, Pivot};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3, Vector6};
@@ -27,9 +27,14 @@ pub(super) struct Slender {
     /// V.
     pub(super) twist: Vector6<f64>,
     /// The body's own share of what a sweep carries rootward: a wrench or a momentum.
-    pub(super) wrench: Vector6<f64>,
-    /// The body's weight.
-    pub(super) weight: Vector6<f64>,
+    wrench: Vector6<f64>,
+    /// The same as its node has it, in world axes: what the node has beyond it comes from elsewhere.
+    seen_wrench: Vector6<f64>,
+    /// The body's weight, in both axes.
+    weight: Vector6<f64>,
+    seen_weight: Vector6<f64>,
+    /// The joint's, one a speed; the others of the mechanism are in world axes.
+    pivots: Vec<Pivot<f64>>,
 }
 
 /// Whether `inertia` has a moment that is tiny beside the others.
@@ -46,7 +51,10 @@ impl Slender {
             columns: vec![Vector6::zeros(); link.speeds.len()],
             twist: Vector6::zeros(),
             wrench: Vector6::zeros(),
+            seen_wrench: Vector6::zeros(),
             weight: Vector6::zeros(),
+            seen_weight: Vector6::zeros(),
+            pivots: vec![Pivot::zero(); link.speeds.len()],
         };
         slender.map(new).collect()
     }
@@ -54,7 +62,7 @@ impl Slender {
     /// X̄ at the joint's `q`; no wrench.
     pub(super) fn stand(&mut self, link: &Link, q: &[f64]) {
         link.joint.speed_map(q, &mut self.columns);
-        self.wrench = Vector6::zeros();
+        (self.wrench, self.seen_wrench) = (Vector6::zeros(), Vector6::zeros());
     }
 
     /// X̄, V and the wrench that the body takes, at `(q, v̄, v̄̇)` of the joint.
@@ -63,7 +71,7 @@ impl Slender {
         link: &Link,
         (q, speeds, accelerations): (&[f64], &[f64], &[f64]),
         parent: &Motion<f64>,
-        node: &mut Node,
+        node: &Node,
     ) {
         self.stand(link, q);
         let (rotation, offset) = (
@@ -78,9 +86,9 @@ impl Slender {
             rate += link.joint.bias_acceleration(q, speeds);
         }
         self.twist = carried + relative;
-        self.wrench =
-            link.inertia.apply(&rate) - self.turned(link, &link.inertia.apply(&self.twist));
-        node.wrench = Vector6::zeros();
+        let momentum = link.inertia.apply(&self.twist);
+        self.wrench = link.inertia.apply(&rate) - self.turned(link, &momentum);
+        self.seen_wrench = node.wrench;
     }
 
     /// V of the joint's speeds, on top of what the parent carries along.
@@ -89,12 +97,23 @@ impl Slender {
         self.twist = turned_back(rotation, carried) + self.combine(speeds);
     }
 
-    /// The momentum and the weight of the body alone.
-    pub(super) fn set_momentum(&mut self, link: &Link, gravity: &Vector3<f64>, node: &mut Node) {
-        let gravity = apply_transposed(&node.motion.placement.rotation, gravity);
+    /// The momentum of the body alone.
+    pub(super) fn set_momentum(&mut self, link: &Link, node: &Node) {
         self.wrench = link.inertia.apply(&self.twist);
+        self.seen_wrench = node.wrench;
+    }
+
+    /// The weight of the body, which is `seen` in world axes.
+    pub(super) fn set_weight(
+        &mut self,
+        link: &Link,
+        gravity: &Vector3<f64>,
+        node: &Node,
+        seen: &Vector6<f64>,
+    ) {
+        let gravity = apply_transposed(&node.motion.placement.rotation, gravity);
         self.weight = link.inertia.weight(&gravity);
-        node.wrench = Vector6::zeros();
+        self.seen_weight = *seen;
     }
 
     /// `ad_Vᵀ h` of a momentum h, most of which is the body's own.
@@ -134,7 +153,8 @@ impl Slender {
 
     /// What the joint carries of a sweep's wrenches: the body's own, and in `node` those of its children.
     pub(super) fn carried(&self, node: &Node) -> Vector6<f64> {
-        self.wrench + turned_back(&node.motion.placement.rotation, &node.wrench)
+        let others = node.wrench - self.seen_wrench;
+        self.wrench + turned_back(&node.motion.placement.rotation, &others)
     }
 
     /// `X̄ weights`.
@@ -153,16 +173,23 @@ impl Recursive {
         index: usize,
         number: usize,
     ) -> Result<ArticulatedInertia<f64>, DynamicsError> {
-        let (link, own) = (&self.links[index], &self.slender[number]);
+        let (link, own) = (&self.links[index], &mut self.slender[number]);
         let node = &self.nodes[index];
+        let rotation = &node.motion.placement.rotation;
         let mut inertia = Slender::whole(link, node, &self.inertias[index]);
-        let pivots = &mut self.pivots[link.speeds.clone()];
         if !link.driven {
+            let Slender {
+                columns, pivots, ..
+            } = own;
             link.joint
-                .articulate(&mut inertia, &own.columns, &link.armature, pivots)
+                .articulate(&mut inertia, columns, &link.armature, pivots)
                 .map_err(|failure| self.mechanism.singular(index, &failure))?;
+            for (seen, pivot) in self.pivots[link.speeds.clone()].iter_mut().zip(pivots) {
+                seen.momentum = turned_out(rotation, &pivot.momentum);
+                seen.inverse = pivot.inverse;
+            }
         }
-        Ok(inertia.rotated(&node.motion.placement.rotation))
+        Ok(inertia.rotated(rotation))
     }
 
     /// [`Recursive::eliminate`] of a slender body: what its parent feels, the wrench in the node.
@@ -182,7 +209,7 @@ impl Recursive {
             link.joint.reduce(
                 &mut wrench,
                 &own.columns,
-                &self.pivots[speeds.clone()],
+                &own.pivots,
                 &forces[speeds.clone()],
                 &mut self.loads[speeds],
             );
@@ -203,10 +230,9 @@ impl Recursive {
         let motion = &mut self.nodes[index].motion;
         let rotation = &motion.placement.rotation;
         own.twist = turned_back(rotation, carried);
-        let (speeds, pivots) = (&link.speeds, &self.pivots[link.speeds.clone()]);
-        let loads = &self.loads[speeds.clone()];
+        let loads = &self.loads[link.speeds.clone()];
         link.joint
-            .resolve(&mut own.twist, &own.columns, pivots, loads, rates);
+            .resolve(&mut own.twist, &own.columns, &own.pivots, loads, rates);
         motion.twist = turned_out(rotation, &own.twist);
     }
 
@@ -225,7 +251,7 @@ impl Recursive {
         link.joint.reduce(
             &mut turned,
             &own.columns,
-            &self.pivots[speeds.clone()],
+            &own.pivots,
             forces,
             &mut self.loads[speeds],
         );
@@ -252,7 +278,8 @@ impl Recursive {
         let node = &mut self.nodes[index];
         let rotation = &node.motion.placement.rotation;
         let momentum = own.carried(node);
-        let acting = own.weight + turned_back(rotation, &node.motion.rate);
+        let others = node.motion.rate - own.seen_weight;
+        let acting = own.weight + turned_back(rotation, &others);
         let turned = acting + own.turned(link, &momentum);
         link.joint.gather(&turned, &own.columns, out);
         node.motion.rate = turned_out(rotation, &acting);

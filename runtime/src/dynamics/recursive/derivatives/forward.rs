@@ -1,0 +1,266 @@
+//! Derivatives of forward dynamics.
+
+use super::coriolis::{ArticulatedCoriolis, Coriolis};
+use super::sweep::{LANES, Push, Sweep, Tree};
+use super::{Branch, Sensitivity, branches, in_child};
+use crate::dynamics::recursive::Recursive;
+use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
+use crate::dynamics::{Dynamics, DynamicsError};
+use crate::mechanism::Mechanism;
+use crate::spatial::{ArticulatedInertia, bracket_dual_product, shift_wrench, split};
+use crate::steps::Variation;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{Vector3, Vector6};
+
+/// `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄` and `∂v̄̇/∂τ` of forward dynamics, and v̄̇ itself.
+#[derive(Clone, Debug)]
+pub struct ForwardDerivatives {
+    pub(super) rates: Vec<f64>,
+    by_local: Sensitivity,
+    by_speeds: Sensitivity,
+    by_efforts: Sensitivity,
+    pub(super) responses: Responses,
+}
+
+/// What turns pushes into rates.
+#[derive(Clone, Debug)]
+pub(super) struct Responses {
+    pub(super) branches: Vec<Branch>,
+    pub(super) sweep: Sweep,
+    /// One a body: B of it and all that hangs on it, giving way.
+    dragging: Vec<ArticulatedCoriolis>,
+    /// One a speed: `Bᵀ X / d`.
+    pub(super) drags: Vec<Vector3<f64>>,
+    /// At most one a freedom.
+    pub(super) pushes: Vec<Push>,
+    /// At most one a speed.
+    faster: Vec<Push>,
+    /// One a freedom.
+    forced: Vec<Push>,
+}
+
+impl Responses {
+    pub(super) fn new(mechanism: &Mechanism) -> Self {
+        let layout = mechanism.layout();
+        let bodies = mechanism.bodies().len();
+        Self {
+            branches: branches(mechanism),
+            sweep: Sweep::new(bodies, layout.speeds),
+            dragging: vec![ArticulatedCoriolis::zero(); bodies],
+            drags: vec![Vector3::zeros(); layout.speeds],
+            pushes: vec![Push::none(); layout.freedoms],
+            faster: vec![Push::none(); layout.speeds],
+            forced: vec![Push::none(); layout.freedoms],
+        }
+    }
+}
+
+/// The responses to all `pushes`, column by column of `out`.
+pub(super) fn respond(tree: &Tree<'_>, sweep: &mut Sweep, pushes: &[Push], out: &mut Sensitivity) {
+    let width = out.columns;
+    for (block, pushes) in pushes.chunks(LANES).enumerate() {
+        sweep.respond(tree, pushes, (&mut out.entries, width, block * LANES));
+    }
+}
+
+impl ForwardDerivatives {
+    /// Room for the derivatives of `mechanism`.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        Self {
+            rates: vec![0.0; speeds],
+            by_local: Sensitivity::new(speeds, freedoms),
+            by_speeds: Sensitivity::new(speeds, speeds),
+            by_efforts: Sensitivity::new(speeds, freedoms),
+            responses: Responses::new(mechanism),
+        }
+    }
+
+    /// v̄̇.
+    pub fn rates(&self) -> &[f64] {
+        &self.rates
+    }
+
+    /// `∂v̄̇/∂ϕ`: a row a speed, a column a freedom.
+    pub const fn by_local(&self) -> &Sensitivity {
+        &self.by_local
+    }
+
+    /// `∂v̄̇/∂v̄`: a row and a column a speed.
+    pub const fn by_speeds(&self) -> &Sensitivity {
+        &self.by_speeds
+    }
+
+    /// `∂v̄̇/∂τ = M̄⁻¹ S̄ᵀ`: a row a speed, a column a freedom.
+    pub const fn by_efforts(&self) -> &Sensitivity {
+        &self.by_efforts
+    }
+}
+
+impl Recursive {
+    /// v̄̇ at (q, v̄, τ) and its derivatives in ϕ, v̄ and τ into `out`.
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size; something that acts on the mechanism and that derivatives do not cover.
+    pub fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError> {
+        self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
+        self.accelerations(q, speeds, efforts, &mut out.rates)?;
+        self.advance(q, speeds, Some(&out.rates));
+        self.drag(&mut out.responses);
+        for index in 0..self.links.len() {
+            self.push(index, (q, speeds, &out.rates), efforts, &mut out.responses);
+        }
+        let responses = &mut out.responses;
+        let tree = Tree {
+            branches: &responses.branches,
+            nodes: &self.nodes,
+            columns: &self.columns,
+            pivots: &self.pivots,
+            drags: &responses.drags,
+        };
+        let sweep = &mut responses.sweep;
+        respond(&tree, sweep, &responses.pushes, &mut out.by_local);
+        respond(&tree, sweep, &responses.faster, &mut out.by_speeds);
+        respond(&tree, sweep, &responses.forced, &mut out.by_efforts);
+        Ok(())
+    }
+
+    /// Inward: F of each body and all that hangs on it; B of the same, giving way.
+    fn drag(&mut self, responses: &mut Responses) {
+        responses.dragging.fill(ArticulatedCoriolis::zero());
+        for (index, link) in self.links.iter().enumerate().rev() {
+            let (before, rest) = self.nodes.split_at_mut(index);
+            let own = &rest[0];
+            let dragging = &mut responses.dragging[index];
+            dragging.add_rigid(&Coriolis::of(&own.rigid, &own.motion.twist));
+            let mut left = *dragging;
+            for speed in link.speeds.clone() {
+                let pivot = &self.pivots[speed];
+                let column = &self.columns[speed];
+                responses.drags[speed] = left.eliminate(column, &pivot.momentum, pivot.inverse);
+            }
+            if let Some(parent) = link.parent {
+                let offset = &own.motion.placement.offset;
+                responses.dragging[parent].add_shifted(&left, offset);
+                before[parent].wrench += shift_wrench(&own.wrench, offset);
+            }
+        }
+    }
+
+    /// The articulated inertia of a body before its joint gives way, after [`Recursive::accelerations`].
+    pub(super) fn articulated(&self, index: usize) -> ArticulatedInertia<f64> {
+        let rigid = &self.nodes[index].rigid;
+        match self.links[index].carries {
+            true => self.inertias[index].with_rigid(rigid),
+            false => ArticulatedInertia::from(rigid),
+        }
+    }
+
+    /// What one unit of each ϕ, speed and effort of a joint pushes.
+    fn push(
+        &self,
+        index: usize,
+        state: (&[f64], &[f64], &[f64]),
+        efforts: &[f64],
+        responses: &mut Responses,
+    ) {
+        let (link, node) = (&self.links[index], &self.nodes[index]);
+        let mut variations = [Variation::zero(); MOST_FREEDOMS];
+        let variations = &mut variations[..link.freedoms.len()];
+        self.vary(index, state, variations);
+        let (inertia, dragging) = (self.articulated(index), responses.dragging[index]);
+        let count = link.speeds.len();
+        let mut forces = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
+        let forces = &mut forces[..count * variations.len()];
+        self.own_forces(index, state.0, efforts, forces);
+        for (b, (slot, variation)) in link.freedoms.clone().zip(variations.iter()).enumerate() {
+            let (turn, _) = split(&variation.drift);
+            let wrench = inertia.apply(&variation.rate) + dragging.apply(&turn);
+            let own = &forces[b * count..(b + 1) * count];
+            let mut push = self.pushed(index, wrench, own);
+            push.wrench -= bracket_dual_product(&variation.local, &node.wrench);
+            (push.rate, push.turn) = (variation.rate, turn);
+            responses.pushes[slot] = push;
+        }
+        for (variation, speed) in variations.iter().zip(link.speeds.clone()) {
+            let (turn, _) = split(&self.columns[speed]);
+            let wrench = inertia.apply(&variation.speed_rate) + dragging.apply(&turn);
+            let mut push = self.pushed(index, wrench, &[0.0; MOST_FREEDOMS][..count]);
+            (push.rate, push.turn) = (variation.speed_rate, turn);
+            responses.faster[speed] = push;
+        }
+        for slot in link.freedoms.clone() {
+            let mut unit = [0.0; MOST_FREEDOMS];
+            unit[slot - link.freedoms.start] = 1.0;
+            let mut forces = [0.0; MOST_FREEDOMS];
+            let (unit, forces) = (&unit[..link.freedoms.len()], &mut forces[..count]);
+            let q = &state.0[link.configuration.clone()];
+            link.joint.reduce_efforts(q, unit, forces);
+            responses.forced[slot] = self.pushed(index, Vector6::zeros(), forces);
+        }
+    }
+
+    /// What is left of a wrench once the joint under it has given way to it under its own forces.
+    pub(super) fn pushed(&self, index: usize, mut wrench: Vector6<f64>, forces: &[f64]) -> Push {
+        let link = &self.links[index];
+        let speeds = link.speeds.clone();
+        let mut push = Push {
+            body: index,
+            ..Push::none()
+        };
+        link.joint.reduce(
+            &mut wrench,
+            &self.columns[speeds.clone()],
+            &self.pivots[speeds.clone()],
+            forces,
+            &mut push.loads[..speeds.len()],
+        );
+        push.wrench = wrench;
+        push
+    }
+
+    /// `∂S̄ᵀ τ − ∂X̄ᵀ F` of one joint, column by column.
+    fn own_forces(&self, index: usize, q: &[f64], efforts: &[f64], forces: &mut [f64]) {
+        let link = &self.links[index];
+        let structures = link.joint.structures();
+        let q = &q[link.configuration.clone()];
+        if !structures.twist_gradient.is_zero() {
+            let node = &self.nodes[index];
+            let wrench = in_child(node, &node.wrench);
+            link.joint.effort_gradient(q, &wrench, forces);
+            for force in forces.iter_mut() {
+                *force = -*force;
+            }
+        }
+        self.add_input_slopes(index, q, efforts, forces);
+    }
+
+    /// Adds `∂S̄ᵀ τ` of one joint at its own q, column by column.
+    pub(super) fn add_input_slopes(
+        &self,
+        index: usize,
+        q: &[f64],
+        efforts: &[f64],
+        forces: &mut [f64],
+    ) {
+        let link = &self.links[index];
+        if link.joint.structures().speed_basis_gradient.is_zero() {
+            return;
+        }
+        let (rows, columns) = (link.freedoms.len(), link.speeds.len());
+        let mut slices = [0.0; MOST_FREEDOMS * MOST_FREEDOMS * MOST_FREEDOMS];
+        let slices = &mut slices[..rows * rows * columns];
+        link.joint.speed_basis_gradient(q, slices);
+        let efforts = &efforts[link.freedoms.clone()];
+        for (force, column) in forces.iter_mut().zip(slices.chunks_exact(rows)) {
+            *force += column.iter().zip(efforts).map(|(s, t)| s * t).sum::<f64>();
+        }
+    }
+}

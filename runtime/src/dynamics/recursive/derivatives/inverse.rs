@@ -1,0 +1,271 @@
+//! Derivatives of inverse dynamics.
+
+use super::coriolis::Coriolis;
+use super::{Branch, Sensitivity, WORLD, branches, in_child};
+use crate::dynamics::DynamicsError;
+use crate::dynamics::recursive::Recursive;
+use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
+use crate::mechanism::Mechanism;
+use crate::scalar::Scalar;
+use crate::spatial::{bracket_dual_product, shift_wrench, split};
+use crate::steps::Variation;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{Vector3, Vector6};
+
+/// Four numbers side by side, for vector instructions.
+type Four = [f64; 4];
+
+/// What a freedom and a speed of a joint meet the [`Below`] of a joint under it with: two of X̄, W and W_v, and the angular parts of U and X̄.
+type Above = [Four; 9];
+
+/// What a freedom and a speed of a joint meet the [`Above`] of a joint over it with: the two wrenches that they raise, two of `N X̄`, two of
+/// `Bᵀ X̄`. Each product of both is one entry of each derivative on either side of the diagonal.
+type Below = [Four; 9];
+
+/// `∂τ̄/∂ϕ` and `∂τ̄/∂v̄` of inverse dynamics; `∂τ̄/∂v̄̇` is the mass matrix.
+#[derive(Clone, Debug)]
+pub struct InverseDerivatives {
+    by_local: Sensitivity,
+    by_speeds: Sensitivity,
+    branches: Vec<Branch>,
+    /// One a freedom.
+    variations: Vec<Variation<f64>>,
+    /// One a freedom.
+    above: Vec<Above>,
+    /// One a body.
+    coriolis: Vec<Coriolis>,
+}
+
+impl InverseDerivatives {
+    /// Room for the derivatives of `mechanism`.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        Self {
+            by_local: Sensitivity::new(speeds, freedoms),
+            by_speeds: Sensitivity::new(speeds, speeds),
+            branches: branches(mechanism),
+            variations: vec![Variation::zero(); freedoms],
+            above: vec![[[0.0; 4]; 9]; freedoms],
+            coriolis: vec![Coriolis::zero(); mechanism.bodies().len()],
+        }
+    }
+
+    /// `∂τ̄/∂ϕ`: a row a speed, a column a freedom.
+    pub const fn by_local(&self) -> &Sensitivity {
+        &self.by_local
+    }
+
+    /// `∂τ̄/∂v̄`: a row and a column a speed.
+    pub const fn by_speeds(&self) -> &Sensitivity {
+        &self.by_speeds
+    }
+}
+
+impl Recursive {
+    /// The derivatives of [`Recursive::inverse_dynamics`] in ϕ and v̄ at (q, v̄, v̄̇) into `out`.
+    ///
+    /// # Errors
+    /// When a vector has the wrong size; when something acts on the mechanism that derivatives do not cover.
+    pub fn inverse_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        accelerations: &[f64],
+        out: &mut InverseDerivatives,
+    ) -> Result<(), DynamicsError> {
+        let sizes = [
+            ("speeds", speeds.len()),
+            ("accelerations", accelerations.len()),
+        ];
+        self.check(q, &sizes)?;
+        self.check_differentiable(&[&out.by_local, &out.by_speeds])?;
+        self.advance(q, speeds, Some(accelerations));
+        for (own, node) in out.coriolis.iter_mut().zip(&self.nodes) {
+            *own = Coriolis::of(&node.rigid, &node.motion.twist);
+        }
+        self.sum_subtrees(&mut out.coriolis);
+        for index in 0..self.links.len() {
+            let own = &mut out.variations[self.links[index].freedoms.clone()];
+            self.vary(index, (q, speeds, accelerations), own);
+            self.differentiate_joint(index, q, out);
+        }
+        Ok(())
+    }
+
+    /// Inward: F, N and B of each body and all that hangs on it.
+    pub(super) fn sum_subtrees(&mut self, coriolis: &mut [Coriolis]) {
+        for index in (0..self.links.len()).rev() {
+            let Some(parent) = self.links[index].parent else {
+                continue;
+            };
+            let (before, rest) = self.nodes.split_at_mut(index);
+            let (parent_node, own) = (&mut before[parent], &rest[0]);
+            let offset = &own.motion.placement.offset;
+            parent_node.rigid = parent_node.rigid.combine(&own.rigid.shifted(offset));
+            parent_node.wrench += shift_wrench(&own.wrench, offset);
+            let carried = coriolis[index].shifted(offset);
+            coriolis[parent].add(&carried);
+        }
+    }
+
+    /// Rows and columns of one joint against itself and those above it.
+    fn differentiate_joint(&self, index: usize, q: &[f64], out: &mut InverseDerivatives) {
+        let (link, node, coriolis) = (&self.links[index], &self.nodes[index], &out.coriolis[index]);
+        let branch = out.branches[index];
+        let columns = &self.columns[link.speeds.clone()];
+        let mut below = [[[0.0; 4]; 9]; MOST_FREEDOMS];
+        for slot in branch.freedoms.0..branch.freedoms.1 {
+            let variation = &out.variations[slot];
+            let b = slot - branch.freedoms.0;
+            let (drift, _) = split(&variation.drift);
+            let raised = node.rigid.apply(&variation.rate) + coriolis.apply(&drift);
+            for (speed, column) in link.speeds.clone().zip(columns) {
+                out.by_local.set(speed, slot, column.dot(&raised));
+            }
+            let turned = raised - bracket_dual_product(&variation.local, &node.wrench);
+            let Some(column) = columns.get(b) else {
+                // More freedoms than speeds.
+                out.above[slot] = above(&Vector6::zeros(), variation);
+                let zero = Vector6::zeros();
+                below[b] = self::below(&[turned, zero], &zero, &Vector3::zeros());
+                continue;
+            };
+            let (turn, _) = split(column);
+            let faster = node.rigid.apply(&variation.speed_rate) + coriolis.apply(&turn);
+            for (speed, column) in link.speeds.clone().zip(columns) {
+                out.by_speeds
+                    .set(speed, branch.speeds.0 + b, column.dot(&faster));
+            }
+            out.above[slot] = above(column, variation);
+            let momentum = node.rigid.apply(column);
+            let transposed = coriolis.apply_transposed(column);
+            below[b] = self::below(&[turned, faster], &momentum, &transposed);
+        }
+        if !link.joint.structures().twist_gradient.is_zero() {
+            self.add_own_gradient(index, q, out);
+        }
+        for slot in branch.freedoms.0..branch.freedoms.1 {
+            self.climb_pairs(index, slot, &below[slot - branch.freedoms.0], out);
+        }
+    }
+
+    /// `∂X̄ᵀF` of one joint.
+    fn add_own_gradient(&self, index: usize, q: &[f64], out: &mut InverseDerivatives) {
+        let (link, node) = (&self.links[index], &self.nodes[index]);
+        let mut gradient = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
+        let rows = link.speeds.len();
+        let gradient = &mut gradient[..rows * link.freedoms.len()];
+        let wrench = in_child(node, &node.wrench);
+        let q = &q[link.configuration.clone()];
+        link.joint.effort_gradient(q, &wrench, gradient);
+        for (slot, column) in link
+            .freedoms
+            .clone()
+            .zip(gradient.chunks_exact(rows.max(1)))
+        {
+            for (speed, entry) in link.speeds.clone().zip(column) {
+                let entry = out.by_local.entry(speed, slot) + entry;
+                out.by_local.set(speed, slot, entry);
+            }
+        }
+    }
+
+    /// One freedom and speed against all above its joint.
+    #[inline(always)]
+    fn climb_pairs(&self, index: usize, slot: usize, below: &Below, out: &mut InverseDerivatives) {
+        let mut below = *below;
+        let mut body = index;
+        let own = &out.branches[index];
+        let own_speed = speed_of(own, slot);
+        let (locals, speeds) = (out.by_local.columns, out.by_speeds.columns);
+        while out.branches[body].parent != WORLD {
+            shift(&mut below, &self.nodes[body].motion.placement.offset);
+            body = out.branches[body].parent;
+            let branch = out.branches[body];
+            for other in branch.freedoms.0..branch.freedoms.1 {
+                let [raised, faster, local, speed] = products(&out.above[other], &below);
+                let other_speed = speed_of(&branch, other);
+                let (by_local, by_speeds) = (&mut out.by_local.entries, &mut out.by_speeds.entries);
+                if let Some(row) = other_speed {
+                    by_local[row * locals + slot] = raised;
+                }
+                if let Some(row) = own_speed {
+                    by_local[row * locals + other] = local;
+                }
+                if let (Some(above), Some(own)) = (other_speed, own_speed) {
+                    by_speeds[above * speeds + own] = faster;
+                    by_speeds[own * speeds + above] = speed;
+                }
+            }
+        }
+    }
+}
+
+/// The speed that stands at the same place in its joint as a freedom.
+#[inline(always)]
+fn speed_of(branch: &Branch, slot: usize) -> Option<usize> {
+    let speed = branch.speeds.0 + (slot - branch.freedoms.0);
+    (speed < branch.speeds.1).then_some(speed)
+}
+
+#[inline(always)]
+fn above(column: &Vector6<f64>, variation: &Variation<f64>) -> Above {
+    let mut above = [[0.0; 4]; 9];
+    for i in 0..6 {
+        above[i] = [
+            column[i],
+            column[i],
+            variation.rate[i],
+            variation.speed_rate[i],
+        ];
+    }
+    for i in 0..3 {
+        above[6 + i] = [0.0, 0.0, variation.drift[i], column[i]];
+    }
+    above
+}
+
+#[inline(always)]
+fn below(raised: &[Vector6<f64>; 2], momentum: &Vector6<f64>, transposed: &Vector3<f64>) -> Below {
+    let mut below = [[0.0; 4]; 9];
+    for i in 0..6 {
+        below[i] = [raised[0][i], raised[1][i], momentum[i], momentum[i]];
+    }
+    for i in 0..3 {
+        below[6 + i] = [0.0, 0.0, transposed[i], transposed[i]];
+    }
+    below
+}
+
+/// All four wrenches at a frame `−offset` away.
+#[inline(always)]
+fn shift(below: &mut Below, offset: &Vector3<f64>) {
+    let [x, y, z] = (*offset).into();
+    for lane in 0..4 {
+        let (fx, fy, fz) = (below[3][lane], below[4][lane], below[5][lane]);
+        below[0][lane] = Scalar::mul_add(y, fz, Scalar::mul_add(-z, fy, below[0][lane]));
+        below[1][lane] = Scalar::mul_add(z, fx, Scalar::mul_add(-x, fz, below[1][lane]));
+        below[2][lane] = Scalar::mul_add(x, fy, Scalar::mul_add(-y, fx, below[2][lane]));
+    }
+}
+
+#[inline(always)]
+fn products(above: &Above, below: &Below) -> Four {
+    let mut sum = [0.0; 4];
+    let mut other = [0.0; 4];
+    for i in 0..5 {
+        for lane in 0..4 {
+            sum[lane] = Scalar::mul_add(above[i][lane], below[i][lane], sum[lane]);
+        }
+    }
+    for i in 5..9 {
+        for lane in 0..4 {
+            other[lane] = Scalar::mul_add(above[i][lane], below[i][lane], other[lane]);
+        }
+    }
+    for lane in 0..4 {
+        sum[lane] += other[lane];
+    }
+    sum
+}

@@ -1,0 +1,184 @@
+//! Derivatives of the dynamics by recursion, with respect to local coordinates ϕ (at ϕ = 0), speeds and efforts. Nothing is differenced.
+//!
+//! All vectors are in world axes. One unit of a local coordinate of joint k moves every body i that the joint carries by the twist
+//! `Z = X^c S₀ e`, and changes their motions by
+//!
+//! ```text
+//! δV_i = ad_Z V_i + U             U = ad_{V_λ} Z + ∂X̄ v̄
+//! δV̇_i = ad_Z V̇_i + ad_U V_i + W   W = ad_{V̇_λ} Z + ad_{V_λ} U + ad_{V_k} ∂X̄ v̄ + ∂(X̄ v̄̇ + c)
+//! ```
+//!
+//! with U and W the same for all of them (∂ is the derivative of the joint's own kernels in ϕ). One unit of a speed of it, with column X of X̄,
+//! does the same with Z = 0, U = X and `W_v = ad_{V_k + V_λ} X + ∂c/∂v̄`. So the wrench that body i takes changes by
+//! `−ad_Zᵀ f_i + N_i W + B_i U`, where `B U = N ad_U V − ad_Uᵀ N V − ad_Vᵀ N U` ([`coriolis`]) has twelve numbers. With N, B and F summed over
+//! each subtree, for the joints j between the root and k (`⊂`: below it)
+//!
+//! ```text
+//! ∂τ̄_j/∂ϕ_k = X̄_jᵀ (N_k W + B_k U − ad_Zᵀ F_k)                  j above k
+//! ∂τ̄_k/∂ϕ_k = X̄_kᵀ (N_k W + B_k U) + ∂X̄ᵀ F_k
+//! ∂τ̄_j/∂ϕ_k = Wᵀ (N_j X̄_j) + Uᵀ (B_jᵀ X̄_j)                      j ⊂ k
+//! ```
+//!
+//! which is O(n · depth), a few products a pair. For a joint whose X̄ is constant ∂X̄ and ∂c vanish, and with them all kernels beyond X̄; the other
+//! joints have kernels for `∂X̄ v̄`, `∂X̄ᵀ F`, `∂c/∂ϕ` and `∂c/∂v̄`, derived by the generator.
+//!
+//! Forward dynamics takes the same U and W as loads of the articulated factors: W is one more acceleration of the base of the subtree, and
+//! B, with the joints below free to give way, is one more 6×3 matrix of the articulated recursion. Each column then is one sweep inward along
+//! its branch and one outward, O(n), eight columns at a time; M̄ is never formed.
+//!
+//! Elements (springs, dampers, wrenches), rotors that add velocity terms, joints whose motion is prescribed and constraints that couple joints are
+//! not covered: asking for derivatives of such a mechanism is an error.
+
+mod coriolis;
+mod energy;
+mod forward;
+mod hamiltonian;
+mod inverse;
+mod sweep;
+
+pub use forward::ForwardDerivatives;
+pub use hamiltonian::HamiltonianDerivatives;
+pub use inverse::InverseDerivatives;
+
+use super::Recursive;
+use super::link::Node;
+use crate::dynamics::DynamicsError;
+use crate::mechanism::Mechanism;
+use crate::steps::Variation;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::DMatrix;
+
+/// A matrix of derivatives, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    rows: usize,
+    columns: usize,
+    entries: Vec<f64>,
+}
+
+impl Sensitivity {
+    fn new(rows: usize, columns: usize) -> Self {
+        Self {
+            rows,
+            columns,
+            entries: vec![0.0; rows * columns],
+        }
+    }
+
+    /// Number of rows.
+    pub const fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns.
+    pub const fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Entry (i, j); zero for an index out of range.
+    pub fn entry(&self, i: usize, j: usize) -> f64 {
+        match j < self.columns {
+            true => self.entries.get(i * self.columns + j).copied(),
+            false => None,
+        }
+        .unwrap_or(0.0)
+    }
+
+    /// All entries, row by row.
+    pub fn entries(&self) -> &[f64] {
+        &self.entries
+    }
+
+    /// All entries; allocates.
+    pub fn matrix(&self) -> DMatrix<f64> {
+        DMatrix::from_row_slice(self.rows, self.columns, &self.entries)
+    }
+
+    fn set(&mut self, i: usize, j: usize, value: f64) {
+        self.entries[i * self.columns + j] = value;
+    }
+
+    /// What `other` is handed to [`Recursive`] for must have been made for a mechanism of the same size.
+    fn fits(&self, rows: usize, columns: usize) -> bool {
+        (self.rows, self.columns) == (rows, columns)
+    }
+}
+
+impl Recursive {
+    /// Whether derivatives cover all that acts on the mechanism, and `results` belong to a mechanism of its size.
+    fn check_differentiable(&self, results: &[&Sensitivity]) -> Result<(), DynamicsError> {
+        let layout = self.mechanism.layout();
+        let fits = |result: &&Sensitivity| {
+            result.fits(layout.speeds, layout.freedoms) || result.fits(layout.speeds, layout.speeds)
+        };
+        let what = match () {
+            () if !self.mechanism.elements().is_empty() => "springs, dampers and other elements",
+            () if self.acted_on => "rotor inertias of joints whose velocities are not rates",
+            () if self.coupling.is_some() => "constraints that couple joints",
+            () if !self.mechanism.drives().is_empty() => "joints whose motion is prescribed",
+            () if !results.iter().all(fits) => "results made for another mechanism",
+            () => return Ok(()),
+        };
+        Err(DynamicsError::NotDifferentiable { what })
+    }
+
+    /// The variations of the joint under body `index` at (q, v̄, v̄̇), one a freedom, after [`Recursive::advance`].
+    fn vary(&self, index: usize, state: (&[f64], &[f64], &[f64]), out: &mut [Variation<f64>]) {
+        let link = &self.links[index];
+        let parent = link
+            .parent
+            .map_or(&self.world, |parent| &self.nodes[parent]);
+        let (q, speeds, accelerations) = state;
+        let accelerations = match accelerations.is_empty() {
+            true => accelerations,
+            false => &accelerations[link.speeds.clone()],
+        };
+        link.joint.vary(
+            (
+                &q[link.configuration.clone()],
+                &speeds[link.speeds.clone()],
+                accelerations,
+            ),
+            (&self.nodes[index].motion, &parent.motion),
+            &self.columns[link.speeds.clone()],
+            out,
+        );
+    }
+}
+
+/// A wrench or momentum in the axes of the child frame.
+fn in_child(node: &Node, wrench: &nalgebra::Vector6<f64>) -> nalgebra::Vector6<f64> {
+    use crate::spatial::fused::apply_transposed;
+    use crate::spatial::{join, split};
+    let (moment, force) = split(wrench);
+    let rotation = &node.motion.placement.rotation;
+    join(
+        &apply_transposed(rotation, &moment),
+        &apply_transposed(rotation, &force),
+    )
+}
+
+/// Where the freedoms and speeds of each joint stand, and what it hangs on.
+#[derive(Clone, Copy, Debug)]
+struct Branch {
+    /// `usize::MAX` for the world.
+    parent: usize,
+    freedoms: (usize, usize),
+    speeds: (usize, usize),
+}
+
+/// The parent of a body that hangs on the world.
+const WORLD: usize = usize::MAX;
+
+fn branches(mechanism: &Mechanism) -> Vec<Branch> {
+    let branch = |body: &crate::mechanism::Body| {
+        let ranges = body.ranges();
+        Branch {
+            parent: body.parent().unwrap_or(WORLD),
+            freedoms: (ranges.freedoms.start, ranges.freedoms.end),
+            speeds: (ranges.speeds.start, ranges.speeds.end),
+        }
+    };
+    mechanism.bodies().iter().map(branch).collect()
+}

@@ -1,0 +1,129 @@
+//! What one unit of each of a joint's local coordinates and speeds changes of the motion of all that it carries.
+
+use super::Motion;
+use super::place::Parts;
+use crate::joint::Joint;
+use crate::scalar::Scalar;
+use crate::spatial::fused::{apply, cross};
+use crate::spatial::{bracket_product, join, shift_twist, split};
+use nalgebra::{Matrix3, SVector, Vector3, Vector6};
+
+/// What one unit of a local coordinate ϕ, and of a speed, changes; at the child frame's origin, in world axes.
+///
+/// Every body that the joint carries then has `δV = ad_Z V + U` and `δV̇ = ad_Z V̇ + ad_U V + W`: it is moved along by Z, and U and W are
+/// the same for all of them. For a speed with column X of X̄ it is `δV = X` and `δV̇ = ad_X V + W_v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variation<T> {
+    /// `Z`: the twist of ϕ̇.
+    pub local: Vector6<T>,
+    /// `U = ad_{V_λ} Z + ∂X̄ v̄`.
+    pub drift: Vector6<T>,
+    /// `W = ad_{V̇_λ} Z + ad_{V_λ} U + ad_V ∂X̄ v̄ + ∂(X̄ v̄̇ + c)`.
+    pub rate: Vector6<T>,
+    /// `W_v = ad_{V + V_λ} X + ∂c/∂v̄`; zero where the joint has fewer speeds than freedoms.
+    pub speed_rate: Vector6<T>,
+}
+
+impl<T: Scalar> Variation<T> {
+    /// Of nothing.
+    pub fn zero() -> Self {
+        Self {
+            local: Vector6::zeros(),
+            drift: Vector6::zeros(),
+            rate: Vector6::zeros(),
+            speed_rate: Vector6::zeros(),
+        }
+    }
+}
+
+/// A twist in child axes, turned into world axes.
+#[inline(always)]
+fn turned<T: Scalar>(rotation: &Matrix3<T>, twist: &Vector6<T>) -> Vector6<T> {
+    let (angular, linear) = split(twist);
+    join(&apply(rotation, &angular), &apply(rotation, &linear))
+}
+
+/// `ad_V X` for column `j` of X̄, without the part that this column does not have.
+#[inline(always)]
+fn bracket_of_column<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
+    j: usize,
+    twist: &Vector6<T>,
+    column: &Vector6<T>,
+) -> Vector6<T>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let ((angular, linear), (turn, slide)) = (split(twist), split(column));
+    match Parts::of::<J, N, K, S, C>(j) {
+        (true, true) => bracket_product(twist, column),
+        (true, false) => join(&cross(&angular, &turn), &cross(&linear, &turn)),
+        (false, true) => join(&Vector3::zeros(), &cross(&angular, &slide)),
+        (false, false) => Vector6::zeros(),
+    }
+}
+
+/// The variations of one joint at (q, v̄, v̄̇), one a freedom; `own` and `parent` are the motions of the child frames.
+#[inline(always)]
+pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    (q, speeds, accelerations): (&SVector<f64, N>, &SVector<f64, S>, &SVector<f64, S>),
+    (own, parent): (&Motion<f64>, &Motion<f64>),
+    columns: &[Vector6<f64>; S],
+    out: &mut [Variation<f64>; K],
+) where
+    J: Joint<N, K, S, C>,
+{
+    let placement = &own.placement;
+    let carried = shift_twist(&parent.twist, &placement.offset);
+    let carried_rate = shift_twist(&parent.rate, &placement.offset);
+    let structures = J::STRUCTURES;
+    // Then ϕ̇ = v = v̄, and Z are the columns themselves.
+    let same = structures.velocity_map.is_identity() && structures.speed_basis.is_identity();
+    let local = (!same).then(|| joint.local_twist_map(q));
+    for b in 0..K {
+        let variation = &mut out[b];
+        match &local {
+            Some(local) => {
+                let z = turned(&placement.rotation, &local.column(b).into_owned());
+                variation.local = z;
+                variation.drift = bracket_product(&carried, &z);
+                variation.rate = bracket_product(&carried_rate, &z);
+            }
+            None => {
+                let z = &columns[b];
+                variation.local = *z;
+                variation.drift = bracket_of_column::<J, f64, N, K, S, C>(b, &carried, z);
+                variation.rate = bracket_of_column::<J, f64, N, K, S, C>(b, &carried_rate, z);
+            }
+        }
+    }
+    if !structures.twist_gradient.is_zero() {
+        let of_twist = joint.twist_gradient(q, speeds);
+        let mut of_rate = joint.twist_gradient(q, accelerations);
+        if !structures.bias_acceleration_gradient.is_zero() {
+            of_rate += joint.bias_acceleration_gradient(q, speeds);
+        }
+        for b in 0..K {
+            let variation = &mut out[b];
+            let own_drift = turned(&placement.rotation, &of_twist.column(b).into_owned());
+            variation.drift += own_drift;
+            variation.rate += bracket_product(&own.twist, &own_drift)
+                + turned(&placement.rotation, &of_rate.column(b).into_owned());
+        }
+    }
+    for variation in out.iter_mut() {
+        variation.rate += bracket_product(&carried, &variation.drift);
+        variation.speed_rate = Vector6::zeros();
+    }
+    let both = own.twist + carried;
+    for (a, column) in columns.iter().enumerate() {
+        out[a].speed_rate = bracket_of_column::<J, f64, N, K, S, C>(a, &both, column);
+    }
+    if !structures.bias_acceleration.is_zero() {
+        let slope = joint.bias_acceleration_slope(q, speeds);
+        for a in 0..S {
+            out[a].speed_rate += turned(&placement.rotation, &slope.column(a).into_owned());
+        }
+    }
+}

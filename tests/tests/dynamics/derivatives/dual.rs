@@ -1,0 +1,312 @@
+//! The equations of motion in dual numbers, joint by joint in child frames: what derivatives by recursion are held to.
+//!
+//! Of a joint only H, X^c, S̄, c and Ẋ̄ᵀh enter, as functions of Q; none of the kernels that hold derivatives.
+
+use hamel::erased::AnyJoint;
+use hamel::joint::Joint;
+use hamel::mechanism::Mechanism;
+use hamel::nalgebra::{SMatrix, SVector, Vector3, Vector6};
+use hamel::scalar::Dual;
+use hamel::spatial::{Pose, SpatialInertia, bracket_dual_product, bracket_product, join};
+use std::sync::Arc;
+
+type D = Dual<f64>;
+
+/// The kernels of one joint in dual numbers.
+trait Kernels {
+    /// Φ(Q, ϕ).
+    fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D>;
+    fn pose(&self, q: &[D]) -> Pose<D>;
+    /// The columns of X̄^c.
+    fn columns(&self, q: &[D]) -> Vec<Vector6<D>>;
+    fn bias(&self, q: &[D], speeds: &[D]) -> Vector6<D>;
+    fn bias_momentum(&self, q: &[D], speeds: &[D], h: &Vector6<D>) -> Vec<D>;
+    /// S̄ᵀ τ.
+    fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D>;
+}
+
+struct Of<J, const N: usize, const K: usize, const S: usize, const C: usize>(J);
+
+fn vector<const M: usize>(slice: &[D]) -> SVector<D, M> {
+    SVector::from_column_slice(slice)
+}
+
+fn constants(values: &[f64]) -> Vec<D> {
+    values.iter().map(|value| Dual::constant(*value)).collect()
+}
+
+impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize> Kernels
+    for Of<J, N, K, S, C>
+{
+    fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D> {
+        let moved = self.0.retract(&vector::<N>(&constants(q)), &vector(phi));
+        moved.iter().copied().collect()
+    }
+
+    fn pose(&self, q: &[D]) -> Pose<D> {
+        self.0.pose(&vector(q))
+    }
+
+    fn columns(&self, q: &[D]) -> Vec<Vector6<D>> {
+        let q = vector(q);
+        let map: SMatrix<D, 6, S> = self.0.twist_map_child(&q) * self.0.speed_basis(&q);
+        map.column_iter()
+            .map(|column| column.into_owned())
+            .collect()
+    }
+
+    fn bias(&self, q: &[D], speeds: &[D]) -> Vector6<D> {
+        self.0.bias_acceleration(&vector(q), &vector(speeds))
+    }
+
+    fn bias_momentum(&self, q: &[D], speeds: &[D], h: &Vector6<D>) -> Vec<D> {
+        let dual = self.0.bias_momentum(&vector(q), &vector(speeds), h);
+        dual.iter().copied().collect()
+    }
+
+    fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D> {
+        let reduced = self.0.speed_basis(&vector(q)).tr_mul(&vector::<K>(efforts));
+        reduced.iter().copied().collect()
+    }
+}
+
+/// The joint of the library behind an erased one.
+fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
+    let mut found: Option<Box<dyn Kernels>> = None;
+    let mut parameters = vec![];
+    joint.parameters(&mut |_, value| parameters.push(value));
+    macro_rules! pick {
+        ($module:ident, $type:ty, $example:expr, $n:literal, $k:literal, $s:literal, $c:literal) => {
+            if joint.name() == stringify!($module) {
+                let example = $example;
+                let own = Joint::<$n, $k, $s, $c>::parameters(&example);
+                let own: Vec<f64> = own.map(|(_, value)| value).collect();
+                assert_eq!(own, parameters, "{}", joint.name());
+                found = Some(Box::new(Of::<$type, $n, $k, $s, $c>(example)));
+            }
+        };
+    }
+    hamel_joints::for_each_joint!(pick);
+    found.expect("a joint of the library")
+}
+
+struct Body {
+    joint: Box<dyn Kernels>,
+    parent: Option<usize>,
+    frame: Pose<D>,
+    inertia: SpatialInertia<D>,
+    configuration: std::ops::Range<usize>,
+    freedoms: std::ops::Range<usize>,
+    speeds: std::ops::Range<usize>,
+}
+
+/// A mechanism in dual numbers.
+pub struct DualForm {
+    bodies: Vec<Body>,
+    gravity: Vector3<D>,
+}
+
+/// A state in dual numbers.
+#[derive(Clone)]
+pub struct DualState {
+    pub q: Vec<D>,
+    pub speeds: Vec<D>,
+    pub efforts: Vec<D>,
+}
+
+fn lifted(pose: &Pose<f64>) -> Pose<D> {
+    Pose::new(
+        pose.rotation.map(Dual::constant),
+        pose.translation.map(Dual::constant),
+    )
+}
+
+impl DualForm {
+    pub fn new(mechanism: &Arc<Mechanism>) -> Self {
+        let bodies = mechanism.bodies();
+        let body = |body: &hamel::mechanism::Body| {
+            let above = body
+                .parent()
+                .map(|parent| *bodies[parent].child_placement());
+            let above = above.unwrap_or_else(Pose::identity);
+            let inertia = SpatialInertia::from(body.mass()).transform(body.child_placement());
+            let ranges = body.ranges();
+            let lift = |x: f64| Dual::constant(x);
+            let i = &inertia.inertia;
+            let mut lifted_inertia = SpatialInertia::<D>::zero();
+            lifted_inertia.mass = lift(inertia.mass);
+            lifted_inertia.first_moment = inertia.first_moment.map(lift);
+            (lifted_inertia.inertia.xx, lifted_inertia.inertia.xy) = (lift(i.xx), lift(i.xy));
+            (lifted_inertia.inertia.xz, lifted_inertia.inertia.yy) = (lift(i.xz), lift(i.yy));
+            (lifted_inertia.inertia.yz, lifted_inertia.inertia.zz) = (lift(i.yz), lift(i.zz));
+            Body {
+                joint: kernels(body.joint()),
+                parent: body.parent(),
+                frame: lifted(&(above * *body.placement())),
+                inertia: lifted_inertia,
+                configuration: ranges.configuration.clone(),
+                freedoms: ranges.freedoms.clone(),
+                speeds: ranges.speeds.clone(),
+            }
+        };
+        Self {
+            bodies: bodies.iter().map(body).collect(),
+            gravity: mechanism.gravity().map(Dual::constant),
+        }
+    }
+
+    /// (q, v̄, τ) without infinitesimals.
+    pub fn state(&self, q: &[f64], speeds: &[f64], efforts: &[f64]) -> DualState {
+        DualState {
+            q: constants(q),
+            speeds: constants(speeds),
+            efforts: constants(efforts),
+        }
+    }
+
+    /// Q moved along one ϕ.
+    pub fn moved(&self, q: &[f64], freedom: usize) -> Vec<D> {
+        let each = self.bodies.iter().flat_map(|body| {
+            let unit = |k: usize| Dual::new(0.0, f64::from(u8::from(k == freedom)));
+            let phi: Vec<D> = body.freedoms.clone().map(unit).collect();
+            body.joint.retract(&q[body.configuration.clone()], &phi)
+        });
+        each.collect()
+    }
+
+    /// H of each joint, its frame included, child to the parent's child frame.
+    fn poses(&self, q: &[D]) -> Vec<Pose<D>> {
+        let pose = |body: &Body| body.frame * body.joint.pose(&q[body.configuration.clone()]);
+        self.bodies.iter().map(pose).collect()
+    }
+
+    /// τ̄ of inverse dynamics.
+    pub fn inverse(&self, q: &[D], speeds: &[D], accelerations: &[D], falls: bool) -> Vec<D> {
+        let poses = self.poses(q);
+        let zero = Vector3::zeros();
+        let base = join(&zero, &if falls { -self.gravity } else { zero });
+        let mut motions: Vec<(Vector6<D>, Vector6<D>)> = vec![];
+        let mut columns: Vec<Vec<Vector6<D>>> = vec![];
+        for (body, pose) in self.bodies.iter().zip(&poses) {
+            let (twist, rate) = body.parent.map_or((Vector6::zeros(), base), |p| motions[p]);
+            let own = body.joint.columns(&q[body.configuration.clone()]);
+            let speeds = &speeds[body.speeds.clone()];
+            let relative = sum(&own, speeds);
+            let twist = pose.act_twist_inverse(&twist) + relative;
+            let rate = pose.act_twist_inverse(&rate)
+                + sum(&own, &accelerations[body.speeds.clone()])
+                + body.joint.bias(&q[body.configuration.clone()], speeds)
+                + bracket_product(&twist, &relative);
+            motions.push((twist, rate));
+            columns.push(own);
+        }
+        let wrench = |(body, (twist, rate)): (&Body, &(_, _))| body.inertia.wrench(twist, rate);
+        let own: Vec<Vector6<D>> = self.bodies.iter().zip(&motions).map(wrench).collect();
+        let wrenches = self.gathered(&poses, own);
+        let mut efforts = vec![Dual::constant(0.0); speeds.len()];
+        for ((body, columns), wrench) in self.bodies.iter().zip(&columns).zip(&wrenches) {
+            for (effort, column) in efforts[body.speeds.clone()].iter_mut().zip(columns) {
+                *effort = column.dot(wrench);
+            }
+        }
+        efforts
+    }
+
+    /// S̄ᵀ τ.
+    pub fn reduced(&self, q: &[D], efforts: &[D]) -> Vec<D> {
+        let own = self.bodies.iter().flat_map(|body| {
+            let efforts = &efforts[body.freedoms.clone()];
+            body.joint.reduce(&q[body.configuration.clone()], efforts)
+        });
+        own.collect()
+    }
+
+    /// p̄̇ at v̄.
+    pub fn momentum_rates(&self, state: &DualState) -> Vec<D> {
+        let DualState { q, speeds, efforts } = state;
+        let poses = self.poses(q);
+        let twists = self.twists(&poses, q, speeds);
+        let rotations = self.rotations(&poses);
+        let momentum = |(body, twist): (&Body, &Vector6<D>)| body.inertia.apply(twist);
+        let momenta: Vec<_> = self.bodies.iter().zip(&twists).map(momentum).collect();
+        let weight = |(body, rotation): (&Body, &hamel::nalgebra::Matrix3<D>)| {
+            let fall = rotation.transpose() * self.gravity;
+            body.inertia.apply(&join(&Vector3::zeros(), &fall))
+        };
+        let weights: Vec<_> = self.bodies.iter().zip(&rotations).map(weight).collect();
+        let (momenta, weights) = (
+            self.gathered(&poses, momenta),
+            self.gathered(&poses, weights),
+        );
+        let mut rates = self.reduced(q, efforts);
+        for (i, body) in self.bodies.iter().enumerate() {
+            let own = &q[body.configuration.clone()];
+            let turned = weights[i] + bracket_dual_product(&twists[i], &momenta[i]);
+            let speeds = &speeds[body.speeds.clone()];
+            let more = body.joint.bias_momentum(own, speeds, &momenta[i]);
+            let columns = body.joint.columns(own);
+            let rates = rates[body.speeds.clone()].iter_mut();
+            for ((rate, column), more) in rates.zip(&columns).zip(more) {
+                *rate += column.dot(&turned) + more;
+            }
+        }
+        rates
+    }
+
+    /// Kinetic energy, and potential energy in gravity.
+    pub fn energies(&self, q: &[D], speeds: &[D]) -> (D, D) {
+        let poses = self.poses(q);
+        let twists = self.twists(&poses, q, speeds);
+        let (mut kinetic, mut potential) = (Dual::constant(0.0), Dual::constant(0.0));
+        let mut placed: Vec<Pose<D>> = vec![];
+        for ((body, pose), twist) in self.bodies.iter().zip(&poses).zip(&twists) {
+            let pose = body.parent.map_or(*pose, |parent| placed[parent] * *pose);
+            placed.push(pose);
+            kinetic += twist.dot(&body.inertia.apply(twist)) * Dual::constant(0.5);
+            let inertia = &body.inertia;
+            let moment = pose.rotation * inertia.first_moment + pose.translation * inertia.mass;
+            potential -= self.gravity.dot(&moment);
+        }
+        (kinetic, potential)
+    }
+
+    fn twists(&self, poses: &[Pose<D>], q: &[D], speeds: &[D]) -> Vec<Vector6<D>> {
+        let mut twists: Vec<Vector6<D>> = vec![];
+        for (body, pose) in self.bodies.iter().zip(poses) {
+            let above = body
+                .parent
+                .map_or_else(Vector6::zeros, |parent| twists[parent]);
+            let own = body.joint.columns(&q[body.configuration.clone()]);
+            let relative = sum(&own, &speeds[body.speeds.clone()]);
+            twists.push(pose.act_twist_inverse(&above) + relative);
+        }
+        twists
+    }
+
+    fn rotations(&self, poses: &[Pose<D>]) -> Vec<hamel::nalgebra::Matrix3<D>> {
+        let mut rotations: Vec<hamel::nalgebra::Matrix3<D>> = vec![];
+        for (body, pose) in self.bodies.iter().zip(poses) {
+            let above = body.parent.map(|parent| rotations[parent]);
+            rotations.push(above.map_or(pose.rotation, |above| above * pose.rotation));
+        }
+        rotations
+    }
+
+    /// Wrenches or momenta summed over subtrees.
+    fn gathered(&self, poses: &[Pose<D>], mut own: Vec<Vector6<D>>) -> Vec<Vector6<D>> {
+        for i in (0..own.len()).rev() {
+            if let Some(parent) = self.bodies[i].parent {
+                let carried = poses[i].act_wrench(&own[i]);
+                own[parent] += carried;
+            }
+        }
+        own
+    }
+}
+
+fn sum(columns: &[Vector6<D>], weights: &[D]) -> Vector6<D> {
+    let terms = columns.iter().zip(weights);
+    terms.fold(Vector6::zeros(), |sum, (column, weight)| {
+        sum + column * *weight
+    })
+}
