@@ -49,6 +49,22 @@ pub const GRAVITY: Vector3<f64> = Vector3::new(0.3, -0.2, -9.81);
 
 /// A tree on the given joints: body i hangs on a random body before it.
 pub fn tree(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism> {
+    Arc::new(Mechanism::new(GRAVITY, specs(random, joints)).expect("valid by construction"))
+}
+
+/// [`tree`], with needles for bodies, every other one on the axis of its joint's child frame: their moments are as 1 to 1e-5.
+pub fn slender_tree(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism> {
+    let mut specs = specs(random, joints);
+    for spec in specs.iter_mut().step_by(2) {
+        let moments = Matrix3::from_diagonal(&Vector3::new(0.7, 0.700_003, 1e-5));
+        let com = Vector3::new(0.0, 0.0, random.next());
+        spec.mass = MassProperties::new(1.5, com, moments).expect("physical");
+        spec.child_placement = Pose::identity();
+    }
+    Arc::new(Mechanism::new(GRAVITY, specs).expect("valid by construction"))
+}
+
+fn specs(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Vec<BodySpec> {
     let bodies = joints.iter().enumerate().map(|(i, joint)| {
         let choice = ((random.next() + 1.0) * 0.5 * (i + 1) as f64) as usize;
         let parent = (i > 0).then(|| choice.min(i - 1));
@@ -62,11 +78,22 @@ pub fn tree(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Arc<Mechanism>
         spec.child_placement = pose(random);
         spec
     });
-    Arc::new(Mechanism::new(GRAVITY, bodies.collect()).expect("valid by construction"))
+    bodies.collect()
 }
 
 /// One to six joints, mixed, every type at the root of some tree.
 pub fn trees() -> Vec<Arc<Mechanism>> {
+    mixed_trees(tree)
+}
+
+/// [`trees`] of [`slender_tree`]s.
+pub fn slender_trees() -> Vec<Arc<Mechanism>> {
+    mixed_trees(slender_tree)
+}
+
+fn mixed_trees(
+    tree: impl Fn(&mut Random, &[Arc<dyn AnyJoint>]) -> Arc<Mechanism>,
+) -> Vec<Arc<Mechanism>> {
     let all = [
         joints::revolute(),
         joints::ball(),
