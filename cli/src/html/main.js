@@ -47,12 +47,12 @@ class Page {
     this.scheduled = false;
     this.clock.tick(now);
     if (this.clock.playing !== this.drawnPlaying) this.resize();
-    this.draw();
+    this.draw(now);
     this.pace.note(now, this.clock.playing);
     if (this.clock.playing) this.invalidate();
   }
 
-  draw() {
+  draw(now) {
     const { time, duration, playing } = this.clock;
     if (this.stage) {
       this.stage.draw(time);
@@ -60,6 +60,11 @@ class Page {
       if (element("names").checked) this.placeLabels();
     }
     for (const plot of this.plots) plot.show(time);
+    // Numbers that change faster cannot be read, and cost as much as the picture.
+    if (!playing || !(now - this.told < 100)) {
+      for (const plot of this.plots) plot.tell();
+      this.told = now;
+    }
     element("scrub").value = duration ? time / duration : 0;
     element("time").textContent = `${time.toFixed(3)} / ${duration.toFixed(3)} s`;
     element("play").textContent = playing ? "Pause" : "Play";
