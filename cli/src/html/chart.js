@@ -33,6 +33,7 @@ class Plot {
   constructor(recording, chart, scrub) {
     this.recording = recording;
     this.chart = chart;
+    this.time = 0;
     this.element = document.createElement("section");
     this.element.className = "chart";
     this.element.innerHTML = `<div class="head"><h2></h2><span class="unit"></span></div>
@@ -53,7 +54,7 @@ class Plot {
     this.select.addEventListener("change", () => {
       this.choose(Number(this.select.value));
       this.draw();
-      this.show(this.time ?? 0);
+      this.tell();
     });
     this.find(".head").append(this.select);
   }
@@ -83,6 +84,7 @@ class Plot {
     if (index < 0) return;
     this.choose(index);
     this.draw();
+    this.tell();
   }
 
   listen(scrub) {
@@ -198,14 +200,18 @@ class Plot {
     context.stroke();
   }
 
-  /** Moves the cursor to a time and shows the numbers there. */
+  /** Moves the cursor to a time. */
   show(time) {
     this.time = time;
     const { left, right } = Plot.margin;
     const part = this.recording.duration ? time / this.recording.duration : 0;
     this.width ??= this.canvas.clientWidth;
     this.cursor.style.transform = `translateX(${left + part * (this.width - left - right)}px)`;
-    const frame = this.recording.nearest(time);
+  }
+
+  /** Shows the numbers at the time of the cursor. */
+  tell() {
+    const frame = this.recording.nearest(this.time);
     this.variant.columns.forEach(({ index }, k) => {
       const text = shortNumber(this.recording.columns[index][frame]);
       if (this.values[k].textContent !== text) this.values[k].textContent = text;

@@ -1,178 +1,217 @@
-/** Puts the parts together. */
-function start() {
-  const element = (id) => document.getElementById(id);
-  const recording = new Recording(JSON.parse(element("header").textContent), element("numbers").textContent.trim());
-  element("name").textContent = recording.name;
-  element("description").textContent = recording.description;
-  element("facts").textContent = `${recording.method} · ${recording.frames} frames`;
+const element = (id) => document.getElementById(id);
 
-  const canvas = element("stage");
-  let stage = null;
-  try {
-    if (recording.frames === 0) throw new Error("the simulation stopped before its first sample");
-    stage = new Stage(recording, new Painter(canvas));
-  } catch (error) {
-    element("refusal").hidden = false;
-    element("refusal").textContent = `The motion cannot be drawn: ${error.message}. Plots do not need it.`;
-    for (const id of ["stage", "tools"]) element(id).hidden = true;
-  }
-  const panel = new Panel(recording, element("selected"));
-  const clock = new Clock(recording.duration, invalidate);
-  const scrub = (time) => clock.seek(time);
-  const plots = recording.charts.map((chart) => new Plot(recording, chart, scrub));
-  element("charts").append(...plots.map((plot) => plot.element));
-  panel.choose(null);
-
-  const labels = recording.bodies.map((body) => {
-    const label = document.createElement("span");
-    label.textContent = body.name;
-    return label;
-  });
-
-  let scheduled = false;
-  function invalidate() {
-    if (!scheduled) requestAnimationFrame(frame);
-    scheduled = true;
+/** The page: its parts, what joins them, and when they are drawn. */
+class Page {
+  constructor(recording) {
+    this.recording = recording;
+    this.canvas = element("stage");
+    this.clock = new Clock(recording.duration, () => this.invalidate());
+    this.panel = new Panel(recording, element("selected"));
+    this.plots = recording.charts.map((chart) => new Plot(recording, chart, (time) => this.clock.seek(time)));
+    this.labels = recording.bodies.map((body) => Object.assign(document.createElement("span"), { textContent: body.name }));
+    this.pace = new Pace(() => this.resize());
+    this.stage = this.makeStage();
+    element("name").textContent = recording.name;
+    element("description").textContent = recording.description;
+    element("facts").textContent = `${recording.method} · ${recording.frames} frames`;
+    element("charts").append(...this.plots.map((plot) => plot.element));
+    this.panel.choose(null);
+    this.listenToTime();
+    if (this.stage) this.listenToView();
+    this.listenToKeys();
+    this.listenToWindow();
+    this.restyle();
+    this.resize();
   }
 
-  /** Pixels of the picture to one of the page; while it plays fewer where drawing is slow. */
-  const sharpest = Math.min(2, window.devicePixelRatio || 1);
-  let sharpness = sharpest;
-  let drawnPlaying = false;
-  const pace = { since: null, drawn: 0, rate: 0 };
-
-  function frame(now) {
-    scheduled = false;
-    clock.tick(now);
-    if (clock.playing !== drawnPlaying) resize();
-    draw();
-    if (!clock.playing) {
-      pace.since = null;
-      element("rate").textContent = "";
-      return;
-    }
-    measure(now);
-    invalidate();
-  }
-
-  function measure(now) {
-    pace.since ??= now;
-    pace.drawn += 1;
-    const span = now - pace.since;
-    if (span < 500) return;
-    pace.rate = ((pace.drawn - 1) / span) * 1000;
-    [pace.since, pace.drawn] = [now, 1];
-    element("rate").textContent = `${pace.rate.toFixed(0)} frames/s`;
-    if (pace.rate < 35 && sharpness > 0.6) {
-      sharpness = Math.max(0.6, 0.8 * sharpness);
-      resize();
+  /** The view; null, and told, where it cannot be. */
+  makeStage() {
+    try {
+      if (this.recording.frames === 0) throw new Error("the simulation stopped before its first sample");
+      return new Stage(this.recording, new Painter(this.canvas));
+    } catch (error) {
+      element("refusal").hidden = false;
+      element("refusal").textContent = `The motion cannot be drawn: ${error.message}. Plots do not need it.`;
+      for (const id of ["stage", "tools"]) element(id).hidden = true;
+      return null;
     }
   }
 
-  function draw() {
-    const { time, duration } = clock;
-    if (stage) {
-      stage.draw(time);
-      panel.show(stage.poses);
-      if (element("names").checked) placeLabels();
+  /** Asks for a picture, soon. */
+  invalidate() {
+    if (!this.scheduled) requestAnimationFrame((now) => this.frame(now));
+    this.scheduled = true;
+  }
+
+  frame(now) {
+    this.scheduled = false;
+    this.clock.tick(now);
+    if (this.clock.playing !== this.drawnPlaying) this.resize();
+    this.draw(now);
+    this.pace.note(now, this.clock.playing);
+    if (this.clock.playing) this.invalidate();
+  }
+
+  draw(now) {
+    const { time, duration, playing } = this.clock;
+    if (this.stage) {
+      this.stage.draw(time);
+      this.panel.show(this.stage.poses);
+      if (element("names").checked) this.placeLabels();
     }
-    for (const plot of plots) plot.show(time);
+    for (const plot of this.plots) plot.show(time);
+    // Numbers that change faster cannot be read, and cost as much as the picture.
+    if (!playing || !(now - this.told < 100)) {
+      for (const plot of this.plots) plot.tell();
+      this.told = now;
+    }
     element("scrub").value = duration ? time / duration : 0;
     element("time").textContent = `${time.toFixed(3)} / ${duration.toFixed(3)} s`;
-    element("play").textContent = clock.playing ? "Pause" : "Play";
+    element("play").textContent = playing ? "Pause" : "Play";
   }
 
-  function placeLabels() {
-    const { clientWidth: width, clientHeight: height } = canvas;
-    recording.bodies.forEach((body, index) => {
-      const place = stage.camera.project(point(stage.poses[index], body.com));
-      labels[index].hidden = !place;
-      if (place) labels[index].style.transform = `translate(${place[0] * width}px, ${place[1] * height}px)`;
+  placeLabels() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    this.recording.bodies.forEach((body, index) => {
+      const place = this.stage.camera.project(point(this.stage.poses[index], body.com));
+      this.labels[index].hidden = !place;
+      if (place) this.labels[index].style.transform = `translate(${place[0] * width}px, ${place[1] * height}px)`;
     });
   }
 
-  function resize() {
-    drawnPlaying = clock.playing;
-    const pixels = drawnPlaying ? sharpness : sharpest;
+  /** Fits the picture to its place: as sharp as the screen, or while it plays as sharp as this machine can. */
+  resize() {
+    this.drawnPlaying = this.clock.playing;
+    const pixels = this.drawnPlaying ? this.pace.sharpness : Pace.sharpest();
+    const { canvas } = this;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(size * pixels)));
     // Setting a size clears the picture, even the same size.
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    invalidate();
+    this.invalidate();
   }
 
-  function select(body) {
-    stage.selected = body;
-    panel.choose(body);
-    if (body !== null) for (const plot of plots) plot.chooseBody(body);
-    invalidate();
+  /** Takes the colours of the style sheet again. */
+  restyle() {
+    this.stage?.readColors();
+    for (const plot of this.plots) plot.resize();
+    this.invalidate();
   }
 
-  function restyle() {
-    stage?.readColors();
-    for (const plot of plots) plot.resize();
-    invalidate();
+  /** Selects a body; null for none. */
+  select(body) {
+    if (!this.stage) return;
+    this.stage.selected = body;
+    this.panel.choose(body);
+    if (body !== null) for (const plot of this.plots) plot.chooseBody(body);
+    this.invalidate();
   }
 
-  element("play").addEventListener("click", () => clock.toggle());
-  element("scrub").addEventListener("input", (event) => clock.seek(event.target.value * recording.duration));
-  element("speed").addEventListener("change", (event) => (clock.speed = Number(event.target.value)));
-  element("loop").addEventListener("change", (event) => (clock.loops = event.target.checked));
-  element("names").addEventListener("change", (event) => {
-    element("labels").replaceChildren(...(event.target.checked ? labels : []));
-    invalidate();
-  });
-  const goHome = () => {
-    stage?.home();
-    invalidate();
-  };
-  element("home").addEventListener("click", goHome);
-  if (stage) {
-    for (const option of ["rods", "frames", "trails", "ground", "follow"]) {
-      element(option).checked = stage.options[option];
-      element(option).addEventListener("change", (event) => {
-        stage.options[option] = event.target.checked;
-        invalidate();
-      });
-    }
-    element("solids").addEventListener("change", (event) => {
-      stage.options.solids = event.target.value;
-      invalidate();
-    });
-    if (recording.shapes.length === 0) {
-      element("solids").options[0].remove();
-      stage.options.solids = "ellipsoid";
-    }
-    stage.camera.listen(canvas, invalidate, (place) => select(stage.pick(place)));
+  /** The first view again. */
+  home() {
+    this.stage?.home();
+    this.invalidate();
   }
 
-  const step = (by) => {
+  /** Goes on by so many frames. */
+  step(by) {
+    const { clock, recording } = this;
     clock.playing = false;
     const target = recording.nearest(clock.time) + by;
     clock.seek(recording.times[Math.min(recording.frames - 1, Math.max(0, target))]);
-  };
-  const keys = {
-    " ": () => clock.toggle(),
-    ArrowLeft: () => step(-1),
-    ArrowRight: () => step(1),
-    Home: () => clock.seek(0),
-    End: () => clock.seek(recording.duration),
-    r: goHome,
-    Escape: () => stage && select(null),
-  };
-  document.addEventListener("keydown", (event) => {
-    const key = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    const own = event.target.closest("select, input, button");
-    const taken = own?.matches("select, input[type=range]") ? /^( |Arrow|Home|End)/ : /^ /;
-    if (!key || event.ctrlKey || event.metaKey || event.altKey || (own && taken.test(event.key))) return;
-    event.preventDefault();
-    key();
-  });
-  new ResizeObserver(resize).observe(canvas);
-  new ResizeObserver(() => plots.forEach((plot) => plot.resize())).observe(element("charts"));
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", restyle);
-  restyle();
-  resize();
+  }
 
+  listenToTime() {
+    const { clock } = this;
+    element("play").addEventListener("click", () => clock.toggle());
+    element("scrub").addEventListener("input", (event) => clock.seek(event.target.value * clock.duration));
+    element("speed").addEventListener("change", (event) => (clock.speed = Number(event.target.value)));
+    element("loop").addEventListener("change", (event) => (clock.loops = event.target.checked));
+  }
+
+  listenToView() {
+    const { options, camera } = this.stage;
+    const changed = (id, change) =>
+      element(id).addEventListener("change", (event) => {
+        change(event.target);
+        this.invalidate();
+      });
+    for (const option of ["rods", "frames", "trails", "ground", "follow"]) {
+      element(option).checked = options[option];
+      changed(option, (box) => (options[option] = box.checked));
+    }
+    if (this.recording.shapes.length === 0) {
+      element("solids").options[0].remove();
+      options.solids = "ellipsoid";
+    }
+    changed("solids", (list) => (options.solids = list.value));
+    changed("names", (box) => element("labels").replaceChildren(...(box.checked ? this.labels : [])));
+    element("home").addEventListener("click", () => this.home());
+    const clicked = (place) => this.select(this.stage.pick(place));
+    camera.listen(this.canvas, () => this.invalidate(), clicked);
+  }
+
+  listenToKeys() {
+    const keys = {
+      " ": () => this.clock.toggle(),
+      ArrowLeft: () => this.step(-1),
+      ArrowRight: () => this.step(1),
+      Home: () => this.clock.seek(0),
+      End: () => this.clock.seek(this.clock.duration),
+      r: () => this.home(),
+      Escape: () => this.select(null),
+    };
+    document.addEventListener("keydown", (event) => {
+      const key = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+      const own = event.target.closest("select, input, button");
+      const taken = own?.matches("select, input[type=range]") ? /^( |Arrow|Home|End)/ : /^ /;
+      if (!key || event.ctrlKey || event.metaKey || event.altKey || (own && taken.test(event.key))) return;
+      event.preventDefault();
+      key();
+    });
+  }
+
+  listenToWindow() {
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+    new ResizeObserver(() => this.plots.forEach((plot) => plot.resize())).observe(element("charts"));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.restyle());
+  }
+}
+
+/** Counts the frames drawn in a second, and asks for a less sharp picture where they are few. */
+class Pace {
+  static least = 35;
+  static sharpest = () => Math.min(2, window.devicePixelRatio || 1);
+
+  constructor(changed) {
+    this.changed = changed;
+    this.sharpness = Pace.sharpest();
+    this.since = null;
+    this.rate = 0;
+  }
+
+  /** A frame has been drawn at `now`, ms. */
+  note(now, playing) {
+    if (!playing || this.since === null) {
+      [this.since, this.drawn] = [playing ? now : null, 0];
+      if (!playing) element("rate").textContent = "";
+      return;
+    }
+    this.drawn += 1;
+    const span = now - this.since;
+    if (span < 500) return;
+    this.rate = (1000 * this.drawn) / span;
+    [this.since, this.drawn] = [now, 0];
+    element("rate").textContent = `${this.rate.toFixed(0)} frames/s`;
+    if (this.rate >= Pace.least || this.sharpness <= 0.6) return;
+    this.sharpness = Math.max(0.6, 0.8 * this.sharpness);
+    this.changed();
+  }
+}
+
+function start() {
+  const header = JSON.parse(element("header").textContent);
+  const recording = new Recording(header, element("numbers").textContent.trim());
+  const { clock, stage, pace } = new Page(recording);
   // For the browser's console, and for tests.
   window.hamel = {
     recording,

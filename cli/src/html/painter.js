@@ -97,7 +97,7 @@ class Painter {
     this.solids = this.program(solidVertex, solidFragment);
     this.lines = this.program(lineVertex, lineFragment);
     this.meshes = new Map();
-    this.around = software ? 20 : 40;
+    this.around = software ? { few: 32, many: 16, shadow: 8 } : { few: 40, many: 40, shadow: 24 };
     this.scratch = gl.createBuffer();
     this.lineArrays = gl.createVertexArray();
     gl.enable(gl.DEPTH_TEST);

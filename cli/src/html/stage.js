@@ -98,11 +98,13 @@ class Stage {
   /** All solids: for each body its shapes, its ellipsoid and its box of inertia, of which one kind is shown. */
   makeSolids() {
     const { painter, recording } = this;
+    const { few, many, shadow } = painter.around;
+    const around = recording.bodies.length > 8 ? many : few;
     const solids = [];
     const least = 0.006 * this.size;
     recording.shapes.forEach(({ body, kind, size, pose, color }) => {
       const key = kind === "capsule" ? `capsule ${size}` : kind;
-      const mesh = painter.mesh(key, () => meshes[kind](Math.max(32, painter.around), ...size));
+      const mesh = painter.mesh(key, () => meshes[kind](few, ...size));
       const scale = {
         box: () => scaled(size, 0.5),
         sphere: () => [size[0], size[0], size[0]],
@@ -117,8 +119,8 @@ class Stage {
       const local = poseOf(ellipsoid.pose);
       const bare = !recording.shapes.some((shape) => shape.body === body);
       const half = ellipsoid.half.map((axis) => Math.max(axis, least));
-      const sphere = painter.mesh("sphere", () => meshes.sphere(recording.bodies.length > 8 ? painter.around : 40));
-      const coarse = painter.mesh("coarse sphere", () => meshes.sphere(12));
+      const sphere = painter.mesh("ellipsoid", () => meshes.sphere(around));
+      const coarse = painter.mesh("coarse sphere", () => meshes.sphere(shadow));
       solids.push({ body, when: bare ? ["shape", "ellipsoid"] : ["ellipsoid"], mesh: sphere, coarse, local, size: half, octants: true, reach: half });
       // A box of half sides s has moments m/3 (s² + s²), the ellipsoid m/5 (a² + a²).
       const sides = scaled(half, Math.sqrt(3 / 5));
@@ -193,8 +195,8 @@ class Stage {
     const { painter, size, colors } = this;
     const place = ({ body, local }) => (body === null ? local : point(poses[body], local));
     const thick = 0.007 * size;
-    const ball = painter.mesh("ball", () => meshes.sphere(8));
-    const tube = painter.mesh("rod", () => meshes.tube(8));
+    const ball = painter.mesh("ball", () => meshes.sphere(4));
+    const tube = painter.mesh("rod", () => meshes.tube(6));
     const out = [];
     for (const rod of this.rods) {
       if (rod.joint) {
