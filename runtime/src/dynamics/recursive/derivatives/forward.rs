@@ -56,11 +56,24 @@ impl Responses {
     }
 }
 
-/// The responses to all `pushes`, column by column of `out`.
-pub(super) fn respond(tree: &Tree<'_>, sweep: &mut Sweep, pushes: &[Push], out: &mut Sensitivity) {
+/// The responses to all `pushes`, column by column of `out`; `TURNS` says whether any has a U.
+pub(super) fn respond<const TURNS: bool>(
+    tree: &Tree<'_>,
+    sweep: &mut Sweep,
+    pushes: &[Push],
+    out: &mut Sensitivity,
+) {
     let width = out.columns;
     for (block, pushes) in pushes.chunks(LANES).enumerate() {
-        sweep.respond(tree, pushes, (&mut out.entries, width, block * LANES));
+        sweep.respond::<TURNS>(tree, pushes, (&mut out.entries, width, block * LANES));
+    }
+}
+
+/// M̄⁻¹, from a unit force on every speed.
+pub(super) fn invert(tree: &Tree<'_>, sweep: &mut Sweep, pushes: &[Push], out: &mut Sensitivity) {
+    let width = out.columns;
+    for (block, pushes) in pushes.chunks(LANES).enumerate() {
+        sweep.respond_symmetrically(tree, pushes, (&mut out.entries, width, block * LANES));
     }
 }
 
@@ -126,9 +139,12 @@ impl Recursive {
             drags: &responses.drags,
         };
         let sweep = &mut responses.sweep;
-        respond(&tree, sweep, &responses.pushes, &mut out.by_local);
-        respond(&tree, sweep, &responses.faster, &mut out.by_speeds);
-        respond(&tree, sweep, &responses.forced, &mut out.by_efforts);
+        respond::<true>(&tree, sweep, &responses.pushes, &mut out.by_local);
+        respond::<true>(&tree, sweep, &responses.faster, &mut out.by_speeds);
+        match self.plain {
+            true => invert(&tree, sweep, &responses.forced, &mut out.by_efforts),
+            false => respond::<false>(&tree, sweep, &responses.forced, &mut out.by_efforts),
+        }
         Ok(())
     }
 

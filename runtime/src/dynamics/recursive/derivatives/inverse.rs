@@ -33,6 +33,8 @@ pub struct InverseDerivatives {
     variations: Vec<Variation<f64>>,
     /// One a freedom.
     above: Vec<Above>,
+    /// One a freedom: its products with one below.
+    met: Vec<Four>,
     /// One a body.
     coriolis: Vec<Coriolis>,
 }
@@ -47,6 +49,7 @@ impl InverseDerivatives {
             branches: branches(mechanism),
             variations: vec![Variation::zero(); freedoms],
             above: vec![[[0.0; 4]; 9]; freedoms],
+            met: vec![[0.0; 4]; freedoms],
             coriolis: vec![Coriolis::zero(); mechanism.bodies().len()],
         }
     }
@@ -172,21 +175,17 @@ impl Recursive {
     }
 
     /// One freedom and speed against all above its joint.
-    #[inline(always)]
     fn climb_pairs(&self, index: usize, slot: usize, below: &Below, out: &mut InverseDerivatives) {
-        let mut below = *below;
-        let mut body = index;
-        let own = &out.branches[index];
-        let own_speed = speed_of(own, slot);
+        self.meet_above(index, below, out);
+        let own_speed = speed_of(&out.branches[index], slot);
         let (locals, speeds) = (out.by_local.columns, out.by_speeds.columns);
-        while out.branches[body].parent != WORLD {
-            shift(&mut below, &self.nodes[body].motion.placement.offset);
-            body = out.branches[body].parent;
-            let branch = out.branches[body];
+        let (by_local, by_speeds) = (&mut out.by_local.entries, &mut out.by_speeds.entries);
+        let mut body = out.branches[index].parent;
+        while body != WORLD {
+            let branch = &out.branches[body];
             for other in branch.freedoms.0..branch.freedoms.1 {
-                let [raised, faster, local, speed] = products(&out.above[other], &below);
-                let other_speed = speed_of(&branch, other);
-                let (by_local, by_speeds) = (&mut out.by_local.entries, &mut out.by_speeds.entries);
+                let [raised, faster, local, speed] = out.met[other];
+                let other_speed = speed_of(branch, other);
                 if let Some(row) = other_speed {
                     by_local[row * locals + slot] = raised;
                 }
@@ -197,6 +196,25 @@ impl Recursive {
                     by_speeds[above * speeds + own] = faster;
                     by_speeds[own * speeds + above] = speed;
                 }
+            }
+            body = branch.parent;
+        }
+    }
+
+    /// The products of one freedom and speed with those of all joints above, by their freedoms.
+    // On its own and through memory, so that the four products stay side by side in vector registers.
+    #[inline(never)]
+    fn meet_above(&self, index: usize, below: &Below, out: &mut InverseDerivatives) {
+        let mut below = *below;
+        let mut branch = &out.branches[index];
+        let mut body = index;
+        while branch.parent != WORLD {
+            shift(&mut below, &self.nodes[body].motion.placement.offset);
+            body = branch.parent;
+            branch = &out.branches[body];
+            let own = branch.freedoms.0..branch.freedoms.1;
+            for (met, above) in out.met[own.clone()].iter_mut().zip(&out.above[own]) {
+                *met = products(above, &below);
             }
         }
     }
