@@ -26,8 +26,8 @@ type Below = [Four; 9];
 /// `∂τ̄/∂ϕ` and `∂τ̄/∂v̄` of inverse dynamics; `∂τ̄/∂v̄̇` is the mass matrix.
 #[derive(Clone, Debug)]
 pub struct InverseDerivatives {
-    by_local: Sensitivity,
-    by_speeds: Sensitivity,
+    pub(super) by_local: Sensitivity,
+    pub(super) by_speeds: Sensitivity,
     branches: Vec<Branch>,
     /// One a freedom.
     variations: Vec<Variation<f64>>,
@@ -84,6 +84,18 @@ impl Recursive {
         self.check(q, &sizes)?;
         self.check_differentiable(&[&out.by_local, &out.by_speeds])?;
         self.advance(q, speeds, Some(accelerations));
+        self.differentiate_pairs(q, speeds, accelerations, out);
+        Ok(())
+    }
+
+    /// What is left of [`Recursive::inverse_dynamics_derivatives`] after [`Recursive::advance`].
+    pub(super) fn differentiate_pairs(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        accelerations: &[f64],
+        out: &mut InverseDerivatives,
+    ) {
         for (own, node) in out.coriolis.iter_mut().zip(&self.nodes) {
             *own = Coriolis::of(&node.rigid, &node.motion.twist);
         }
@@ -93,7 +105,6 @@ impl Recursive {
             self.vary(index, (q, speeds, accelerations), own);
             self.differentiate_joint(index, q, out);
         }
-        Ok(())
     }
 
     /// Inward: F, N and B of each body and all that hangs on it.

@@ -1,4 +1,4 @@
-//! Linear responses of the articulated tree, four at a time: inward along the branches of what pushes, outward over all bodies.
+//! Linear responses of the articulated tree, eight at a time: inward along the branches of what pushes, outward over all bodies.
 
 use super::{Branch, WORLD};
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
@@ -103,7 +103,7 @@ impl Sweep {
     }
 
     /// The rates that all speeds answer with, into `rows` (one a speed, of `width` entries), columns from `first` on: one a push, of which there
-    /// are at most four. `TURNS` says whether any of them has a U.
+    /// are at most eight. `TURNS` says whether any of them has a U.
     pub(super) fn respond<const TURNS: bool>(
         &mut self,
         tree: &Tree<'_>,
