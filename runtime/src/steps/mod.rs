@@ -36,6 +36,9 @@ pub trait Steps {
     /// Whether any column of X̄ has a linear part.
     fn slides(&self) -> bool;
 
+    /// Whether any column of X̄ has an angular part, and whether any has a linear one.
+    fn parts(&self) -> (bool, bool);
+
     /// The joint's child frame, given its joint frame in the parent's child frame and that of the parent in the world.
     fn place(
         &self,
@@ -156,6 +159,10 @@ where
 {
     fn slides(&self) -> bool {
         place::Parts::any::<J, N, K, S, C>().1
+    }
+
+    fn parts(&self) -> (bool, bool) {
+        place::Parts::any::<J, N, K, S, C>()
     }
 
     fn place(

@@ -1,7 +1,7 @@
 //! A random chain, ready to be timed.
 
 use cpu_time::ThreadTime;
-use hamel::dynamics::{Dynamics, Recursive};
+use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, Recursive};
 use hamel_tests::random;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -16,8 +16,22 @@ struct State {
     efforts: Vec<f64>,
 }
 
+/// What is timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Task {
+    /// v̄̇.
+    Forward,
+    /// Derivatives of inverse dynamics.
+    InverseDerivatives,
+    /// Derivatives of forward dynamics.
+    ForwardDerivatives,
+}
+
 /// A chain with states of its own.
 pub struct Chain {
+    task: Task,
+    inverse: InverseDerivatives,
+    forward: ForwardDerivatives,
     dynamics: Recursive,
     states: Vec<State>,
     rates: Vec<f64>,
@@ -25,7 +39,7 @@ pub struct Chain {
 
 impl Chain {
     /// `count` bodies on joints of a type of the library.
-    pub fn new(joint: &str, count: usize) -> Self {
+    pub fn new(task: Task, joint: &str, count: usize) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(count as u64);
         let registry = hamel_joints::registry();
         let entry = registry.get(joint).expect("a joint of the library");
@@ -38,20 +52,26 @@ impl Chain {
             efforts: random::numbers(&mut random, layout.freedoms),
         });
         Self {
+            task,
+            inverse: InverseDerivatives::new(&mechanism),
+            forward: ForwardDerivatives::new(&mechanism),
             states: states.collect(),
             rates: vec![0.0; layout.speeds],
             dynamics: Recursive::new(mechanism),
         }
     }
 
-    /// How many there are.
-    pub fn bodies(&self) -> usize {
-        self.dynamics.mechanism().bodies().len()
+    /// How many bodies there are, or entries of one matrix of derivatives.
+    pub fn units(&self) -> usize {
+        match self.task {
+            Task::Forward => self.dynamics.mechanism().bodies().len(),
+            _ => self.rates.len() * self.rates.len(),
+        }
     }
 
     /// How many calls take about `time` ns, which warms up as well.
     pub fn calls(&mut self, time: f64) -> usize {
-        let mut calls = 16;
+        let mut calls = 1;
         loop {
             let each = self.time(calls);
             if each * calls as f64 > 0.2 * time {
@@ -61,16 +81,23 @@ impl Chain {
         }
     }
 
-    /// Nanoseconds of one forward dynamics, over `calls` of them.
+    /// Nanoseconds of one call, over `calls` of them.
     pub fn time(&mut self, calls: usize) -> f64 {
         let start = ThreadTime::now();
         for call in 0..calls {
             let State { q, speeds, efforts } = &self.states[call % STATES];
-            let solved = self
-                .dynamics
-                .accelerations(q, speeds, efforts, &mut self.rates);
+            let dynamics = &mut self.dynamics;
+            let solved = match self.task {
+                Task::Forward => dynamics.accelerations(q, speeds, efforts, &mut self.rates),
+                Task::InverseDerivatives => {
+                    dynamics.inverse_dynamics_derivatives(q, speeds, speeds, &mut self.inverse)
+                }
+                Task::ForwardDerivatives => {
+                    dynamics.forward_dynamics_derivatives(q, speeds, efforts, &mut self.forward)
+                }
+            };
             solved.expect("every body has mass");
-            black_box(&self.rates);
+            black_box((&self.rates, &self.inverse, &self.forward));
         }
         start.elapsed().as_nanos() as f64 / calls as f64
     }

@@ -1,11 +1,12 @@
-//! How the time of forward dynamics grows with the number of bodies, on chains of revolute and of ball joints.
+//! How the time of forward dynamics, a body, and that of its derivatives and of those of inverse dynamics, an entry, grow with the number of
+//! bodies, on chains of revolute and of ball joints.
 //!
 //! `cargo bench --package hamel-tests --bench dynamics`. Time is CPU time of the thread. Every repetition visits all chains, so that a machine that
 //! changes speed changes it for all; ratios are taken within a repetition.
 
 mod chain;
 
-use chain::Chain;
+use chain::{Chain, Task};
 
 const LENGTHS: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
 
@@ -20,28 +21,38 @@ const BATCH: f64 = 20e6;
 
 fn main() {
     for joint in ["revolute", "ball", "ball_child"] {
-        report(joint);
+        report(Task::Forward, joint, &LENGTHS);
+    }
+    for task in [Task::InverseDerivatives, Task::ForwardDerivatives] {
+        report(task, "revolute", &LENGTHS);
+        report(task, "ball_child", &LENGTHS[..5]);
     }
 }
 
-/// Measures all lengths and prints a table.
-fn report(joint: &str) {
-    let mut chains: Vec<Chain> = LENGTHS.iter().map(|&n| Chain::new(joint, n)).collect();
+/// Measures chains of these lengths and prints a table.
+fn report(task: Task, joint: &str, lengths: &[usize]) {
+    let chain = |&n: &usize| Chain::new(task, joint, n);
+    let mut chains: Vec<Chain> = lengths.iter().map(chain).collect();
     let calls: Vec<usize> = chains.iter_mut().map(|chain| chain.calls(BATCH)).collect();
     let mut measure = || -> Vec<f64> {
         let chains = chains.iter_mut().zip(&calls);
-        let per_body = chains.map(|(chain, &calls)| chain.time(calls) / chain.bodies() as f64);
-        per_body.collect()
+        let per_unit = chains.map(|(chain, &calls)| chain.time(calls) / chain.units() as f64);
+        per_unit.collect()
     };
     let times: Vec<Vec<f64>> = (0..REPETITIONS).map(|_| measure()).collect();
-    let unit = LENGTHS.iter().position(|&n| n == UNIT).unwrap_or(0);
+    let unit = lengths.iter().position(|&n| n == UNIT).unwrap_or(0);
 
-    println!("\nforward dynamics of chains of `{joint}`, {REPETITIONS} interleaved repetitions");
+    let (name, unit_name) = match task {
+        Task::Forward => ("forward dynamics", "body"),
+        Task::InverseDerivatives => ("derivatives of inverse dynamics", "entry"),
+        Task::ForwardDerivatives => ("derivatives of forward dynamics", "entry"),
+    };
+    println!("\n{name} of chains of `{joint}`, {REPETITIONS} interleaved repetitions");
     println!(
-        "| bodies | ns a body, least | median | of the time at {UNIT} bodies, least | median |"
+        "| bodies | ns a {unit_name}, least | median | of the time at {UNIT} bodies, least | median |"
     );
     println!("|---|---|---|---|---|");
-    for (i, length) in LENGTHS.iter().enumerate() {
+    for (i, length) in lengths.iter().enumerate() {
         let own: Vec<f64> = times.iter().map(|times| times[i]).collect();
         let ratios = times.iter().map(|times| times[i] / times[unit]).collect();
         let units: Vec<f64> = times.iter().map(|times| times[unit]).collect();
@@ -53,7 +64,7 @@ fn report(joint: &str) {
             median(ratios)
         );
     }
-    let last = LENGTHS.len() - 1;
+    let last = lengths.len() - 1;
     let ratio = median(
         times
             .iter()
@@ -63,7 +74,7 @@ fn report(joint: &str) {
     let verdict = if ratio <= LIMIT { "holds" } else { "fails" };
     println!(
         "{} bodies against {UNIT}: {ratio:.3}, at most {LIMIT}: {verdict}",
-        LENGTHS[last]
+        lengths[last]
     );
 }
 

@@ -22,6 +22,8 @@ pub struct AtZero {
     inverse: Grid<Node>,
     /// ∂S/∂ϕ_k.
     slopes: Vec<Grid<Node>>,
+    /// J₀ in the child frame.
+    local: Grid<Node>,
     /// A(Q), where declared.
     constraint: Option<Grid<Node>>,
     /// S̄(Q), with its derivatives along ϕ, where declared; the identity where nothing is.
@@ -52,6 +54,7 @@ impl AtZero {
         let (velocity_map, slopes) = velocity_map(&x, &jacobian);
         Self {
             twist_map_child: to_child(&pose, &x),
+            local: values(&to_child(&pose, &jacobian)),
             twist_map: x,
             inverse: velocity_map.inverse(),
             velocity_map,
@@ -83,6 +86,7 @@ impl AtZero {
             sheet.put("twist_map_child_gradient", of_child);
             sheet.put("velocity_map_gradient", self.slopes[k].clone());
         }
+        sheet.put("local_twist_map", self.local.clone());
         sheet.put("gamma", self.gamma(v));
         sheet.put("j22", self.j22(v));
         sheet.put("configuration_rate", self.configuration_rate(v));
@@ -104,6 +108,38 @@ impl AtZero {
         let rate = self.twist_rate(basis, &arguments.speeds);
         sheet.put("bias_acceleration", rate.times(&arguments.speeds));
         sheet.put("bias_momentum", rate.transpose().times(&arguments.wrench));
+        sheet.put("twist_map_rate", rate.clone());
+        self.derivatives_of_speeds(basis, &rate, arguments, sheet);
+    }
+
+    /// `∂(X̄ v̄)/∂ϕ`, `∂(X̄ᵀh)/∂ϕ`, and the derivatives of c and of its dual by v̄, in which Ẋ̄ is linear.
+    fn derivatives_of_speeds(
+        &self,
+        basis: &Grid<Jet>,
+        rate: &Grid<Node>,
+        arguments: &Arguments,
+        sheet: &mut Sheet<Node>,
+    ) {
+        let map = self.twist_map_child.times(basis);
+        let (speeds, wrench) = (&arguments.speeds, &arguments.wrench);
+        let along = |k: usize| slopes(&map, k).times(speeds);
+        sheet.put("twist_gradient", beside((0..self.freedoms()).map(along)));
+        let along = |k: usize| slopes(&map, k).transpose().times(wrench);
+        sheet.put("effort_gradient", beside((0..self.freedoms()).map(along)));
+        let rates = (0..speeds.rows).map(|a| {
+            let unit = |i: usize| Node::input(f64::from(u8::from(i == a)));
+            let unit = Grid::from_fn(speeds.rows, 1, |i, _| unit(i));
+            (self.twist_rate(basis, &unit), rate.times(&unit))
+        });
+        let rates: Vec<_> = rates.collect();
+        let faster = rates
+            .iter()
+            .map(|(turned, same)| turned.times(speeds).plus(same));
+        sheet.put("bias_acceleration_slope", beside(faster));
+        let faster = rates
+            .iter()
+            .map(|(turned, _)| turned.transpose().times(wrench));
+        sheet.put("bias_momentum_slope", beside(faster));
     }
 
     /// The derivatives of R, p, X, X^c and S̄ along ϕ̇ = `rate`, and the motion of the stored scalars.
@@ -156,6 +192,13 @@ impl AtZero {
         let rate = self.inverse.times(&values(basis).times(speeds));
         along(&map, &rate)
     }
+}
+
+/// Columns beside each other.
+fn beside(columns: impl Iterator<Item = Grid<Node>>) -> Grid<Node> {
+    let columns: Vec<Grid<Node>> = columns.collect();
+    let rows = columns.first().map_or(0, |column| column.rows);
+    Grid::from_fn(rows, columns.len(), |i, k| columns[k].at(i, 0).clone())
 }
 
 /// The derivative along ϕ̇ = `rate`.

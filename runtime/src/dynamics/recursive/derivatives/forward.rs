@@ -1,6 +1,8 @@
 //! Derivatives of forward dynamics.
 
 use super::coriolis::{ArticulatedCoriolis, Coriolis};
+use super::inverse::InverseDerivatives;
+use super::product::negative_product;
 use super::sweep::{LANES, Push, Sweep, Tree};
 use super::{Branch, Sensitivity, branches, in_child};
 use crate::dynamics::recursive::Recursive;
@@ -20,8 +22,13 @@ pub struct ForwardDerivatives {
     by_local: Sensitivity,
     by_speeds: Sensitivity,
     by_efforts: Sensitivity,
+    /// For mechanisms of few speeds.
+    inverse: Option<InverseDerivatives>,
     pub(super) responses: Responses,
 }
+
+/// Up to so many speeds a product with M̄⁻¹ costs less than sweeps.
+const FEW: usize = 56;
 
 /// What turns pushes into rates.
 #[derive(Clone, Debug)]
@@ -56,11 +63,38 @@ impl Responses {
     }
 }
 
-/// The responses to all `pushes`, column by column of `out`.
-pub(super) fn respond(tree: &Tree<'_>, sweep: &mut Sweep, pushes: &[Push], out: &mut Sensitivity) {
+impl Responses {
+    /// The tree, the sweeps and the unit efforts.
+    fn split<'a>(&'a mut self, dynamics: &'a Recursive) -> (Tree<'a>, &'a mut Sweep, &'a [Push]) {
+        let tree = Tree {
+            branches: &self.branches,
+            nodes: &dynamics.nodes,
+            columns: &dynamics.columns,
+            pivots: &dynamics.pivots,
+            drags: &self.drags,
+        };
+        (tree, &mut self.sweep, &self.forced)
+    }
+}
+
+/// The responses to all `pushes`, column by column of `out`; `TURNS` says whether any has a U.
+pub(super) fn respond<const TURNS: bool>(
+    tree: &Tree<'_>,
+    sweep: &mut Sweep,
+    pushes: &[Push],
+    out: &mut Sensitivity,
+) {
     let width = out.columns;
     for (block, pushes) in pushes.chunks(LANES).enumerate() {
-        sweep.respond(tree, pushes, (&mut out.entries, width, block * LANES));
+        sweep.respond::<TURNS>(tree, pushes, (&mut out.entries, width, block * LANES));
+    }
+}
+
+/// M̄⁻¹, from a unit force on every speed.
+pub(super) fn invert(tree: &Tree<'_>, sweep: &mut Sweep, pushes: &[Push], out: &mut Sensitivity) {
+    let width = out.columns;
+    for (block, pushes) in pushes.chunks(LANES).enumerate() {
+        sweep.respond_symmetrically(tree, pushes, (&mut out.entries, width, block * LANES));
     }
 }
 
@@ -73,6 +107,8 @@ impl ForwardDerivatives {
             by_local: Sensitivity::new(speeds, freedoms),
             by_speeds: Sensitivity::new(speeds, speeds),
             by_efforts: Sensitivity::new(speeds, freedoms),
+            inverse: (speeds <= FEW && speeds == freedoms)
+                .then(|| InverseDerivatives::new(mechanism)),
             responses: Responses::new(mechanism),
         }
     }
@@ -113,6 +149,17 @@ impl Recursive {
         self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
         self.advance(q, speeds, Some(&out.rates));
+        if let (true, Some(inverse)) = (self.plain, &mut out.inverse) {
+            self.differentiate_pairs(q, speeds, &out.rates, inverse);
+            for index in 0..self.links.len() {
+                self.push_efforts(index, q, &mut out.responses.forced);
+            }
+            let (tree, sweep, forced) = out.responses.split(self);
+            invert(&tree, sweep, forced, &mut out.by_efforts);
+            negative_product(&out.by_efforts, &inverse.by_local, &mut out.by_local);
+            negative_product(&out.by_efforts, &inverse.by_speeds, &mut out.by_speeds);
+            return Ok(());
+        }
         self.drag(&mut out.responses);
         for index in 0..self.links.len() {
             self.push(index, (q, speeds, &out.rates), efforts, &mut out.responses);
@@ -126,9 +173,12 @@ impl Recursive {
             drags: &responses.drags,
         };
         let sweep = &mut responses.sweep;
-        respond(&tree, sweep, &responses.pushes, &mut out.by_local);
-        respond(&tree, sweep, &responses.faster, &mut out.by_speeds);
-        respond(&tree, sweep, &responses.forced, &mut out.by_efforts);
+        respond::<true>(&tree, sweep, &responses.pushes, &mut out.by_local);
+        respond::<true>(&tree, sweep, &responses.faster, &mut out.by_speeds);
+        match self.plain {
+            true => invert(&tree, sweep, &responses.forced, &mut out.by_efforts),
+            false => respond::<false>(&tree, sweep, &responses.forced, &mut out.by_efforts),
+        }
         Ok(())
     }
 
@@ -196,14 +246,20 @@ impl Recursive {
             (push.rate, push.turn) = (variation.speed_rate, turn);
             responses.faster[speed] = push;
         }
+        self.push_efforts(index, state.0, &mut responses.forced);
+    }
+
+    /// What one unit of each effort of a joint pushes.
+    fn push_efforts(&self, index: usize, q: &[f64], forced: &mut [Push]) {
+        let link = &self.links[index];
+        let (count, q) = (link.speeds.len(), &q[link.configuration.clone()]);
         for slot in link.freedoms.clone() {
             let mut unit = [0.0; MOST_FREEDOMS];
             unit[slot - link.freedoms.start] = 1.0;
             let mut forces = [0.0; MOST_FREEDOMS];
             let (unit, forces) = (&unit[..link.freedoms.len()], &mut forces[..count]);
-            let q = &state.0[link.configuration.clone()];
             link.joint.reduce_efforts(q, unit, forces);
-            responses.forced[slot] = self.pushed(index, Vector6::zeros(), forces);
+            forced[slot] = self.pushed(index, Vector6::zeros(), forces);
         }
     }
 

@@ -5,7 +5,7 @@
 //! p̄̇_j by `Uᵀ (N_j X°_j − ad_Xᵀ h_j) − (ad_Z g)ᵀ N_j X̄_j`. The speed does the same with U = X and Z = 0. With `∂v̄/∂ϕ = −M̄⁻¹ ∂(M̄ v̄)/∂ϕ` by
 //! sweeps that of fixed p̄ follow.
 
-use super::forward::{Responses, respond};
+use super::forward::{Responses, invert, respond};
 use super::sweep::{Push, Tree};
 use super::{Sensitivity, in_child};
 use crate::dynamics::recursive::Recursive;
@@ -179,8 +179,8 @@ impl Recursive {
             drags: &responses.drags,
         };
         let sweep = &mut responses.sweep;
-        respond(&tree, sweep, &responses.pushes, &mut out.speeds_by_local);
-        respond(&tree, sweep, &out.by_momenta, &mut out.speeds_by_momenta);
+        respond::<false>(&tree, sweep, &responses.pushes, &mut out.speeds_by_local);
+        invert(&tree, sweep, &out.by_momenta, &mut out.speeds_by_momenta);
     }
 
     /// X° of one joint, and `N X° − ad_Xᵀ h`.

@@ -24,7 +24,8 @@
 //!
 //! Forward dynamics takes the same U and W as loads of the articulated factors: W is one more acceleration of the base of the subtree, and
 //! B, with the joints below free to give way, is one more 6×3 matrix of the articulated recursion. Each column then is one sweep inward along
-//! its branch and one outward, O(n), eight columns at a time; M̄ is never formed.
+//! its branch and one outward, O(n), eight columns at a time; M̄ is never formed. Mechanisms of few speeds
+//! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them.
 //!
 //! Elements (springs, dampers, wrenches), rotors that add velocity terms, joints whose motion is prescribed and constraints that couple joints are
 //! not covered: asking for derivatives of such a mechanism is an error.
@@ -34,6 +35,7 @@ mod energy;
 mod forward;
 mod hamiltonian;
 mod inverse;
+mod product;
 mod sweep;
 
 pub use forward::ForwardDerivatives;
@@ -166,6 +168,8 @@ struct Branch {
     parent: usize,
     freedoms: (usize, usize),
     speeds: (usize, usize),
+    /// Whether any column of X̄ has an angular part, and whether any has a linear one.
+    parts: (bool, bool),
 }
 
 /// The parent of a body that hangs on the world.
@@ -178,6 +182,7 @@ fn branches(mechanism: &Mechanism) -> Vec<Branch> {
             parent: body.parent().unwrap_or(WORLD),
             freedoms: (ranges.freedoms.start, ranges.freedoms.end),
             speeds: (ranges.speeds.start, ranges.speeds.end),
+            parts: body.joint().parts(),
         }
     };
     mechanism.bodies().iter().map(branch).collect()

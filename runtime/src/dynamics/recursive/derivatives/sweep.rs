@@ -59,8 +59,10 @@ pub(super) struct Tree<'a> {
 pub(super) struct Sweep {
     /// One a body: the wrench that a sweep inward carries.
     wrenches: Vec<[Lane; 6]>,
-    /// One a body: rate and angular U of what hangs on it.
-    motions: Vec<[Lane; 9]>,
+    /// One a body: the rate of what hangs on it.
+    motions: Vec<[Lane; 6]>,
+    /// One a body: the angular U of what hangs on it.
+    turns: Vec<[Lane; 3]>,
     /// One a speed.
     loads: Vec<Lane>,
     /// Whether the sweep inward has met a body.
@@ -77,37 +79,59 @@ fn add(sum: &mut Lane, lane: &Lane, weight: f64) {
     }
 }
 
-/// `lane · column` over six places.
+/// `r × force` added to a moment.
 #[inline(always)]
-fn product(lanes: &[Lane; 6], column: &Vector6<f64>) -> Lane {
-    let mut sum = ZERO;
-    for i in 0..6 {
-        add(&mut sum, &lanes[i], column[i]);
-    }
-    sum
+fn add_cross(moment: &mut [Lane; 6], [x, y, z]: [f64; 3]) {
+    let [_, _, _, fx, fy, fz] = *moment;
+    add(&mut moment[0], &fz, y);
+    add(&mut moment[0], &fy, -z);
+    add(&mut moment[1], &fx, z);
+    add(&mut moment[1], &fz, -x);
+    add(&mut moment[2], &fy, x);
+    add(&mut moment[2], &fx, -y);
 }
 
 impl Sweep {
     pub(super) fn new(bodies: usize, speeds: usize) -> Self {
         Self {
             wrenches: vec![[ZERO; 6]; bodies],
-            motions: vec![[ZERO; 9]; bodies],
+            motions: vec![[ZERO; 6]; bodies],
+            turns: vec![[ZERO; 3]; bodies],
             loads: vec![ZERO; speeds],
             met: vec![false; bodies],
         }
     }
 
     /// The rates that all speeds answer with, into `rows` (one a speed, of `width` entries), columns from `first` on: one a push, of which there
-    /// are at most eight.
-    pub(super) fn respond(
+    /// are at most eight. `TURNS` says whether any of them has a U.
+    pub(super) fn respond<const TURNS: bool>(
+        &mut self,
+        tree: &Tree<'_>,
+        pushes: &[Push],
+        out: (&mut [f64], usize, usize),
+    ) {
+        let last = self.inward(tree, pushes);
+        self.outward::<TURNS>(tree, pushes, (last, tree.branches.len()), out);
+        self.met[..=last].fill(false);
+    }
+
+    /// [`Sweep::respond`] to unit forces on the speeds from `first` on, whose responses are symmetric: half of them are found by outward sweeps, the
+    /// others are copied.
+    pub(super) fn respond_symmetrically(
         &mut self,
         tree: &Tree<'_>,
         pushes: &[Push],
         (rows, width, first): (&mut [f64], usize, usize),
     ) {
         let last = self.inward(tree, pushes);
-        self.outward(tree, pushes, last, (rows, width, first));
+        self.outward::<false>(tree, pushes, (last, last + 1), (rows, width, first));
         self.met[..=last].fill(false);
+        let (before, own) = rows.split_at_mut(first * width);
+        for (row, entries) in before.chunks_exact(width).enumerate() {
+            for (lane, entry) in entries[first..first + pushes.len()].iter().enumerate() {
+                own[lane * width + row] = *entry;
+            }
+        }
     }
 
     fn meet(&mut self, tree: &Tree<'_>, body: usize) {
@@ -150,11 +174,22 @@ impl Sweep {
     /// One body of the sweep inward.
     #[inline(always)]
     fn give_way(&mut self, tree: &Tree<'_>, body: usize) {
-        let branch = tree.branches[body];
+        let branch = &tree.branches[body];
+        let (turns, slides) = branch.parts;
         let mut wrench = self.wrenches[body];
         for speed in branch.speeds.0..branch.speeds.1 {
-            let pivot = &tree.pivots[speed];
-            let mut load = product(&wrench, &tree.columns[speed]);
+            let (pivot, column) = (&tree.pivots[speed], &tree.columns[speed]);
+            let mut load = ZERO;
+            if turns {
+                for i in 0..3 {
+                    add(&mut load, &wrench[i], column[i]);
+                }
+            }
+            if slides {
+                for i in 3..6 {
+                    add(&mut load, &wrench[i], column[i]);
+                }
+            }
             for entry in &mut load {
                 *entry *= -pivot.inverse;
             }
@@ -165,59 +200,70 @@ impl Sweep {
         }
         if branch.parent != WORLD {
             self.meet(tree, branch.parent);
-            let [x, y, z] = tree.nodes[body].motion.placement.offset.into();
-            let [mut a, mut b, mut c, fx, fy, fz] = wrench;
-            add(&mut a, &fz, y);
-            add(&mut a, &fy, -z);
-            add(&mut b, &fx, z);
-            add(&mut b, &fz, -x);
-            add(&mut c, &fy, x);
-            add(&mut c, &fx, -y);
+            add_cross(&mut wrench, tree.nodes[body].motion.placement.offset.into());
             let parent = &mut self.wrenches[branch.parent];
-            for (sum, own) in parent.iter_mut().zip([a, b, c, fx, fy, fz]) {
-                add(sum, &own, 1.0);
+            for (sum, own) in parent.iter_mut().zip(&wrench) {
+                add(sum, own, 1.0);
             }
         }
     }
 
-    fn outward(
+    /// Outward over the bodies up to `end`, of which those after `last` have no loads.
+    #[inline(always)]
+    fn outward<const TURNS: bool>(
         &mut self,
         tree: &Tree<'_>,
         pushes: &[Push],
-        last: usize,
+        (last, end): (usize, usize),
         (rows, width, first): (&mut [f64], usize, usize),
     ) {
         let count = pushes.len();
-        for (body, branch) in tree.branches.iter().enumerate() {
-            let mut motion = match branch.parent {
-                WORLD => [ZERO; 9],
-                parent => self.motions[parent],
-            };
-            let [x, y, z] = tree.nodes[body].motion.placement.offset.into();
-            let [wx, wy, wz, ..] = motion;
-            add(&mut motion[3], &wy, z);
-            add(&mut motion[3], &wz, -y);
-            add(&mut motion[4], &wz, x);
-            add(&mut motion[4], &wx, -z);
-            add(&mut motion[5], &wx, y);
-            add(&mut motion[5], &wy, -x);
+        for (body, branch) in tree.branches[..end].iter().enumerate() {
+            let (mut motion, mut turn) = ([ZERO; 6], [ZERO; 3]);
+            if branch.parent != WORLD {
+                motion = self.motions[branch.parent];
+                if TURNS {
+                    turn = self.turns[branch.parent];
+                }
+                let [x, y, z] = tree.nodes[body].motion.placement.offset.into();
+                let [wx, wy, wz, ..] = motion;
+                add(&mut motion[3], &wy, z);
+                add(&mut motion[3], &wz, -y);
+                add(&mut motion[4], &wz, x);
+                add(&mut motion[4], &wx, -z);
+                add(&mut motion[5], &wx, y);
+                add(&mut motion[5], &wy, -x);
+            }
+            let (turns, slides) = branch.parts;
+            let pushed = body <= last && self.met[body];
             for speed in (branch.speeds.0..branch.speeds.1).rev() {
-                let mut rate = match body <= last && self.met[body] {
-                    true => self.loads[speed],
-                    false => ZERO,
-                };
                 let (pivot, drag) = (&tree.pivots[speed], &tree.drags[speed]);
-                let mut carried = ZERO;
-                for i in 0..6 {
+                let (mut carried, mut other) = (ZERO, ZERO);
+                for i in 0..3 {
                     add(&mut carried, &motion[i], pivot.momentum[i]);
+                    add(&mut other, &motion[3 + i], pivot.momentum[3 + i]);
+                }
+                add(&mut carried, &other, 1.0);
+                let mut rate = ZERO;
+                if pushed {
+                    rate = self.loads[speed];
+                }
+                if TURNS {
+                    for i in 0..3 {
+                        add(&mut rate, &turn[i], -drag[i]);
+                    }
                 }
                 add(&mut rate, &carried, -pivot.inverse);
-                for i in 0..3 {
-                    add(&mut rate, &motion[6 + i], -drag[i]);
-                }
                 let column = &tree.columns[speed];
-                for i in 0..6 {
-                    add(&mut motion[i], &rate, column[i]);
+                if turns {
+                    for i in 0..3 {
+                        add(&mut motion[i], &rate, column[i]);
+                    }
+                }
+                if slides {
+                    for i in 3..6 {
+                        add(&mut motion[i], &rate, column[i]);
+                    }
                 }
                 let start = speed * width + first;
                 match <&mut Lane>::try_from(&mut rows[start..start + count]) {
@@ -226,7 +272,10 @@ impl Sweep {
                 }
             }
             self.motions[body] = motion;
-            if body <= last {
+            if TURNS {
+                self.turns[body] = turn;
+            }
+            if pushes.first().is_some_and(|push| push.body <= body) && body <= last {
                 self.add_own(pushes, body);
             }
         }
@@ -241,7 +290,7 @@ impl Sweep {
                     motion[i][lane] += push.rate[i];
                 }
                 for i in 0..3 {
-                    motion[6 + i][lane] = push.turn[i];
+                    self.turns[body][i][lane] = push.turn[i];
                 }
             }
         }

@@ -1,0 +1,67 @@
+//! Products of small dense matrices, in tiles that stay in registers.
+
+use super::Sensitivity;
+use crate::scalar::Scalar;
+
+/// `out = −left right` for a symmetric `left`.
+pub(super) fn negative_product(left: &Sensitivity, right: &Sensitivity, out: &mut Sensitivity) {
+    let (size, width) = (left.rows, right.columns);
+    let mut i = 0;
+    while i + 4 <= size {
+        strip::<4>(left, right, out, i, width);
+        i += 4;
+    }
+    while i < size {
+        strip::<1>(left, right, out, i, width);
+        i += 1;
+    }
+}
+
+/// Some rows of the product.
+fn strip<const R: usize>(
+    left: &Sensitivity,
+    right: &Sensitivity,
+    out: &mut Sensitivity,
+    i: usize,
+    width: usize,
+) {
+    let mut j = 0;
+    while j + 8 <= width {
+        tile::<R, 8>(left, right, out, (i, j));
+        j += 8;
+    }
+    while j + 4 <= width {
+        tile::<R, 4>(left, right, out, (i, j));
+        j += 4;
+    }
+    while j < width {
+        tile::<R, 1>(left, right, out, (i, j));
+        j += 1;
+    }
+}
+
+/// R rows and W columns of the product.
+#[inline(never)]
+fn tile<const R: usize, const W: usize>(
+    left: &Sensitivity,
+    right: &Sensitivity,
+    out: &mut Sensitivity,
+    (i, j): (usize, usize),
+) {
+    let mut sum = [[0.0; W]; R];
+    let rows = right.entries.chunks_exact(right.columns);
+    for (weights, row) in left.entries.chunks_exact(left.columns).zip(rows) {
+        // Column i of the symmetric matrix is its row i.
+        let weights: [f64; R] = weights[i..i + R].try_into().unwrap_or([0.0; R]);
+        let row: [f64; W] = row[j..j + W].try_into().unwrap_or([0.0; W]);
+        for r in 0..R {
+            for w in 0..W {
+                sum[r][w] = Scalar::mul_add(-weights[r], row[w], sum[r][w]);
+            }
+        }
+    }
+    for (r, sum) in sum.iter().enumerate() {
+        let start = (i + r) * out.columns + j;
+        out.entries[start..start + W].copy_from_slice(sum);
+    }
+}
