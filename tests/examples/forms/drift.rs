@@ -1,6 +1,6 @@
 //! Energy over long motions.
 
-use super::motion::{FORMS, energy_error, run, scene};
+use super::motion::{FORMS, MOST_STEPS, energy_error, run, scene};
 use hamel::integrate::{Form, Method, Pair};
 
 const TIMES: [f64; 3] = [10.0, 100.0, 1000.0];
@@ -18,7 +18,7 @@ pub fn table() {
         let scene = scene(name);
         for method in methods {
             for form in FORMS {
-                let (solution, _) = run(&scene, form, method, &TIMES);
+                let (solution, _) = run(&scene, form, method, &TIMES, MOST_STEPS);
                 let drifts = solution.samples.iter();
                 let drifts = drifts.map(|state| format!("{:.1e}", energy_error(&scene, state)));
                 let drifts = drifts.collect::<Vec<_>>().join(" | ");

@@ -11,8 +11,8 @@ use std::time::Instant;
 
 pub const FORMS: [Form; 2] = [Form::Lagrangian, Form::Hamiltonian];
 
-/// A motion that takes more steps ends there.
-const MOST_STEPS: usize = 100_000;
+/// More than any motion of which the end is wanted takes.
+pub const MOST_STEPS: usize = 10_000_000;
 
 /// A scene of the project, or one beside the references of motions.
 pub fn scene(name: &str) -> Scene {
@@ -27,8 +27,14 @@ pub fn scene(name: &str) -> Scene {
     Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// A motion with the states at `samples`, and its run time, s; it may end before them, after 100 000 steps.
-pub fn run(scene: &Scene, form: Form, method: Method, samples: &[f64]) -> (Solution, f64) {
+/// A motion with the states at `samples`, and its run time, s; it ends before them if it takes more than `most_steps`.
+pub fn run(
+    scene: &Scene,
+    form: Form,
+    method: Method,
+    samples: &[f64],
+    most_steps: usize,
+) -> (Solution, f64) {
     let initial = State {
         time: 0.0,
         configuration: scene.configuration.clone(),
@@ -41,7 +47,7 @@ pub fn run(scene: &Scene, form: Form, method: Method, samples: &[f64]) -> (Solut
         samples: samples.to_vec(),
     };
     let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
-    let mut observer = |step: &Step<'_>| match step.number < MOST_STEPS {
+    let mut observer = |step: &Step<'_>| match step.number < most_steps {
         true => ControlFlow::Continue(()),
         false => ControlFlow::Break(()),
     };
