@@ -104,8 +104,7 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
         if !structures.bias_acceleration_gradient.is_zero() {
             of_rate += joint.bias_acceleration_gradient(q, speeds);
         }
-        for b in 0..K {
-            let variation = &mut out[b];
+        for (b, variation) in out.iter_mut().enumerate() {
             let own_drift = turned(&placement.rotation, &of_twist.column(b).into_owned());
             variation.drift += own_drift;
             variation.rate += bracket_product(&own.twist, &own_drift)
@@ -122,8 +121,8 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
     }
     if !structures.bias_acceleration.is_zero() {
         let slope = joint.bias_acceleration_slope(q, speeds);
-        for a in 0..S {
-            out[a].speed_rate += turned(&placement.rotation, &slope.column(a).into_owned());
+        for (a, variation) in out.iter_mut().enumerate().take(S) {
+            variation.speed_rate += turned(&placement.rotation, &slope.column(a).into_owned());
         }
     }
 }

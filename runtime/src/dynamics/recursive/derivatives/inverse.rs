@@ -271,11 +271,12 @@ fn below(raised: &[Vector6<f64>; 2], momentum: &Vector6<f64>, transposed: &Vecto
 #[inline(always)]
 fn shift(below: &mut Below, offset: &Vector3<f64>) {
     let [x, y, z] = (*offset).into();
+    let [mx, my, mz, fx, fy, fz, ..] = below;
     for lane in 0..4 {
-        let (fx, fy, fz) = (below[3][lane], below[4][lane], below[5][lane]);
-        below[0][lane] = Scalar::mul_add(y, fz, Scalar::mul_add(-z, fy, below[0][lane]));
-        below[1][lane] = Scalar::mul_add(z, fx, Scalar::mul_add(-x, fz, below[1][lane]));
-        below[2][lane] = Scalar::mul_add(x, fy, Scalar::mul_add(-y, fx, below[2][lane]));
+        let force = (fx[lane], fy[lane], fz[lane]);
+        mx[lane] = Scalar::mul_add(y, force.2, Scalar::mul_add(-z, force.1, mx[lane]));
+        my[lane] = Scalar::mul_add(z, force.0, Scalar::mul_add(-x, force.2, my[lane]));
+        mz[lane] = Scalar::mul_add(x, force.1, Scalar::mul_add(-y, force.0, mz[lane]));
     }
 }
 

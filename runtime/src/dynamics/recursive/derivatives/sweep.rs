@@ -193,8 +193,8 @@ impl Sweep {
             for entry in &mut load {
                 *entry *= -pivot.inverse;
             }
-            for i in 0..6 {
-                add(&mut wrench[i], &load, pivot.momentum[i]);
+            for (sum, momentum) in wrench.iter_mut().zip(&pivot.momentum) {
+                add(sum, &load, *momentum);
             }
             add(&mut self.loads[speed], &load, 1.0);
         }
@@ -285,12 +285,11 @@ impl Sweep {
     fn add_own(&mut self, pushes: &[Push], body: usize) {
         for (lane, push) in pushes.iter().enumerate() {
             if push.body == body {
-                let motion = &mut self.motions[body];
-                for i in 0..6 {
-                    motion[i][lane] += push.rate[i];
+                for (sum, rate) in self.motions[body].iter_mut().zip(&push.rate) {
+                    sum[lane] += rate;
                 }
-                for i in 0..3 {
-                    self.turns[body][i][lane] = push.turn[i];
+                for (own, turn) in self.turns[body].iter_mut().zip(&push.turn) {
+                    own[lane] = *turn;
                 }
             }
         }
