@@ -98,7 +98,7 @@ fn refuse<T>(message: String) -> Result<T, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Args, Method, Settings, overridden};
+    use super::{Args, Method, Pair, Settings, overridden};
     use clap::Parser;
 
     #[derive(Parser)]
