@@ -85,7 +85,7 @@ pub fn coordinates_in(columns: &Matrix, target: &[Expr]) -> Result<Vec<Expr>, Ve
     let target = Matrix::column_vector(target.to_vec());
     let x = simplified(&left_inverse(columns).times(&target));
     let rest = simplified(&target.minus(&columns.times(&x)));
-    match rest.is_zero() {
+    match vanishes(&rest) {
         true => Ok(x.entries().to_vec()),
         false => Err(rest.entries().to_vec()),
     }
@@ -119,6 +119,12 @@ pub fn left_inverse(columns: &Matrix) -> Matrix {
     })
 }
 
+/// Whether all entries vanish modulo the relations of the functions in them.
+pub fn vanishes(m: &Matrix) -> bool {
+    let ideal = Ideal::default();
+    m.entries().iter().all(|entry| ideal.vanishes(entry))
+}
+
 /// The matrix with its entries in normal form modulo the relations of the functions in them.
 pub fn simplified(m: &Matrix) -> Matrix {
     Ideal::default().normal_forms(m)
@@ -140,7 +146,7 @@ pub enum Closure {
 /// Finds the identity that the powers of `xi` satisfy; every subalgebra of se(3) and its quaternion has one of these.
 pub fn closure(xi: &Matrix) -> Option<Closure> {
     let square = simplified(&xi.times(xi));
-    if square.is_zero() {
+    if vanishes(&square) {
         return Some(Closure::Nilpotent);
     }
     let negative_trace = -square.trace();
@@ -148,7 +154,7 @@ pub fn closure(xi: &Matrix) -> Option<Closure> {
     for rank in [2, 4, xi.rows() as i64] {
         let s = &negative_trace * &Expr::rational(Rational::new(One::one(), rank.into()));
         let ends =
-            |power: &Matrix, lower: &Matrix| simplified(&power.plus(&lower.scale(&s))).is_zero();
+            |power: &Matrix, lower: &Matrix| vanishes(&power.plus(&lower.scale(&s)));
         if ends(&square, &Matrix::identity(xi.rows())) {
             return Some(Closure::Circle(s));
         }

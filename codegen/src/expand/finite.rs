@@ -240,18 +240,18 @@ enum Ending {
 /// Every subalgebra of se(3) ends in one of these ways.
 fn ending(ad: &Matrix) -> Option<Ending> {
     let square = algebra::simplified(&ad.times(ad));
-    if square.is_zero() {
+    if algebra::vanishes(&square) {
         return Some(Ending::Nilpotent);
     }
     let cube = square.times(ad);
     for rank in [2, 4] {
         let s = &-square.trace() * &Expr::fraction(1, rank);
         let excess = algebra::simplified(&cube.plus(&ad.scale(&s)));
-        if excess.is_zero() {
+        if algebra::vanishes(&excess) {
             return Some(Ending::Simple(s));
         }
         let left = excess.times(&square).plus(&excess.scale(&s));
-        if algebra::simplified(&left).is_zero() {
+        if algebra::vanishes(&left) {
             return Some(Ending::Double(s, excess));
         }
     }

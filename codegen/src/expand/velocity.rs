@@ -188,9 +188,26 @@ impl Solver<'_, '_> {
             true => in_child(&constant).or_else(|| in_parent(&constant)),
             false => in_parent(&constant).or_else(|| in_child(&constant)),
         }
+        .or_else(|| self.by_rates(&constant))
         .or_else(|| in_child(&short))
         .or_else(|| in_parent(&short))
         .or_else(|| pseudo_inverse(self.twist_map, self.domain.ideal()))
+    }
+
+    /// `(L X)⁻¹ L` with L a left inverse of J: where v is declared by X as what it makes of simpler velocities, `L X = S₀⁻¹` is short.
+    fn by_rates(&self, good: &dyn Fn(&Expr) -> bool) -> Option<Matrix> {
+        let ideal = self.domain.ideal();
+        let simplify = |e: &Expr| ideal.normal_form(e);
+        let in_child = self.row_inverse(&self.jacobian.child, good);
+        let left = match in_child {
+            Some(inverse) => inverse.times(self.to_child),
+            None => self.row_inverse(&self.jacobian.base, good)?,
+        };
+        let rates = ideal.normal_forms(&left.times(self.twist_map));
+        let determinant = rates.determinant(&simplify);
+        self.domain.nonzero(&determinant)?;
+        let inverse = rates.adjugate(&simplify).scale(&determinant.recip()?);
+        Some(inverse.times(&left))
     }
 
     /// The inverse of the first rows with a good determinant, zero elsewhere.

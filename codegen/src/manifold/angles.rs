@@ -11,14 +11,19 @@ const LARGEST_MULTIPLE: u32 = 16;
 
 /// The expression with one base angle where it holds several multiples of it: cos q beside cos q/2 becomes cos² q/2 − sin² q/2.
 pub fn unified(expression: &Expr) -> Expr {
-    let atoms = expression.atoms();
+    unified_all(std::slice::from_ref(expression)).swap_remove(0)
+}
+
+/// The expressions with one base angle where they hold several multiples of it together.
+pub fn unified_all(expressions: &[Expr]) -> Vec<Expr> {
+    let atoms: BTreeSet<Atom> = expressions.iter().flat_map(Expr::atoms).collect();
     let mut angles: BTreeMap<Monomial, BTreeSet<Rational>> = BTreeMap::new();
     for (monomial, coefficient) in atoms.iter().filter_map(angle) {
         angles.entry(monomial).or_default().insert(coefficient);
     }
     angles.retain(|_, coefficients| coefficients.len() > 1);
     if angles.is_empty() {
-        return expression.clone();
+        return expressions.to_vec();
     }
     let replaced: BTreeMap<Atom, Expr> = atoms
         .into_iter()
@@ -27,7 +32,8 @@ pub fn unified(expression: &Expr) -> Expr {
             Some((atom, value))
         })
         .collect();
-    expression.replace_atoms(&replaced)
+    let unified = expressions.iter().map(|e| e.replace_atoms(&replaced));
+    unified.collect()
 }
 
 /// Monomial and coefficient of the argument of a sine or cosine of one term.

@@ -207,6 +207,7 @@ impl Ideal {
     /// Whether the expressions have no common zero on the manifold, shown by 1 being among the combinations of their numerators.
     pub fn has_no_zero_with(&self, expressions: &[Expr]) -> bool {
         let numerators: Vec<Expr> = expressions.iter().map(|e| self.numerator(e)).collect();
+        let numerators = angles::unified_all(&numerators);
         let functions: BTreeSet<Atom> = numerators
             .iter()
             .flat_map(Expr::related_functions)
