@@ -22,19 +22,10 @@ impl Steps {
         Symbol::new(Role::Intermediate, self.names - 1, name)
     }
 
-    /// Binds a value to a name; numbers, single symbols and their negatives stay as they are, and what has a name keeps it.
+    /// Binds a value to a name; numbers, single symbols and their negatives stay as they are.
     pub fn bind(&mut self, name: &str, value: Expr) -> Expr {
-        let negative = -&value;
-        if value.is_constant() || value.as_symbol().is_some() || negative.as_symbol().is_some() {
+        if value.is_constant() || value.as_symbol().is_some() || (-&value).as_symbol().is_some() {
             return value;
-        }
-        let named = self.steps.iter().find_map(|step| match step {
-            Step::Let(symbol, known) if *known == value => Some(Expr::symbol(symbol)),
-            Step::Let(symbol, known) if *known == negative => Some(-&Expr::symbol(symbol)),
-            _ => None,
-        });
-        if let Some(named) = named {
-            return named;
         }
         let symbol = self.fresh(name);
         let bound = Expr::symbol(&symbol);
