@@ -1,8 +1,8 @@
 //! Lie algebras of the known groups: standard bases, coordinates, brackets, structure constants, and exp in closed form.
 
-use crate::expr::{Expr, Rational};
 use crate::domain::is_unit;
 use crate::expand::rank::combinations;
+use crate::expr::{Expr, Rational};
 use crate::manifold::{Factor, Ideal, Kind};
 use crate::matrix::Matrix;
 use num_traits::One;
@@ -153,8 +153,7 @@ pub fn closure(xi: &Matrix) -> Option<Closure> {
     let cube = square.times(xi);
     for rank in [2, 4, xi.rows() as i64] {
         let s = &negative_trace * &Expr::rational(Rational::new(One::one(), rank.into()));
-        let ends =
-            |power: &Matrix, lower: &Matrix| vanishes(&power.plus(&lower.scale(&s)));
+        let ends = |power: &Matrix, lower: &Matrix| vanishes(&power.plus(&lower.scale(&s)));
         if ends(&square, &Matrix::identity(xi.rows())) {
             return Some(Closure::Circle(s));
         }

@@ -18,7 +18,11 @@ fn in_full(example: &str) -> String {
     let mut lines = example.split_inclusive('\n');
     let (version, prose) = (lines.next(), lines.next().expect("prose"));
     let repeated = prose.repeat(1000);
-    version.into_iter().chain([repeated.as_str()]).chain(lines).collect()
+    version
+        .into_iter()
+        .chain([repeated.as_str()])
+        .chain(lines)
+        .collect()
 }
 
 fn codes_of(example: &str) -> Vec<&'static str> {

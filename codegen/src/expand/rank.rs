@@ -45,9 +45,7 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
     }
     match domain.no_common_zero(&minors) {
         Some(certificate) => Ok(format!("minors: {certificate}")),
-        None if domain.is_positive(&gram) => {
-            Ok(format!("det(MᵀM) = {gram}, which is of one sign"))
-        }
+        None if domain.is_positive(&gram) => Ok(format!("det(MᵀM) = {gram}, which is of one sign")),
         None => Err(gram),
     }
 }
