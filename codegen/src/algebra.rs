@@ -1,7 +1,9 @@
 //! Lie algebras of the known groups: standard bases, coordinates, brackets, structure constants, and exp in closed form.
 
+use crate::domain::is_unit;
+use crate::expand::rank::combinations;
 use crate::expr::{Expr, Rational};
-use crate::manifold::{Factor, Kind};
+use crate::manifold::{Factor, Ideal, Kind};
 use crate::matrix::Matrix;
 use num_traits::One;
 
@@ -78,22 +80,54 @@ pub fn commutator(a: &Matrix, b: &Matrix) -> Matrix {
     a.times(b).minus(&b.times(a))
 }
 
-/// Solves `columns · x = target` for rational columns of full rank; `Err` holds the part of the target outside their span.
+/// Solves `columns · x = target` for constant columns of full rank; `Err` holds the part of the target outside their span.
 pub fn coordinates_in(columns: &Matrix, target: &[Expr]) -> Result<Vec<Expr>, Vec<Expr>> {
-    let transposed = columns.transpose();
-    let gram = transposed.times(columns);
-    let determinant = gram.determinant(&Expr::clone);
-    let inverse = determinant.recip().unwrap_or_default();
     let target = Matrix::column_vector(target.to_vec());
-    let x = gram
-        .adjugate(&Expr::clone)
-        .times(&transposed.times(&target))
-        .scale(&inverse);
-    let rest = target.minus(&columns.times(&x));
-    match rest.is_zero() {
+    let x = simplified(&left_inverse(columns).times(&target));
+    let rest = simplified(&target.minus(&columns.times(&x)));
+    match vanishes(&rest) {
         true => Ok(x.entries().to_vec()),
         false => Err(rest.entries().to_vec()),
     }
+}
+
+/// A left inverse of constant columns of full rank: from rows whose determinant is one term, else `(MᵀM)⁻¹ Mᵀ`.
+pub fn left_inverse(columns: &Matrix) -> Matrix {
+    let size = columns.columns();
+    let ideal = Ideal::default();
+    let simplify = |e: &Expr| ideal.normal_form(e);
+    let inverse = |square: &Matrix, determinant: &Expr| {
+        let inverse = determinant.recip().unwrap_or_default();
+        square.adjugate(&simplify).scale(&inverse)
+    };
+    let of_rows = |rows: Vec<usize>| {
+        let square = columns.select_rows(&rows);
+        let determinant = square.determinant(&simplify);
+        is_unit(&determinant).then(|| {
+            let inverse = inverse(&square, &determinant);
+            Matrix::from_fn(size, columns.rows(), |i, j| {
+                let place = rows.iter().position(|&row| row == j);
+                place.map_or_else(Expr::zero, |place| inverse.at(i, place).clone())
+            })
+        })
+    };
+    let choices = combinations(columns.rows(), size);
+    choices.into_iter().find_map(of_rows).unwrap_or_else(|| {
+        let transposed = columns.transpose();
+        let gram = transposed.times(columns);
+        inverse(&gram, &gram.determinant(&simplify)).times(&transposed)
+    })
+}
+
+/// Whether all entries vanish modulo the relations of the functions in them.
+pub fn vanishes(m: &Matrix) -> bool {
+    let ideal = Ideal::default();
+    m.entries().iter().all(|entry| ideal.vanishes(entry))
+}
+
+/// The matrix with its entries in normal form modulo the relations of the functions in them.
+pub fn simplified(m: &Matrix) -> Matrix {
+    Ideal::default().normal_forms(m)
 }
 
 /// How powers of an algebra element end: the shortest closed form of exp.
@@ -111,15 +145,15 @@ pub enum Closure {
 
 /// Finds the identity that the powers of `xi` satisfy; every subalgebra of se(3) and its quaternion has one of these.
 pub fn closure(xi: &Matrix) -> Option<Closure> {
-    let square = xi.times(xi);
-    if square.is_zero() {
+    let square = simplified(&xi.times(xi));
+    if vanishes(&square) {
         return Some(Closure::Nilpotent);
     }
     let negative_trace = -square.trace();
     let cube = square.times(xi);
     for rank in [2, 4, xi.rows() as i64] {
         let s = &negative_trace * &Expr::rational(Rational::new(One::one(), rank.into()));
-        let ends = |power: &Matrix, lower: &Matrix| power.plus(&lower.scale(&s)).is_zero();
+        let ends = |power: &Matrix, lower: &Matrix| vanishes(&power.plus(&lower.scale(&s)));
         if ends(&square, &Matrix::identity(xi.rows())) {
             return Some(Closure::Circle(s));
         }

@@ -124,7 +124,7 @@ pub enum Step {
 pub enum Method {
     /// By its formulas.
     Formula,
-    /// By a K×K solve of the runtime, with the kernels that define it.
+    /// By a K×K solve of the runtime, with the kernels that define it: D and D⁻¹ where Φ is not exp.
     Solve,
     /// By Newton's method of the runtime, from the value of its formulas or from 0.
     Newton,

@@ -1,45 +1,81 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
 use super::of_monomial;
-use crate::expr::{Atom, Expr, Function, Monomial, Rational, Symbol};
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::manifold::Kind;
 use crate::model::{Interval, JointSpec};
 use num_traits::Zero;
-use std::collections::BTreeSet;
+use rustc_hash::FxHashMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Most multiples of conditions that are taken together to show that a polynomial in the parameters is positive.
+const MOST_CONDITIONS: usize = 8;
+/// Most combinations of conditions that are tried.
+const MOST_TRIES: usize = 400;
 
 /// What is known of signs and bounds.
 #[derive(Clone, Debug)]
 pub struct Signs {
     positive_parameters: BTreeSet<Symbol>,
-    /// Polynomials in the parameters that are positive.
-    requirements: Vec<Expr>,
+    /// Ranges of all parameters.
+    ranges: BTreeMap<Symbol, Interval>,
+    /// Parameters that may be 0.
+    vanishing: BTreeSet<Symbol>,
+    /// Polynomials in the parameters that are not negative, and whether they are positive.
+    conditions: Vec<(Expr, bool)>,
     /// Coordinates whose absolute value is at most 1.
     bounded: BTreeSet<Symbol>,
+    /// Signs of functions, each found once.
+    functions: RefCell<FxHashMap<Arc<Application>, Sign>>,
 }
 
 /// What is known of a product.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sign {
     Positive,
     NotNegative,
     Unknown,
 }
 
+impl Sign {
+    /// Of a product.
+    fn times(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Unknown, _) | (_, Self::Unknown) => Self::Unknown,
+            (Self::Positive, Self::Positive) => Self::Positive,
+            _ => Self::NotNegative,
+        }
+    }
+}
+
 impl Signs {
     /// What the spec says.
     pub fn new(spec: &JointSpec) -> Self {
         let factors = spec.manifold.value.factors();
+        let parameters = spec.parameters.iter();
+        let required = spec.requirements.iter();
+        let required = required.map(|r| (r.value.value.clone(), true));
         Self {
             positive_parameters: positive_parameters(spec),
-            requirements: spec
-                .requirements
-                .iter()
-                .map(|r| r.value.value.clone())
+            ranges: parameters
+                .clone()
+                .map(|p| (p.symbol.clone(), p.range.clone()))
+                .collect(),
+            vanishing: parameters
+                .clone()
+                .filter(|p| p.may_vanish())
+                .map(|p| p.symbol.clone())
+                .collect(),
+            conditions: required
+                .chain(parameters.flat_map(|p| conditions_of(&p.symbol, &p.range)))
                 .collect(),
             bounded: factors
                 .iter()
                 .flat_map(|f| bounded_coordinates(f.kind, &f.coordinates))
                 .collect(),
+            functions: RefCell::default(),
         }
     }
 
@@ -62,21 +98,14 @@ impl Signs {
                 },
             }
         }
-        match constant.is_zero() {
-            true => strict,
-            false => self.is_positive_constant(&constant),
-        }
+        self.exceeds_zero(&constant, strict, MOST_CONDITIONS, &mut 0)
     }
 
     /// Where no term of the expression is ever negative: functions that all vanish where it does.
     pub fn zero_terms(&self, expression: &Expr) -> Option<Vec<Expr>> {
-        let all_of = |positive: bool| {
-            let mut terms = expression.terms();
-            terms.all(|(monomial, c)| {
-                c.is_positive() == positive && self.sign(monomial) != Sign::Unknown
-            })
-        };
-        if !all_of(true) && !all_of(false) {
+        let signed = self.has_one_sign(expression, true) || self.has_one_sign(expression, false);
+        // A term with such a parameter vanishes elsewhere, too.
+        if !signed || !expression.symbols().is_disjoint(&self.vanishing) {
             return None;
         }
         let radical = |monomial: &Monomial| {
@@ -94,35 +123,99 @@ impl Signs {
         )
     }
 
-    fn sign(&self, monomial: &Monomial) -> Sign {
-        if !monomial
-            .units()
-            .iter()
-            .all(|(atom, power)| power % 2 == 0 || self.is_positive_unit(atom))
-        {
-            return Sign::Unknown;
-        }
-        let of_factor = |(atom, power): &(Atom, u32)| match (sign_of_atom(atom), power % 2) {
-            (Sign::Unknown, 0) => Sign::NotNegative,
-            (sign, _) => sign,
-        };
-        let both = |a: Sign, b: Sign| match (a, b) {
-            (Sign::Unknown, _) | (_, Sign::Unknown) => Sign::Unknown,
-            (Sign::Positive, Sign::Positive) => Sign::Positive,
-            _ => Sign::NotNegative,
-        };
-        monomial
-            .main()
-            .iter()
-            .map(of_factor)
-            .fold(Sign::Positive, both)
+    /// Whether no term is ever of the other sign.
+    fn has_one_sign(&self, expression: &Expr, positive: bool) -> bool {
+        let mut terms = expression.terms();
+        terms.all(|(monomial, c)| {
+            c.is_positive() == positive && self.sign(monomial) != Sign::Unknown
+        })
     }
 
-    fn is_positive_unit(&self, atom: &Atom) -> bool {
-        match atom {
-            Atom::Symbol(symbol) => self.positive_parameters.contains(symbol),
-            Atom::Apply(application) => application.function == Function::Pi,
+    fn sign(&self, monomial: &Monomial) -> Sign {
+        let units = monomial.units().iter();
+        let of_units = units.fold(Sign::Positive, |sign, (atom, power)| {
+            sign.times(self.sign_of_unit(atom, *power))
+        });
+        let factors = monomial.main().iter();
+        factors.fold(of_units, |sign, (atom, power)| {
+            sign.times(match (self.sign_of_atom(atom), power % 2) {
+                (Sign::Unknown, 0) => Sign::NotNegative,
+                (known, _) => known,
+            })
+        })
+    }
+
+    fn sign_of_unit(&self, atom: &Atom, power: i32) -> Sign {
+        let Atom::Symbol(symbol) = atom else {
+            return Sign::Positive;
+        };
+        let from_zero = |end: &Option<crate::model::End>| {
+            end.as_ref()
+                .is_some_and(|end| end.value >= Rational::zero())
+        };
+        let not_negative = || self.ranges.get(symbol).is_some_and(|r| from_zero(&r.lower));
+        match (self.vanishing.contains(symbol), power % 2 == 0) {
+            (false, true) => Sign::Positive,
+            (false, false) if self.positive_parameters.contains(symbol) => Sign::Positive,
+            (true, true) => Sign::NotNegative,
+            (true, false) if not_negative() => Sign::NotNegative,
+            _ => Sign::Unknown,
         }
+    }
+
+    fn sign_of_atom(&self, atom: &Atom) -> Sign {
+        let Atom::Apply(application) = atom else {
+            return Sign::Unknown;
+        };
+        if let Some(known) = self.functions.borrow().get(application) {
+            return *known;
+        }
+        let sign = self.sign_of_function(application);
+        // What is found after the budget is spent means nothing.
+        if !budget::is_exhausted() {
+            let mut functions = self.functions.borrow_mut();
+            functions.insert(application.clone(), sign);
+        }
+        sign
+    }
+
+    /// Wherever the function is defined.
+    fn sign_of_function(&self, application: &Application) -> Sign {
+        match (application.function, application.arguments.as_slice()) {
+            (Function::Exp | Function::Pi, _) => Sign::Positive,
+            (Function::Sqrt, [x]) if self.is_positive(x) => Sign::Positive,
+            (Function::Sqrt, _) => Sign::NotNegative,
+            // A reciprocal is not 0, nor what it is of.
+            (Function::Recip, [x]) if self.has_one_sign(x, true) || self.is_positive(x) => {
+                Sign::Positive
+            }
+            (Function::Cos, [x])
+                if self.is_within(x, -half_turn() / two(), half_turn() / two()) =>
+            {
+                Sign::Positive
+            }
+            (Function::Sin, [x]) if self.is_within(x, Rational::zero(), half_turn()) => {
+                Sign::Positive
+            }
+            _ => Sign::Unknown,
+        }
+    }
+
+    /// Whether a multiple of one parameter stays between two numbers, which are 0 or no values of it.
+    fn is_within(&self, x: &Expr, least: Rational, most: Rational) -> bool {
+        let parameter = || {
+            let (monomial, coefficient) = x.single_term()?;
+            let [(Atom::Symbol(symbol), 1)] = monomial.units() else {
+                return None;
+            };
+            let in_between = least.is_negative() || !self.vanishing.contains(symbol);
+            let known = monomial.is_unit() && in_between;
+            let range = self.ranges.get(symbol).filter(|_| known)?;
+            let end = |end: &Option<crate::model::End>| Some(&end.as_ref()?.value * coefficient);
+            let ends = [end(&range.lower)?, end(&range.upper)?];
+            Some(ends.iter().all(|end| *end >= least && *end <= most))
+        };
+        parameter().unwrap_or(false)
     }
 
     /// A bound on the absolute value of a term, made of parameters.
@@ -134,59 +227,59 @@ impl Signs {
             }
         };
         let (_, units) = monomial.split();
-        let known = self.sign(&units) == Sign::Positive && monomial.main().iter().all(is_bounded);
+        let known = self.sign(&units) != Sign::Unknown && monomial.main().iter().all(is_bounded);
         known.then(|| Expr::term(coefficient.abs(), units))
     }
 
-    /// Whether a polynomial in the parameters is positive: by its terms, or after subtracting a multiple of a requirement.
-    fn is_positive_constant(&self, constant: &Expr) -> bool {
-        let sum_of_positive = |e: &Expr| {
-            e.terms()
-                .all(|(m, c)| c.is_positive() && self.sign(m) == Sign::Positive)
+    /// Whether a polynomial in the parameters is positive, or not negative where that is enough: by its terms, or after subtracting
+    /// multiples of conditions, each to cancel a negative term.
+    fn exceeds_zero(&self, rest: &Expr, enough: bool, left: usize, tries: &mut usize) -> bool {
+        let negative = rest.terms().find(|(_, c)| c.is_negative());
+        let Some((monomial, coefficient)) = negative else {
+            let positive = |(m, _): (&Monomial, &Rational)| self.sign(m) == Sign::Positive;
+            return self.has_one_sign(rest, true) && (enough || rest.terms().any(positive));
         };
-        let with = |requirement: &Expr| {
-            let Some((of_constant, of_requirement)) = constant.leading().zip(requirement.leading())
-            else {
-                return false;
-            };
-            let factor = of_constant.1 / of_requirement.1;
-            let (Some(units), true) = (of_requirement.0.recip(), factor.is_positive()) else {
-                return false;
-            };
-            let units = of_constant.0.times(&units);
-            let rest = constant - &requirement.scaled(&factor, &units);
-            self.sign(&units) == Sign::Positive && sum_of_positive(&rest)
-        };
-        (!constant.is_zero() && sum_of_positive(constant)) || self.requirements.iter().any(with)
+        *tries += 1;
+        if left == 0 || *tries > MOST_TRIES {
+            return false;
+        }
+        self.conditions.iter().any(|(condition, strict)| {
+            let mut terms = condition.terms().filter(|(_, c)| c.is_negative());
+            terms.any(|(of_condition, c)| {
+                let Some(units) = of_condition.recip().map(|m| monomial.times(&m)) else {
+                    return false;
+                };
+                let sign = self.sign(&units);
+                let rest = rest - &condition.scaled(&(coefficient / c), &units);
+                sign != Sign::Unknown
+                    && self.exceeds_zero(
+                        &rest,
+                        enough || (*strict && sign == Sign::Positive),
+                        left - 1,
+                        tries,
+                    )
+            })
+        })
     }
 }
 
-fn sign_of_atom(atom: &Atom) -> Sign {
-    match atom {
-        Atom::Symbol(_) => Sign::Unknown,
-        Atom::Apply(application) => {
-            match (application.function, application.arguments.as_slice()) {
-                (Function::Exp | Function::Pi, _) => Sign::Positive,
-                (Function::Sqrt, _) => Sign::NotNegative,
-                // The reciprocal of e is positive where e is.
-                (Function::Recip, [x]) => match x.leading() {
-                    Some((monomial, c)) if x.terms().len() == 1 && c.is_positive() => {
-                        match monomial.main() {
-                            [(inner, _)]
-                                if monomial.units().is_empty()
-                                    && sign_of_atom(inner) != Sign::Unknown =>
-                            {
-                                Sign::Positive
-                            }
-                            _ => Sign::Unknown,
-                        }
-                    }
-                    _ => Sign::Unknown,
-                },
-                _ => Sign::Unknown,
-            }
-        }
-    }
+/// A number below π, and near it.
+fn half_turn() -> Rational {
+    Rational::new(3_141_592.into(), 1_000_000.into())
+}
+
+fn two() -> Rational {
+    Rational::from_integer(2.into())
+}
+
+/// What the ends of a range say: `p − lower` and `upper − p` are not negative.
+fn conditions_of(symbol: &Symbol, range: &Interval) -> Vec<(Expr, bool)> {
+    let p = Expr::symbol(symbol);
+    let lower = range.lower.iter().filter(|end| end.value.is_positive());
+    let above = lower.map(|end| (&p - &Expr::rational(end.value.clone()), !end.included));
+    let upper = range.upper.iter();
+    let below = upper.map(|end| (&Expr::rational(end.value.clone()) - &p, !end.included));
+    above.chain(below).collect()
 }
 
 /// The parameters that are positive.
@@ -229,8 +322,13 @@ mod tests {
     use crate::spec;
 
     fn check(parameters: &str, pose: &str) -> bool {
-        let source =
-            format!("hamel = 1;\njoint test{parameters} {{ config q: R1; H = trans_z({pose}); }}");
+        check_with(parameters, "", pose)
+    }
+
+    fn check_with(parameters: &str, require: &str, pose: &str) -> bool {
+        let source = format!(
+            "hamel = 1;\njoint test{parameters} {{ {require} config q: R1; H = trans_z({pose} + 0 * q); }}"
+        );
         let joint = spec::parse(&source, "test.joint").expect("a valid spec");
         let expression: Expr = joint.pose.value.translation.at(2, 0).clone();
         Domain::new(&joint).is_positive(&expression)
@@ -250,5 +348,58 @@ mod tests {
         assert!(check("", "cosh(q)"));
         assert!(check("(a: m)", "a * a + q * q"));
         assert!(!check("(a: m)", "a + q * q"));
+        assert!(check(
+            "(a: m > 0)",
+            "1 + a * q * q / sqrt(q * q + a * a) / (q * q + a * a)"
+        ));
+        assert!(check("", "sqrt(1 + q * q)"));
+        assert!(!check("", "sqrt(q * q)"));
+    }
+
+    #[test]
+    fn a_parameter_that_may_vanish_has_squares_that_may() {
+        assert!(!check("(a: m >= 0)", "a * a + q * q"));
+        assert!(check("(a: m >= 0)", "1 + a + a * a * a * q * q"));
+        assert!(!check("(a: m <= 0)", "1 + a"));
+    }
+
+    #[test]
+    fn conditions_between_parameters_are_multiplied_out() {
+        for (parameters, require, pose) in [
+            (
+                "(a: m > 0, b: m > 0)",
+                "require a > b;",
+                "a * a - b * b * sin(q) * sin(q)",
+            ),
+            (
+                "(a: m > 0, b: m > 0)",
+                "require a > b;",
+                "1 - b * b / (a * a) * sin(q) * sin(q)",
+            ),
+            (
+                "(a: m > 0, b: m > 0, c: m > 0)",
+                "require a > b + c;",
+                "a - c * sin(q) + b * cos(q)",
+            ),
+            ("(a: 1 in 0..1)", "", "1 - a * a * cos(q)"),
+            ("(a: m > 2)", "", "a - 2 * sin(q)"),
+        ] {
+            assert!(check_with(parameters, require, pose), "{pose}");
+        }
+        assert!(!check_with("(a: 1 in 0..=1)", "", "1 - a * cos(q)"));
+        assert!(!check_with(
+            "(a: m > 0, b: m > 0)",
+            "require a > b;",
+            "a - b * sin(q) - b * cos(q)"
+        ));
+    }
+
+    #[test]
+    fn functions_of_parameters_have_the_signs_of_their_ranges() {
+        assert!(check("(a: rad > 0 < 1.5)", "cos(a) / sin(a) + q * q"));
+        assert!(check("(a: rad in -1..1)", "cos(3/2 * a)"));
+        assert!(!check("(a: rad in -1..1)", "sin(a)"));
+        assert!(!check("(a: rad > 0 < 1.6)", "cos(a)"));
+        assert!(!check("(a: rad > 0)", "sin(a)"));
     }
 }

@@ -58,7 +58,7 @@ pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
             .enumerate()
             .filter(|(_, f)| f.factor == n);
         let (places, freedoms): (Vec<usize>, Vec<&Freedom>) = freedoms.unzip();
-        for (place, value) in places.into_iter().zip(in_basis(&freedoms, &standard)?) {
+        for (place, value) in places.into_iter().zip(in_basis(&freedoms, &standard)) {
             locals[place] = value;
         }
     }
@@ -66,30 +66,16 @@ pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
 }
 
 /// Coordinates in the declared basis of the element with the given standard coordinates.
-fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Option<Vec<Expr>> {
+fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Vec<Expr> {
     let columns: Vec<Vec<Expr>> = freedoms
         .iter()
         .map(|freedom| freedom.generator.clone())
         .collect();
     let basis = Matrix::from_columns(standard.len(), &columns);
     // A basis of a subalgebra has fewer columns than rows; within its orbit any left inverse gives the same.
-    let gram = basis.transpose().times(&basis);
-    let inverse = gram.determinant(&Expr::clone).recip()?;
-    let inverse = match basis.rows() == basis.columns() {
-        true => basis
-            .adjugate(&Expr::clone)
-            .scale(&basis.determinant(&Expr::clone).recip()?),
-        false => gram
-            .adjugate(&Expr::clone)
-            .times(&basis.transpose())
-            .scale(&inverse),
-    };
-    Some(
-        inverse
-            .times(&Matrix::column_vector(standard.to_vec()))
-            .entries()
-            .to_vec(),
-    )
+    let inverse = algebra::simplified(&algebra::left_inverse(&basis));
+    let coordinates = inverse.times(&Matrix::column_vector(standard.to_vec()));
+    coordinates.entries().to_vec()
 }
 
 /// Standard coordinates of the logarithm of a group element given as a matrix.
@@ -201,25 +187,21 @@ fn inverse_differential(
     let once = steps.bind_matrix(&named("bracket"), &ad.times(rate));
     let half = once.scale(&Expr::fraction(1, 2));
     let linear = rate.plus(&half);
-    let (Ending::Simple(s) | Ending::Double(s)) = &ending else {
+    let (Ending::Simple(s) | Ending::Double(s, _)) = &ending else {
         return Some(linear);
     };
     let theta_squared = steps.bind(&named("theta_squared"), s.clone());
     let g = steps.bind(&named("g"), theta_squared.dexp_inverse(0));
     let twice = steps.bind_matrix(&named("double_bracket"), &ad.times(&once));
-    if let Ending::Simple(_) = ending {
-        return Some(linear.plus(&twice.scale(&g)));
-    }
-    // The even part is interpolated with its slope at the double root.
+    let quadratic = linear.plus(&twice.scale(&g));
+    let Ending::Double(_, excess) = &ending else {
+        return Some(quadratic);
+    };
+    // The even part is its tangent at the double root.
     let slope = steps.bind(&named("g_slope"), theta_squared.dexp_inverse(1));
-    let alpha = steps.bind(&named("alpha"), &g - &(&theta_squared * &slope));
-    let thrice = steps.bind_matrix(&named("triple_bracket"), &ad.times(&twice));
-    let fourth = ad.times(&thrice);
-    Some(
-        linear
-            .plus(&twice.scale(&alpha))
-            .minus(&fourth.scale(&slope)),
-    )
+    let excess = steps.bind_matrix(&named("excess"), &excess.times(rate));
+    let excess = ad.times(&excess).scale(&slope);
+    Some(quadratic.minus(&excess))
 }
 
 /// D with `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)`: `Σ (−ad_ϕ)ⁿ/(n+1)!`, K×K; `None` where no closed form fits.
@@ -251,29 +233,26 @@ enum Ending {
     Nilpotent,
     /// `ad (ad² + s) = 0`.
     Simple(Expr),
-    /// `ad (ad² + s)² = 0`.
-    Double(Expr),
+    /// `ad (ad² + s)² = 0`, and what one factor leaves, `ad (ad² + s)`: multiplied out, most of its entries vanish, and none cancels.
+    Double(Expr, Matrix),
 }
 
 /// Every subalgebra of se(3) ends in one of these ways.
 fn ending(ad: &Matrix) -> Option<Ending> {
-    let square = ad.times(ad);
-    if square.is_zero() {
+    let square = algebra::simplified(&ad.times(ad));
+    if algebra::vanishes(&square) {
         return Some(Ending::Nilpotent);
     }
     let cube = square.times(ad);
     for rank in [2, 4] {
         let s = &-square.trace() * &Expr::fraction(1, rank);
-        if cube.plus(&ad.scale(&s)).is_zero() {
+        let excess = algebra::simplified(&cube.plus(&ad.scale(&s)));
+        if algebra::vanishes(&excess) {
             return Some(Ending::Simple(s));
         }
-        let two_s = &s * &Expr::integer(2);
-        let double = cube
-            .times(&square)
-            .plus(&cube.scale(&two_s))
-            .plus(&ad.scale(&s.square()));
-        if double.is_zero() {
-            return Some(Ending::Double(s));
+        let left = excess.times(&square).plus(&excess.scale(&s));
+        if algebra::vanishes(&left) {
+            return Some(Ending::Double(s, excess));
         }
     }
     None
@@ -281,34 +260,34 @@ fn ending(ad: &Matrix) -> Option<Ending> {
 
 /// `Σ (−ad)ⁿ/(n+1)! = I − ad O(ad²) + ad² E(ad²)` with `O(−s) = c₂(s)` and `E(−s) = c₃(s)`.
 ///
-/// On the range of ad, ad² is −s, or nearly so: where −s is a double root, O and E are their tangents there.
+/// On the range of ad, ad² is −s, or nearly so: where −s is a double root, O and E are their tangents there, with the slopes
+/// `dc₂/ds = c₄ − c₃/2` and `dc₃/ds = (3 c₅ − c₄)/2`, so that D is the chain rule through ϕ ↦ c₂, c₃: its summands do not cancel.
 fn differential(ad: &Matrix, prefix: &str, steps: &mut Steps) -> Option<Matrix> {
     let identity = Matrix::identity(ad.rows());
     let named = |name: &str| format!("{prefix}{name}");
     let ending = ending(ad)?;
-    let (Ending::Simple(s) | Ending::Double(s)) = &ending else {
+    let (Ending::Simple(s) | Ending::Double(s, _)) = &ending else {
         return Some(identity.minus(&ad.scale(&Expr::fraction(1, 2))));
     };
     let square = steps.bind_matrix(&named("ad_squared"), &ad.times(ad));
     let s = steps.bind(&named("theta_squared"), s.clone());
     let mut coefficient = |order: u8| steps.bind(&named(&format!("c{order}")), s.stumpff(order));
     let (c2, c3) = (coefficient(2), coefficient(3));
-    if let Ending::Simple(_) = ending {
-        return Some(identity.minus(&ad.scale(&c2)).plus(&square.scale(&c3)));
-    }
-    let (c1, c4, c5) = (coefficient(1), coefficient(4), coefficient(5));
+    let odd = ad.scale(&c2);
+    let even = square.scale(&c3);
+    let Ending::Double(_, excess) = &ending else {
+        return Some(identity.minus(&odd).plus(&even));
+    };
+    let (c4, c5) = (coefficient(4), coefficient(5));
     let half = |e: Expr| &e * &Expr::fraction(1, 2);
-    let times = |n: i64, c: &Expr| &Expr::integer(n) * c;
-    // dc₂/ds = c₄ − c₃/2 and dc₃/ds = (3 c₅ − c₄)/2; c₂ − s dc₂/ds and c₃ − s dc₃/ds by s c₄ = ½ − c₂ and the like.
-    let odd = steps.bind(&named("odd"), &times(2, &c2) - &half(c1));
     let odd_slope = steps.bind(&named("odd_slope"), &c4 - &half(c3.clone()));
-    let even = steps.bind(&named("even"), half(&times(5, &c3) - &c2));
-    let even_slope = steps.bind(&named("even_slope"), half(&times(3, &c5) - &c4));
-    let cube = steps.bind_matrix(&named("ad_cubed"), &ad.times(&square));
-    let fourth = square.times(&square);
-    let odd_part = ad.scale(&odd).minus(&cube.scale(&odd_slope));
-    let even_part = square.scale(&even).minus(&fourth.scale(&even_slope));
-    Some(identity.minus(&odd_part).plus(&even_part))
+    let even_slope = half(&(&Expr::integer(3) * &c5) - &c4);
+    let even_slope = steps.bind(&named("even_slope"), even_slope);
+    let odd_excess = steps.bind_matrix(&named("odd_excess"), excess);
+    let even_excess = steps.bind_matrix(&named("even_excess"), &ad.times(&odd_excess));
+    let odd = odd.minus(&odd_excess.scale(&odd_slope));
+    let even = even.minus(&even_excess.scale(&even_slope));
+    Some(identity.minus(&odd).plus(&even))
 }
 
 /// The nearest configuration on the manifold.

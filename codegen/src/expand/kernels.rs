@@ -67,6 +67,8 @@ impl Maker<'_> {
             ),
             plain(KernelKind::TwistMapChildGradient, self.child_slopes.clone()),
             plain(KernelKind::VelocityMap, vec![s.base.clone()]),
+            // Always a formula: adj S₀ / det S₀ exists, its sums are shared, and Γ, J22 and the rates are made of it. Where it is too
+            // long for the bound on work, so are they, and det S₀ has no certificate: the spec is refused.
             plain(KernelKind::VelocityMapInverse, vec![inverse.clone()]),
             plain(KernelKind::VelocityMapGradient, s.slopes.clone()),
             plain(

@@ -103,8 +103,9 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
     let inverse = determinant
         .recip()
         .ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
-    let velocity_map_inverse =
-        ideal.simplest_entries(&velocity_map.base.adjugate(&simplify).scale(&inverse));
+    let velocity_map_inverse = velocity_map.inverse.clone().unwrap_or_else(|| {
+        ideal.simplest_entries(&velocity_map.base.adjugate(&simplify).scale(&inverse))
+    });
     budget::begin(task::CONSTRAINT);
     let nonholonomic = Nonholonomic::new(spec, &motion, &domain)?;
     Ok(Expansion {

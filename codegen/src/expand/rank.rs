@@ -40,11 +40,12 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
     if domain.is_unit(&gram) && gram.leading().is_some_and(|(_, c)| c.is_positive()) {
         return Ok(format!("det(MᵀM) = {gram}"));
     }
-    match minors.is_empty() {
-        true => Err(gram),
-        false => match domain.no_common_zero(&minors) {
-            Some(certificate) => Ok(format!("minors: {certificate}")),
-            None => Err(gram),
-        },
+    if minors.is_empty() {
+        return Err(gram);
+    }
+    match domain.no_common_zero(&minors) {
+        Some(certificate) => Ok(format!("minors: {certificate}")),
+        None if domain.is_positive(&gram) => Ok(format!("det(MᵀM) = {gram}, which is of one sign")),
+        None => Err(gram),
     }
 }

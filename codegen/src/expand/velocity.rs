@@ -102,6 +102,24 @@ pub struct VelocityMap {
     pub base: Matrix,
     /// ∂S/∂ϕ_l.
     pub slopes: Vec<Matrix>,
+    /// S₀⁻¹, where S₀ was found from it.
+    pub inverse: Option<Matrix>,
+}
+
+/// A left inverse of X.
+struct LeftInverse {
+    matrix: Matrix,
+    /// S₀⁻¹, where it is made of that.
+    of_velocity_map: Option<Matrix>,
+}
+
+impl LeftInverse {
+    fn of_twist_map(matrix: Matrix) -> Self {
+        Self {
+            matrix,
+            of_velocity_map: None,
+        }
+    }
 }
 
 /// What S is solved from.
@@ -129,7 +147,8 @@ impl Solver<'_, '_> {
         let ideal = self.domain.ideal();
         let rates = self.jacobian.base.minus(self.twist_map);
         if !ideal.normal_forms(&rates).is_zero() {
-            let inverse = self.left_inverse()?;
+            let left = self.left_inverse()?;
+            let inverse = left.matrix;
             let base = ideal.normal_forms(&inverse.times(&self.jacobian.base));
             let slopes = self.rests(&base);
             return Some(VelocityMap {
@@ -138,6 +157,7 @@ impl Solver<'_, '_> {
                     .map(|rest| ideal.normal_forms(&inverse.times(rest)))
                     .collect(),
                 base,
+                inverse: left.of_velocity_map,
             });
         }
         // v = ϕ̇ at ϕ = 0, so that S₀ = I.
@@ -150,7 +170,11 @@ impl Solver<'_, '_> {
                 .collect(),
             None => self.slopes_of_rates(&base)?,
         };
-        Some(VelocityMap { base, slopes })
+        Some(VelocityMap {
+            base,
+            slopes,
+            inverse: None,
+        })
     }
 
     /// ∂S/∂ϕ where S₀ = I.
@@ -159,7 +183,7 @@ impl Solver<'_, '_> {
         if rests.iter().all(Matrix::is_zero) {
             return Some(vec![base.minus(base); rests.len()]);
         }
-        let inverse = self.left_inverse()?;
+        let inverse = self.left_inverse()?.matrix;
         let solved = |rest: &Matrix| self.domain.ideal().normal_forms(&inverse.times(rest));
         Some(rests.iter().map(solved).collect())
     }
@@ -175,7 +199,7 @@ impl Solver<'_, '_> {
 
     /// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
     /// constant of one term; from rows whose determinant is short and never 0; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
-    fn left_inverse(&self) -> Option<Matrix> {
+    fn left_inverse(&self) -> Option<LeftInverse> {
         let constant = |determinant: &Expr| self.domain.is_unit(determinant);
         let short = |determinant: &Expr| {
             determinant.terms().len() <= LONGEST_PIVOT && self.domain.nonzero(determinant).is_some()
@@ -184,13 +208,36 @@ impl Solver<'_, '_> {
         let in_child = |good: &dyn Fn(&Expr) -> bool| {
             Some(self.row_inverse(self.child, good)?.times(self.to_child))
         };
-        match self.child.is_constant() && !self.twist_map.is_constant() {
+        let plain = match self.child.is_constant() && !self.twist_map.is_constant() {
             true => in_child(&constant).or_else(|| in_parent(&constant)),
             false => in_parent(&constant).or_else(|| in_child(&constant)),
-        }
-        .or_else(|| in_child(&short))
-        .or_else(|| in_parent(&short))
-        .or_else(|| pseudo_inverse(self.twist_map, self.domain.ideal()))
+        };
+        let plain = plain.map(LeftInverse::of_twist_map);
+        plain.or_else(|| self.by_rates(&constant)).or_else(|| {
+            let divided = in_child(&short).or_else(|| in_parent(&short));
+            divided
+                .or_else(|| pseudo_inverse(self.twist_map, self.domain.ideal()))
+                .map(LeftInverse::of_twist_map)
+        })
+    }
+
+    /// `(L X)⁻¹ L` with L a left inverse of J: where v is declared by X as what it makes of simpler velocities, `L X = S₀⁻¹` is short.
+    fn by_rates(&self, good: &dyn Fn(&Expr) -> bool) -> Option<LeftInverse> {
+        let ideal = self.domain.ideal();
+        let simplify = |e: &Expr| ideal.normal_form(e);
+        let in_child = self.row_inverse(&self.jacobian.child, good);
+        let left = match in_child {
+            Some(inverse) => inverse.times(self.to_child),
+            None => self.row_inverse(&self.jacobian.base, good)?,
+        };
+        let rates = ideal.normal_forms(&left.times(self.twist_map));
+        let determinant = rates.determinant(&simplify);
+        self.domain.nonzero(&determinant)?;
+        let inverse = rates.adjugate(&simplify).scale(&determinant.recip()?);
+        Some(LeftInverse {
+            matrix: inverse.times(&left),
+            of_velocity_map: Some(rates),
+        })
     }
 
     /// The inverse of the first rows with a good determinant, zero elsewhere.

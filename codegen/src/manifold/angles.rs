@@ -11,23 +11,35 @@ const LARGEST_MULTIPLE: u32 = 16;
 
 /// The expression with one base angle where it holds several multiples of it: cos q beside cos q/2 becomes cos² q/2 − sin² q/2.
 pub fn unified(expression: &Expr) -> Expr {
-    let atoms = expression.atoms();
+    match by_base_angles(expression.atoms()) {
+        Some(replaced) => expression.replace_atoms(&replaced),
+        None => expression.clone(),
+    }
+}
+
+/// The expressions with one base angle where they hold several multiples of it together.
+pub fn unified_all(expressions: &[Expr]) -> Vec<Expr> {
+    match by_base_angles(expressions.iter().flat_map(Expr::atoms).collect()) {
+        Some(replaced) => {
+            let unified = expressions.iter().map(|e| e.replace_atoms(&replaced));
+            unified.collect()
+        }
+        None => expressions.to_vec(),
+    }
+}
+
+/// The sines and cosines of which several are of multiples of one angle, by those of its common part; `None` where there are none.
+fn by_base_angles(atoms: BTreeSet<Atom>) -> Option<BTreeMap<Atom, Expr>> {
     let mut angles: BTreeMap<Monomial, BTreeSet<Rational>> = BTreeMap::new();
     for (monomial, coefficient) in atoms.iter().filter_map(angle) {
         angles.entry(monomial).or_default().insert(coefficient);
     }
     angles.retain(|_, coefficients| coefficients.len() > 1);
-    if angles.is_empty() {
-        return expression.clone();
-    }
-    let replaced: BTreeMap<Atom, Expr> = atoms
-        .into_iter()
-        .filter_map(|atom| {
-            let value = by_common_part(&atom, &angles)?;
-            Some((atom, value))
-        })
-        .collect();
-    expression.replace_atoms(&replaced)
+    let replaced = atoms.into_iter().filter_map(|atom| {
+        let value = by_common_part(&atom, &angles)?;
+        Some((atom, value))
+    });
+    (!angles.is_empty()).then(|| replaced.collect())
 }
 
 /// Monomial and coefficient of the argument of a sine or cosine of one term.

@@ -6,16 +6,24 @@ use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol,
 use crate::matrix::Matrix;
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 /// Most term operations that the search for a shorter form of one expression may take.
 const SIMPLIFICATION_LIMIT: u64 = 10_000;
 
+/// Most manifolds whose bases are kept.
+const MOST_KNOWN: usize = 32;
+
+thread_local! {
+    /// Relations of known manifolds with their bases, the last used first.
+    static KNOWN: RefCell<VecDeque<(Vec<Expr>, Arc<Reduction>)>> = RefCell::default();
+}
+
 /// The ideal of a manifold's relations, with its Gröbner basis.
 #[derive(Clone, Debug, Default)]
 pub struct Ideal {
-    own: Reduction,
+    own: Arc<Reduction>,
     /// Parameters that are positive, so that the root of their square is the parameter itself.
     positive: BTreeSet<Symbol>,
     /// Bases extended by the relations of the functions that an expression holds, by those functions.
@@ -28,7 +36,29 @@ impl Ideal {
     /// The ideal of the relations.
     pub fn new(relations: &[Expr]) -> Self {
         Self {
-            own: Reduction::new(relations),
+            own: Arc::new(Reduction::new(relations)),
+            ..Self::default()
+        }
+    }
+
+    /// The ideal of the relations of known factors; its basis is kept for the next manifold of the same.
+    pub fn of_known(relations: Vec<Expr>) -> Self {
+        let own = KNOWN.with_borrow_mut(|known| {
+            let place = known.iter().position(|(of, _)| *of == relations);
+            let entry = match place.and_then(|place| known.remove(place)) {
+                Some(entry) => entry,
+                None => {
+                    let reduction = Reduction::new(&relations);
+                    (relations, Arc::new(reduction))
+                }
+            };
+            let own = entry.1.clone();
+            known.push_front(entry);
+            known.truncate(MOST_KNOWN);
+            own
+        });
+        Self {
+            own,
             ..Self::default()
         }
     }
@@ -177,6 +207,7 @@ impl Ideal {
     /// Whether the expressions have no common zero on the manifold, shown by 1 being among the combinations of their numerators.
     pub fn has_no_zero_with(&self, expressions: &[Expr]) -> bool {
         let numerators: Vec<Expr> = expressions.iter().map(|e| self.numerator(e)).collect();
+        let numerators = angles::unified_all(&numerators);
         let functions: BTreeSet<Atom> = numerators
             .iter()
             .flat_map(Expr::related_functions)

@@ -30,7 +30,7 @@ impl Manifold {
         Self {
             factors,
             declared: vec![],
-            ideal: Ideal::new(&relations),
+            ideal: Ideal::of_known(relations),
         }
     }
 

@@ -108,7 +108,7 @@ fn collect(expression: &Expr, found: &mut BTreeSet<(Function, Expr)>) {
             && argument
                 .symbols()
                 .iter()
-                .any(|symbol| symbol.role == Role::Coordinate)
+                .any(|symbol| matches!(symbol.role, Role::Coordinate | Role::Parameter))
         {
             found.insert((application.function, argument.clone()));
         }

@@ -147,13 +147,16 @@ impl Prover<'_> {
 
     pub(super) fn twist_map_has_full_rank(&self) -> Attempt {
         // Ad is invertible, so that X and X^c have the same rank: the simpler one is certified.
-        let (m, statement) = match self.x.twist_map_child.is_constant() {
-            true => (
-                &self.x.twist_map_child,
-                "rank X = k (shown for X^c = Ad_{H⁻¹} X)",
-            ),
-            false => (&self.x.twist_map, "rank X = k"),
-        };
+        let child = &self.x.twist_map_child;
+        let shown = |m: &Matrix| rank::full_column_rank(m, &self.domain).is_ok();
+        let (m, statement) =
+            match child.is_constant() || (!shown(&self.x.twist_map) && shown(child)) {
+                true => (
+                    &self.x.twist_map_child,
+                    "rank X = k (shown for X^c = Ad_{H⁻¹} X)",
+                ),
+                false => (&self.x.twist_map, "rank X = k"),
+            };
         self.rank_claim(
             m,
             "twist_map_rank",

@@ -536,7 +536,7 @@ impl Joint<12, 6, 6, 0> for Free {
 
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
     ///
-    /// 6×6. Operations: 210 additions, 255 multiplications (157 of each fused), 5 function calls.
+    /// 6×6. Operations: 60 additions, 87 multiplications (40 of each fused), 4 function calls.
     ///
     /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential<T: Scalar>(
@@ -550,7 +550,6 @@ impl Joint<12, 6, 6, 0> for Free {
         let one = T::one();
         let three_halves = T::from_f64(1.5);
         let two = T::from_f64(2.0);
-        let five_halves = T::from_f64(2.5);
         let phi_wy_squared = phi_wy * phi_wy;
         let phi_wz_squared = phi_wz * phi_wz;
         let ad_squared11 = -(phi_wy_squared + phi_wz_squared);
@@ -575,606 +574,136 @@ impl Joint<12, 6, 6, 0> for Free {
         let theta_squared = phi_wx_squared + phi_wy_squared + phi_wz_squared;
         let c2 = theta_squared.stumpff(2);
         let c3 = theta_squared.stumpff(3);
-        let c1 = theta_squared.stumpff(1);
         let c4 = theta_squared.stumpff(4);
         let c5 = theta_squared.stumpff(5);
-        let odd = two * c2 - half * c1;
         let odd_slope = half.mul_add(-c3, c4);
-        let even = five_halves * c3 - half * c2;
         let even_slope = three_halves * c5 - half * c4;
-        let ad_cubed11 = phi_wy * ad_squared13 - phi_wz * ad_squared12;
-        let ad_cubed12 = phi_wy * ad_squared23 - phi_wz * ad_squared22;
-        let ad_cubed13 = phi_wy * ad_squared33 - phi_wz * ad_squared23;
-        let ad_cubed21 = phi_wz * ad_squared11 - phi_wx * ad_squared13;
-        let ad_cubed22 = phi_wz * ad_squared12 - phi_wx * ad_squared23;
-        let ad_cubed23 = phi_wz * ad_squared13 - phi_wx * ad_squared33;
-        let ad_cubed31 = phi_wx * ad_squared12 - phi_wy * ad_squared11;
-        let ad_cubed32 = phi_wx * ad_squared22 - phi_wy * ad_squared12;
-        let ad_cubed33 = phi_wx * ad_squared23 - phi_wy * ad_squared13;
-        let ad_cubed41 = phi_wy
-            .mul_add(
-                ad_squared43,
-                phi_wz
-                    .mul_add(
-                        -ad_squared42,
-                        phi_vz.mul_add(-ad_squared12, phi_vy * ad_squared13),
-                    ),
-            );
-        let ad_cubed42 = phi_wy
-            .mul_add(
-                ad_squared53,
-                phi_wz
-                    .mul_add(
-                        -ad_squared52,
-                        phi_vz.mul_add(-ad_squared22, phi_vy * ad_squared23),
-                    ),
-            );
-        let ad_cubed43 = phi_wy
-            .mul_add(
-                ad_squared63,
-                phi_wz
-                    .mul_add(
-                        -ad_squared53,
-                        phi_vz.mul_add(-ad_squared23, phi_vy * ad_squared33),
-                    ),
-            );
-        let ad_cubed44 = phi_wy * ad_squared13 - phi_wz * ad_squared12;
-        let ad_cubed45 = phi_wy * ad_squared23 - phi_wz * ad_squared55;
-        let ad_cubed46 = phi_wy * ad_squared66 - phi_wz * ad_squared23;
-        let ad_cubed51 = phi_wz
-            .mul_add(
-                ad_squared41,
-                phi_vx
-                    .mul_add(
-                        -ad_squared13,
-                        phi_wx.mul_add(-ad_squared43, phi_vz * ad_squared11),
-                    ),
-            );
-        let ad_cubed52 = phi_wz
-            .mul_add(
-                ad_squared42,
-                phi_vx
-                    .mul_add(
-                        -ad_squared23,
-                        phi_wx.mul_add(-ad_squared53, phi_vz * ad_squared12),
-                    ),
-            );
-        let ad_cubed53 = phi_wz
-            .mul_add(
-                ad_squared43,
-                phi_vx
-                    .mul_add(
-                        -ad_squared33,
-                        phi_wx.mul_add(-ad_squared63, phi_vz * ad_squared13),
-                    ),
-            );
-        let ad_cubed54 = phi_wz * ad_squared44 - phi_wx * ad_squared13;
-        let ad_cubed55 = phi_wz * ad_squared12 - phi_wx * ad_squared23;
-        let ad_cubed56 = phi_wz * ad_squared13 - phi_wx * ad_squared66;
-        let ad_cubed61 = phi_wx
-            .mul_add(
-                ad_squared42,
-                phi_wy
-                    .mul_add(
-                        -ad_squared41,
-                        phi_vy.mul_add(-ad_squared11, phi_vx * ad_squared12),
-                    ),
-            );
-        let ad_cubed62 = phi_wx
-            .mul_add(
-                ad_squared52,
-                phi_wy
-                    .mul_add(
-                        -ad_squared42,
-                        phi_vy.mul_add(-ad_squared12, phi_vx * ad_squared22),
-                    ),
-            );
-        let ad_cubed63 = phi_wx
-            .mul_add(
-                ad_squared53,
-                phi_wy
-                    .mul_add(
-                        -ad_squared43,
-                        phi_vy.mul_add(-ad_squared13, phi_vx * ad_squared23),
-                    ),
-            );
-        let ad_cubed64 = phi_wx * ad_squared12 - phi_wy * ad_squared44;
-        let ad_cubed65 = phi_wx * ad_squared55 - phi_wy * ad_squared12;
-        let ad_cubed66 = phi_wx * ad_squared23 - phi_wy * ad_squared13;
-        let ad_squared12_squared = ad_squared12 * ad_squared12;
-        let ad_squared13_squared = ad_squared13 * ad_squared13;
-        let phi_wz_odd = phi_wz * odd;
-        let sum_of_even_even_slope_ad_squared11 = even_slope
-            .mul_add(-(ad_squared11 + ad_squared22), even);
-        let ad_squared13_even_slope = ad_squared13 * even_slope;
-        let phi_wy_odd = phi_wy * odd;
-        let sum_of_even_even_slope_ad_squared11_2 = even_slope
-            .mul_add(-(ad_squared11 + ad_squared33), even);
-        let ad_squared12_even_slope = ad_squared12 * even_slope;
-        let ad_squared23_squared = ad_squared23 * ad_squared23;
-        let phi_wx_odd = phi_wx * odd;
-        let sum_of_even_even_slope_ad_squared22 = even_slope
-            .mul_add(-(ad_squared22 + ad_squared33), even);
-        let phi_vz_odd = phi_vz * odd;
-        let phi_vy_odd = phi_vy * odd;
-        let ad_squared12_squared_2 = ad_squared12 * ad_squared12;
-        let ad_squared13_squared_2 = ad_squared13 * ad_squared13;
-        let sum_of_even_even_slope_ad_squared44 = even_slope
-            .mul_add(-(ad_squared44 + ad_squared55), even);
-        let ad_squared13_even_slope_2 = ad_squared13 * even_slope;
-        let sum_of_even_even_slope_ad_squared44_2 = even_slope
-            .mul_add(-(ad_squared44 + ad_squared66), even);
-        let ad_squared12_even_slope_2 = ad_squared12 * even_slope;
-        let phi_vx_odd = phi_vx * odd;
-        let ad_squared23_squared_2 = ad_squared23 * ad_squared23;
-        let sum_of_even_even_slope_ad_squared55 = even_slope
-            .mul_add(-(ad_squared55 + ad_squared66), even);
+        let sum_of_phi_wx_phi_vx_phi_wy_phi_vy = phi_wx_phi_vx + phi_wy_phi_vy
+            + phi_wz_phi_vz;
+        let odd_excess42 = phi_wz * two * sum_of_phi_wx_phi_vx_phi_wy_phi_vy;
+        let product_of_phi_wy = phi_wy * two * sum_of_phi_wx_phi_vx_phi_wy_phi_vy;
+        let odd_excess43 = -product_of_phi_wy;
+        let odd_excess51 = -odd_excess42;
+        let odd_excess53 = phi_wx * two * sum_of_phi_wx_phi_vx_phi_wy_phi_vy;
+        let odd_excess62 = -odd_excess53;
+        let even_excess41 = phi_wy * product_of_phi_wy - phi_wz * odd_excess51;
+        let even_excess42 = phi_wy * odd_excess62;
+        let even_excess43 = -phi_wz * odd_excess53;
+        let even_excess51 = -phi_wx * product_of_phi_wy;
+        let even_excess52 = phi_wz * odd_excess42 - phi_wx * odd_excess62;
+        let even_excess53 = phi_wz * odd_excess43;
+        let even_excess61 = phi_wx * odd_excess51;
+        let even_excess62 = -phi_wy * odd_excess42;
+        let even_excess63 = phi_wx * odd_excess53 - phi_wy * odd_excess43;
+        let phi_wz_c2 = phi_wz * c2;
+        let phi_wy_c2 = phi_wy * c2;
+        let phi_wx_c2 = phi_wx * c2;
+        let phi_vz_c2 = phi_vz * c2;
+        let phi_vy_c2 = phi_vy * c2;
+        let phi_vx_c2 = phi_vx * c2;
         from_rows([
             [
-                ad_squared11
-                    .mul_add(
-                        even,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed11,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared11
-                                            .mul_add(
-                                                ad_squared11,
-                                                ad_squared12_squared + ad_squared13_squared,
-                                            ),
-                                        one,
-                                    ),
-                            ),
-                    ),
-                ad_squared12
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared11,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed12,
-                                ad_squared13_even_slope.mul_add(-ad_squared23, phi_wz_odd),
-                            ),
-                    ),
-                ad_squared13
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared11_2,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed13,
-                                ad_squared12_even_slope.mul_add(-ad_squared23, -phi_wy_odd),
-                            ),
-                    ),
+                ad_squared11.mul_add(c3, one),
+                ad_squared12.mul_add(c3, phi_wz_c2),
+                ad_squared13.mul_add(c3, -phi_wy_c2),
                 zero,
                 zero,
                 zero,
             ],
             [
-                ad_squared12
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared11,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed21,
-                                (ad_squared23 * ad_squared13)
-                                    .mul_add(-even_slope, -phi_wz_odd),
-                            ),
-                    ),
-                ad_squared22
-                    .mul_add(
-                        even,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed22,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared22
-                                            .mul_add(
-                                                ad_squared22,
-                                                ad_squared12_squared + ad_squared23_squared,
-                                            ),
-                                        one,
-                                    ),
-                            ),
-                    ),
-                ad_squared23
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared22,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed23,
-                                ad_squared13_even_slope.mul_add(-ad_squared12, phi_wx_odd),
-                            ),
-                    ),
+                ad_squared12.mul_add(c3, -phi_wz_c2),
+                ad_squared22.mul_add(c3, one),
+                ad_squared23.mul_add(c3, phi_wx_c2),
                 zero,
                 zero,
                 zero,
             ],
             [
-                ad_squared13
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared11_2,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed31,
-                                (ad_squared12 * ad_squared23)
-                                    .mul_add(-even_slope, phi_wy_odd),
-                            ),
-                    ),
-                ad_squared23
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared22,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed32,
-                                ad_squared12_even_slope.mul_add(-ad_squared13, -phi_wx_odd),
-                            ),
-                    ),
-                ad_squared33
-                    .mul_add(
-                        even,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed33,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared33
-                                            .mul_add(
-                                                ad_squared33,
-                                                ad_squared13_squared + ad_squared23_squared,
-                                            ),
-                                        one,
-                                    ),
-                            ),
-                    ),
+                ad_squared13.mul_add(c3, phi_wy_c2),
+                ad_squared23.mul_add(c3, -phi_wx_c2),
+                ad_squared33.mul_add(c3, one),
                 zero,
                 zero,
                 zero,
             ],
             [
-                ad_squared41
-                    .mul_add(
-                        even,
-                        even_slope
-                            .mul_add(
-                                -ad_squared41
-                                    .mul_add(
-                                        ad_squared11 + ad_squared44,
-                                        ad_squared12
-                                            .mul_add(
-                                                ad_squared42,
-                                                ad_squared13
-                                                    .mul_add(
-                                                        ad_squared43,
-                                                        ad_squared12
-                                                            .mul_add(ad_squared42, ad_squared13 * ad_squared43),
-                                                    ),
-                                            ),
-                                    ),
-                                odd_slope * ad_cubed41,
-                            ),
-                    ),
+                ad_squared41 * c3 - even_slope * even_excess41,
                 ad_squared42
                     .mul_add(
-                        even,
+                        c3,
                         odd_slope
                             .mul_add(
-                                ad_cubed42,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared12
-                                            .mul_add(
-                                                ad_squared41,
-                                                ad_squared42
-                                                    .mul_add(
-                                                        ad_squared22 + ad_squared44,
-                                                        ad_squared23
-                                                            .mul_add(
-                                                                ad_squared43,
-                                                                ad_squared12
-                                                                    .mul_add(ad_squared52, ad_squared13 * ad_squared53),
-                                                            ),
-                                                    ),
-                                            ),
-                                        phi_vz_odd,
-                                    ),
+                                odd_excess42,
+                                even_slope.mul_add(-even_excess42, phi_vz_c2),
                             ),
                     ),
                 ad_squared43
                     .mul_add(
-                        even,
+                        c3,
                         odd_slope
                             .mul_add(
-                                ad_cubed43,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared13
-                                            .mul_add(
-                                                ad_squared41,
-                                                ad_squared23
-                                                    .mul_add(
-                                                        ad_squared42,
-                                                        ad_squared43
-                                                            .mul_add(
-                                                                ad_squared33 + ad_squared44,
-                                                                ad_squared12
-                                                                    .mul_add(ad_squared53, ad_squared13 * ad_squared63),
-                                                            ),
-                                                    ),
-                                            ),
-                                        -phi_vy_odd,
-                                    ),
+                                odd_excess43,
+                                even_slope.mul_add(-even_excess43, -phi_vy_c2),
                             ),
                     ),
-                ad_squared44
-                    .mul_add(
-                        even,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed44,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared44
-                                            .mul_add(
-                                                ad_squared44,
-                                                ad_squared12_squared_2 + ad_squared13_squared_2,
-                                            ),
-                                        one,
-                                    ),
-                            ),
-                    ),
-                ad_squared12
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared44,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed45,
-                                ad_squared13_even_slope_2.mul_add(-ad_squared23, phi_wz_odd),
-                            ),
-                    ),
-                ad_squared13
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared44_2,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed46,
-                                ad_squared12_even_slope_2
-                                    .mul_add(-ad_squared23, -phi_wy_odd),
-                            ),
-                    ),
+                ad_squared44.mul_add(c3, one),
+                ad_squared12.mul_add(c3, phi_wz_c2),
+                ad_squared13.mul_add(c3, -phi_wy_c2),
             ],
             [
                 ad_squared42
                     .mul_add(
-                        even,
+                        c3,
                         odd_slope
                             .mul_add(
-                                ad_cubed51,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared42
-                                            .mul_add(
-                                                ad_squared11 + ad_squared55,
-                                                ad_squared12
-                                                    .mul_add(
-                                                        ad_squared52,
-                                                        ad_squared13
-                                                            .mul_add(
-                                                                ad_squared53,
-                                                                ad_squared41
-                                                                    .mul_add(ad_squared12, ad_squared23 * ad_squared43),
-                                                            ),
-                                                    ),
-                                            ),
-                                        -phi_vz_odd,
-                                    ),
+                                odd_excess51,
+                                even_slope.mul_add(-even_excess51, -phi_vz_c2),
                             ),
                     ),
-                ad_squared52
-                    .mul_add(
-                        even,
-                        even_slope
-                            .mul_add(
-                                -ad_squared12
-                                    .mul_add(
-                                        ad_squared42,
-                                        ad_squared52
-                                            .mul_add(
-                                                ad_squared22 + ad_squared55,
-                                                ad_squared23
-                                                    .mul_add(
-                                                        ad_squared53,
-                                                        ad_squared42
-                                                            .mul_add(ad_squared12, ad_squared23 * ad_squared53),
-                                                    ),
-                                            ),
-                                    ),
-                                odd_slope * ad_cubed52,
-                            ),
-                    ),
+                ad_squared52 * c3 - even_slope * even_excess52,
                 ad_squared53
                     .mul_add(
-                        even,
+                        c3,
                         odd_slope
                             .mul_add(
-                                ad_cubed53,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared13
-                                            .mul_add(
-                                                ad_squared42,
-                                                ad_squared23
-                                                    .mul_add(
-                                                        ad_squared52,
-                                                        ad_squared53
-                                                            .mul_add(
-                                                                ad_squared33 + ad_squared55,
-                                                                ad_squared43
-                                                                    .mul_add(ad_squared12, ad_squared23 * ad_squared63),
-                                                            ),
-                                                    ),
-                                            ),
-                                        phi_vx_odd,
-                                    ),
+                                odd_excess53,
+                                even_slope.mul_add(-even_excess53, phi_vx_c2),
                             ),
                     ),
-                ad_squared12
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared44,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed54,
-                                (ad_squared23 * ad_squared13)
-                                    .mul_add(-even_slope, -phi_wz_odd),
-                            ),
-                    ),
-                ad_squared55
-                    .mul_add(
-                        even,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed55,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared55
-                                            .mul_add(
-                                                ad_squared55,
-                                                ad_squared12_squared_2 + ad_squared23_squared_2,
-                                            ),
-                                        one,
-                                    ),
-                            ),
-                    ),
-                ad_squared23
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared55,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed56,
-                                ad_squared13_even_slope_2.mul_add(-ad_squared12, phi_wx_odd),
-                            ),
-                    ),
+                ad_squared12.mul_add(c3, -phi_wz_c2),
+                ad_squared55.mul_add(c3, one),
+                ad_squared23.mul_add(c3, phi_wx_c2),
             ],
             [
                 ad_squared43
                     .mul_add(
-                        even,
+                        c3,
                         odd_slope
                             .mul_add(
-                                ad_cubed61,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared43
-                                            .mul_add(
-                                                ad_squared11 + ad_squared66,
-                                                ad_squared12
-                                                    .mul_add(
-                                                        ad_squared53,
-                                                        ad_squared13
-                                                            .mul_add(
-                                                                ad_squared63,
-                                                                ad_squared41
-                                                                    .mul_add(ad_squared13, ad_squared42 * ad_squared23),
-                                                            ),
-                                                    ),
-                                            ),
-                                        phi_vy_odd,
-                                    ),
+                                product_of_phi_wy,
+                                even_slope.mul_add(-even_excess61, phi_vy_c2),
                             ),
                     ),
                 ad_squared53
                     .mul_add(
-                        even,
+                        c3,
                         odd_slope
                             .mul_add(
-                                ad_cubed62,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared12
-                                            .mul_add(
-                                                ad_squared43,
-                                                ad_squared53
-                                                    .mul_add(
-                                                        ad_squared22 + ad_squared66,
-                                                        ad_squared23
-                                                            .mul_add(
-                                                                ad_squared63,
-                                                                ad_squared42
-                                                                    .mul_add(ad_squared13, ad_squared52 * ad_squared23),
-                                                            ),
-                                                    ),
-                                            ),
-                                        -phi_vx_odd,
-                                    ),
+                                odd_excess62,
+                                even_slope.mul_add(-even_excess62, -phi_vx_c2),
                             ),
                     ),
-                ad_squared63
-                    .mul_add(
-                        even,
-                        even_slope
-                            .mul_add(
-                                -ad_squared13
-                                    .mul_add(
-                                        ad_squared43,
-                                        ad_squared23
-                                            .mul_add(
-                                                ad_squared53,
-                                                ad_squared63
-                                                    .mul_add(
-                                                        ad_squared33 + ad_squared66,
-                                                        ad_squared43
-                                                            .mul_add(ad_squared13, ad_squared53 * ad_squared23),
-                                                    ),
-                                            ),
-                                    ),
-                                odd_slope * ad_cubed63,
-                            ),
-                    ),
-                ad_squared13
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared44_2,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed64,
-                                (ad_squared12 * ad_squared23)
-                                    .mul_add(-even_slope, phi_wy_odd),
-                            ),
-                    ),
-                ad_squared23
-                    .mul_add(
-                        sum_of_even_even_slope_ad_squared55,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed65,
-                                ad_squared12_even_slope_2
-                                    .mul_add(-ad_squared13, -phi_wx_odd),
-                            ),
-                    ),
-                ad_squared66
-                    .mul_add(
-                        even,
-                        odd_slope
-                            .mul_add(
-                                ad_cubed66,
-                                even_slope
-                                    .mul_add(
-                                        -ad_squared66
-                                            .mul_add(
-                                                ad_squared66,
-                                                ad_squared13_squared_2 + ad_squared23_squared_2,
-                                            ),
-                                        one,
-                                    ),
-                            ),
-                    ),
+                ad_squared63 * c3 - even_slope * even_excess63,
+                ad_squared13.mul_add(c3, phi_wy_c2),
+                ad_squared23.mul_add(c3, -phi_wx_c2),
+                ad_squared66.mul_add(c3, one),
             ],
         ])
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
     ///
-    /// 6-vector, rad/s, rad/s, rad/s, m/s, m/s, m/s. Operations: 69 additions, 94 multiplications (54 of each fused), 2 function calls.
+    /// 6-vector, rad/s, rad/s, rad/s, m/s, m/s, m/s. Operations: 46 additions, 69 multiplications (34 of each fused), 2 function calls.
     ///
     /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
@@ -1186,8 +715,10 @@ impl Joint<12, 6, 6, 0> for Free {
         let [phi_wx, phi_wy, phi_wz, phi_vx, phi_vy, phi_vz]: [T; 6] = (*phi).into();
         let [v_wx, v_wy, v_wz, v_vx, v_vy, v_vz]: [T; 6] = (*rate).into();
         let half = T::from_f64(0.5);
+        let two = T::from_f64(2.0);
         let bracket1 = phi_wy * v_wz - phi_wz * v_wy;
-        let bracket2 = phi_wz * v_wx - phi_wx * v_wz;
+        let phi_wx_v_wz_minus_phi_wz_v_wx = phi_wx * v_wz - phi_wz * v_wx;
+        let bracket2 = -phi_wx_v_wz_minus_phi_wz_v_wx;
         let bracket3 = phi_wx * v_wy - phi_wy * v_wx;
         let bracket4 = phi_wy
             .mul_add(v_vz, phi_wz.mul_add(-v_vy, phi_vz.mul_add(-v_wy, phi_vy * v_wz)));
@@ -1217,132 +748,41 @@ impl Joint<12, 6, 6, 0> for Free {
                 phi_wy.mul_add(-bracket4, phi_vy.mul_add(-bracket1, phi_vx * bracket2)),
             );
         let g_slope = theta_squared.dexp_inverse(1);
-        let alpha = theta_squared.mul_add(-g_slope, g);
-        let triple_bracket1 = phi_wy * double_bracket3 - phi_wz * double_bracket2;
-        let triple_bracket2 = phi_wz * double_bracket1 - phi_wx * double_bracket3;
-        let triple_bracket3 = phi_wx * double_bracket2 - phi_wy * double_bracket1;
-        let triple_bracket4 = phi_wy
-            .mul_add(
-                double_bracket6,
-                phi_wz
-                    .mul_add(
-                        -double_bracket5,
-                        phi_vz.mul_add(-double_bracket2, phi_vy * double_bracket3),
-                    ),
-            );
-        let triple_bracket5 = phi_wz
-            .mul_add(
-                double_bracket4,
-                phi_vx
-                    .mul_add(
-                        -double_bracket3,
-                        phi_wx.mul_add(-double_bracket6, phi_vz * double_bracket1),
-                    ),
-            );
-        let triple_bracket6 = phi_wx
-            .mul_add(
-                double_bracket5,
-                phi_wy
-                    .mul_add(
-                        -double_bracket4,
-                        phi_vy.mul_add(-double_bracket1, phi_vx * double_bracket2),
-                    ),
-            );
+        let sum_of_phi_wx_phi_vx_phi_wy_phi_vy = phi_wx
+            .mul_add(phi_vx, phi_wy.mul_add(phi_vy, phi_wz * phi_vz));
+        let excess4 = -two * sum_of_phi_wx_phi_vx_phi_wy_phi_vy * bracket1;
+        let excess5 = two * sum_of_phi_wx_phi_vx_phi_wy_phi_vy
+            * phi_wx_v_wz_minus_phi_wz_v_wx;
+        let excess6 = -two * sum_of_phi_wx_phi_vx_phi_wy_phi_vy * bracket3;
         SVector::from([
-            half
-                .mul_add(
-                    bracket1,
-                    double_bracket1
-                        .mul_add(
-                            alpha,
-                            v_wx
-                                - g_slope
-                                    * (phi_wy * triple_bracket3 - phi_wz * triple_bracket2),
-                        ),
-                ),
-            half
-                .mul_add(
-                    bracket2,
-                    double_bracket2
-                        .mul_add(
-                            alpha,
-                            v_wy
-                                + g_slope
-                                    * (phi_wx * triple_bracket3 - phi_wz * triple_bracket1),
-                        ),
-                ),
-            half
-                .mul_add(
-                    bracket3,
-                    double_bracket3
-                        .mul_add(
-                            alpha,
-                            v_wz
-                                - g_slope
-                                    * (phi_wx * triple_bracket2 - phi_wy * triple_bracket1),
-                        ),
-                ),
+            half.mul_add(bracket1, g.mul_add(double_bracket1, v_wx)),
+            half.mul_add(bracket2, g.mul_add(double_bracket2, v_wy)),
+            half.mul_add(bracket3, g.mul_add(double_bracket3, v_wz)),
             half
                 .mul_add(
                     bracket4,
-                    double_bracket4
+                    g
                         .mul_add(
-                            alpha,
-                            g_slope
-                                .mul_add(
-                                    phi_wz
-                                        .mul_add(
-                                            triple_bracket5,
-                                            phi_vy
-                                                .mul_add(
-                                                    -triple_bracket3,
-                                                    phi_wy.mul_add(-triple_bracket6, phi_vz * triple_bracket2),
-                                                ),
-                                        ),
-                                    v_vx,
-                                ),
+                            double_bracket4,
+                            v_vx - g_slope * (phi_wy * excess6 - phi_wz * excess5),
                         ),
                 ),
             half
                 .mul_add(
                     bracket5,
-                    double_bracket5
+                    g
                         .mul_add(
-                            alpha,
-                            g_slope
-                                .mul_add(
-                                    phi_wx
-                                        .mul_add(
-                                            triple_bracket6,
-                                            phi_wz
-                                                .mul_add(
-                                                    -triple_bracket4,
-                                                    phi_vz.mul_add(-triple_bracket1, phi_vx * triple_bracket3),
-                                                ),
-                                        ),
-                                    v_vy,
-                                ),
+                            double_bracket5,
+                            v_vy + g_slope * (phi_wx * excess6 - phi_wz * excess4),
                         ),
                 ),
             half
                 .mul_add(
                     bracket6,
-                    double_bracket6
+                    g
                         .mul_add(
-                            alpha,
-                            g_slope
-                                .mul_add(
-                                    phi_wy
-                                        .mul_add(
-                                            triple_bracket4,
-                                            phi_vx
-                                                .mul_add(
-                                                    -triple_bracket2,
-                                                    phi_wx.mul_add(-triple_bracket5, phi_vy * triple_bracket1),
-                                                ),
-                                        ),
-                                    v_vz,
-                                ),
+                            double_bracket6,
+                            v_vz - g_slope * (phi_wx * excess5 - phi_wy * excess4),
                         ),
                 ),
         ])

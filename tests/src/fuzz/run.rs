@@ -1,6 +1,7 @@
 //! A run over many inputs: what breaks, what is slow, how much memory is used.
 
 use super::target::Outcome;
+use cpu_time::ThreadTime;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -50,20 +51,12 @@ pub fn run(
     figures
 }
 
-/// The time that this thread has computed: other programs on the machine do not count. Where the system does not tell, the clock.
-fn now(start: Instant) -> Duration {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = text.split(' ').next().and_then(|field| field.parse().ok());
-    nanoseconds.map_or_else(|| start.elapsed(), Duration::from_nanos)
-}
-
-/// The outcome and its time: the least of three where that is a record.
+/// The outcome and the time that this thread has computed for it, in which other programs on the machine do not count: the least
+/// of three where that is a record.
 fn timed(text: &str, target: &impl Fn(&str) -> Outcome, record: Duration) -> (Outcome, Duration) {
     let once = || {
-        let clock = Instant::now();
-        let start = now(clock);
-        let outcome = target(text);
-        (outcome, now(clock).saturating_sub(start))
+        let start = ThreadTime::now();
+        (target(text), start.elapsed())
     };
     let (outcome, mut time) = once();
     for _ in 0..2 {

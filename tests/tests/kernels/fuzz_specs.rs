@@ -1,23 +1,34 @@
 //! The generator on broken input: no panic, no input that takes long, bounded memory.
 //!
 //! `cargo test` takes a slice. The whole: `cargo test --release --package hamel-tests --test kernels fuzz -- --ignored --nocapture --test-threads 1`.
+//! The environment variables `FUZZ_FROM` and `FUZZ_COUNT` choose other numbers of inputs.
 
 use hamel_tests::fuzz::{Corpus, Mutator, check, pipeline, report, run};
+use std::ops::Range;
 
 fn mutator() -> Mutator {
     Mutator::new(Corpus::read())
 }
 
+/// The first `count` inputs, or those that the environment chooses.
+fn numbers(count: u64) -> Range<u64> {
+    let number = |key: &str| std::env::var(key).ok().and_then(|text| text.parse().ok());
+    let from: u64 = number("FUZZ_FROM").unwrap_or(0);
+    from..from + number("FUZZ_COUNT").unwrap_or(count)
+}
+
 fn parser(count: u64) {
     let mutator = mutator();
     let input = |number| Some(mutator.input(number));
-    report("parser and checker", &run(0..count, input, check), input);
+    let figures = run(numbers(count), input, check);
+    report("parser and checker", &figures, input);
 }
 
 fn whole(count: u64) {
     let mutator = mutator();
     let input = |number| mutator.accepted(number);
-    report("whole pipeline", &run(0..count, input, pipeline), input);
+    let figures = run(numbers(count), input, pipeline);
+    report("whole pipeline", &figures, input);
 }
 
 #[test]

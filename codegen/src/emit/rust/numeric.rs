@@ -16,9 +16,6 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
         let tangent_there = self.retract_tangent(&moved, &SVector::zeros());
     };
     Some(match kernel.kind {
-        KernelKind::VelocityMapInverse => quote! {
-            ::hamel::finite::inverse(&self.velocity_map(q))
-        },
         KernelKind::Local => quote! {
             ::hamel::finite::local(
                 target,
@@ -86,7 +83,6 @@ pub fn sentence(kernel: &Kernel) -> Option<&'static str> {
             "By Newton's method, in at most [`PROJECT_ITERATIONS`](::hamel::finite::PROJECT_ITERATIONS); NaN where it does \
              not converge.",
         ),
-        (_, KernelKind::VelocityMapInverse) => Some("By a K×K solve with S₀."),
         _ => Some("By a least-squares solve with ∂Φ/∂ϕ at Q and at Q′."),
     }
 }

@@ -84,7 +84,6 @@ fn numeric_ball() -> Derived {
     patched(
         ball,
         vec![
-            by(Method::Solve, KernelKind::VelocityMapInverse, vec![]),
             by(Method::Newton, KernelKind::Local, vec![]),
             by(Method::Formula, KernelKind::RetractTangent, vec![tangent]),
             by(Method::Solve, KernelKind::RetractDifferential, vec![]),
@@ -110,7 +109,6 @@ fn maps_without_closed_form_call_the_runtime() {
     assert_contains(
         &text,
         &[
-            "::hamel::finite::inverse(&self.velocity_map(q))",
             "::hamel::finite::local( target, |phi| self.retract(q, phi), |phi| self.retract_tangent(q, phi), )",
             "fn retract_differential<T: Scalar>( &self, q: &SVector<T, 9>, phi: &SVector<T, 3>, ) -> SMatrix<T, 3, 3> { \
              let moved = self.retract(q, phi); let tangent = self.retract_tangent(q, phi); \

@@ -8,7 +8,7 @@ use super::once::At;
 use crate::algebra;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Expr;
-use crate::manifold::{Factor, Kind, LARGEST_REAL};
+use crate::manifold::{Factor, Ideal, Kind, LARGEST_REAL};
 use crate::matrix::Matrix;
 use std::ops::Range;
 
@@ -218,10 +218,11 @@ fn element(node: &Node, dimension: usize, evaluator: &mut Evaluator<'_>) -> Opti
 /// Determinant of the Gram matrix, a sum of squares of minors: zero exactly for dependent columns, and free of quotients.
 fn gram(generators: &[Vec<Expr>]) -> Expr {
     let columns = Matrix::from_columns(generators.first().map_or(0, Vec::len), generators);
+    let ideal = Ideal::default();
     columns
         .transpose()
         .times(&columns)
-        .determinant(&Expr::clone)
+        .determinant(&|e| ideal.normal_form(e))
 }
 
 /// The error that the elements are dependent, if they are.
