@@ -8,9 +8,7 @@
 //! quit
 //! ```
 
-use hamel::dynamics::{
-    Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive, Sensitivity,
-};
+use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive};
 use hamel::mechanism::Mechanism;
 use hamel_tests::peers::{Model, States, convert};
 use std::error::Error;

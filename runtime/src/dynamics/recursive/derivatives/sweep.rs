@@ -193,8 +193,9 @@ impl Sweep {
             for entry in &mut load {
                 *entry *= -pivot.inverse;
             }
-            for (sum, momentum) in wrench.iter_mut().zip(&pivot.momentum) {
-                add(sum, &load, *momentum);
+            let momentum = pivot.momentum.data.0[0];
+            for i in 0..6 {
+                add(&mut wrench[i], &load, momentum[i]);
             }
             add(&mut self.loads[speed], &load, 1.0);
         }
@@ -285,10 +286,10 @@ impl Sweep {
     fn add_own(&mut self, pushes: &[Push], body: usize) {
         for (lane, push) in pushes.iter().enumerate() {
             if push.body == body {
-                for (sum, rate) in self.motions[body].iter_mut().zip(&push.rate) {
+                for (sum, rate) in self.motions[body].iter_mut().zip(&push.rate.data.0[0]) {
                     sum[lane] += rate;
                 }
-                for (own, turn) in self.turns[body].iter_mut().zip(&push.turn) {
+                for (own, turn) in self.turns[body].iter_mut().zip(&push.turn.data.0[0]) {
                     own[lane] = *turn;
                 }
             }
