@@ -1,8 +1,9 @@
 //! Lie-group Runge–Kutta integration of Munthe-Kaas type, through the joints' own Φ (§V of the paper, (31)).
 //!
-//! A step starts at Q_n with ϕ = 0. Stages live in the flat space of (ϕ, y) with y = v̄ or p̄: stage i has
-//! `Q_i = Φ(Q_n, ϕ_i)` and `ϕ̇_i = S(Q_n, ϕ_i)⁻¹ S̄(Q_i) v̄_i`, so that any explicit tableau keeps its order. The step ends
-//! at `Φ(Q_n, ϕ)`, projected onto the manifold against rounding, where ϕ begins at 0 again. Nothing is ever added to Q.
+//! Steps live in the flat space of (ϕ, y) with y = v̄ or p̄, where each joint's ϕ is measured from a base point Q_b: stage i has
+//! `Q_i = Φ(Q_b, ϕ_i)` and `ϕ̇_i = S(Q_b, ϕ_i)⁻¹ S̄(Q_i) v̄_i`, so that any explicit tableau keeps its order. A joint that has moved
+//! by half a radian gets `Φ(Q_b, ϕ)`, projected onto the manifold against rounding, for its base point, where ϕ begins at 0 again. Nothing is
+//! ever added to Q.
 
 mod approach;
 mod clock;

@@ -33,11 +33,11 @@ pub struct Motion<T> {
 
 /// The steps of the recursions for one joint; slices have the joint's own sizes (N for `q`, S for the others).
 pub trait Steps {
-    /// Whether any column of X̄ has a linear part.
-    fn slides(&self) -> bool;
-
     /// Whether any column of X̄ has an angular part, and whether any has a linear one.
     fn parts(&self) -> (bool, bool);
+
+    /// [`Steps::parts`] of the column of one speed.
+    fn column_parts(&self, speed: usize) -> (bool, bool);
 
     /// The joint's child frame, given its joint frame in the parent's child frame and that of the parent in the world.
     fn place(
@@ -157,12 +157,12 @@ impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps
 where
     J: Joint<N, K, S, C>,
 {
-    fn slides(&self) -> bool {
-        place::Parts::any::<J, N, K, S, C>().1
-    }
-
     fn parts(&self) -> (bool, bool) {
         place::Parts::any::<J, N, K, S, C>()
+    }
+
+    fn column_parts(&self, speed: usize) -> (bool, bool) {
+        place::Parts::of::<J, N, K, S, C>(speed)
     }
 
     fn place(

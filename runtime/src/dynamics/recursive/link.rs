@@ -96,22 +96,43 @@ pub(super) struct Rung {
     pub(super) start: usize,
     /// The speed after its last.
     pub(super) end: usize,
-    /// Whether any column of X̄ has a linear part.
-    pub(super) slides: bool,
-    /// Whether X̄ is one column without a linear part.
-    pub(super) turns_once: bool,
+    /// What the columns of X̄ consist of.
+    pub(super) kind: Kind,
+}
+
+/// How many of the columns of X̄ can be read by halves.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    /// One column, without a linear part.
+    TurnsOnce,
+    /// Columns before this speed have no linear part, those from it on no angular part.
+    Apart(usize),
+    /// Any.
+    Mixed,
+}
+
+impl Kind {
+    fn new(body: &Body) -> Self {
+        let (speeds, joint) = (&body.ranges().speeds, body.joint());
+        let turns = |j: usize| !joint.column_parts(j).1;
+        let slides = |j: usize| !joint.column_parts(j).0;
+        let first = (0..speeds.len()).take_while(|&j| turns(j)).count();
+        match (first, speeds.len()) {
+            (1, 1) => Self::TurnsOnce,
+            (first, all) if (first..all).all(slides) => Self::Apart(speeds.start + first),
+            _ => Self::Mixed,
+        }
+    }
 }
 
 impl Rung {
     pub(super) fn new(body: &Body) -> Self {
         let speeds = &body.ranges().speeds;
-        let slides = body.joint().slides();
         Self {
             parent: body.parent(),
             start: speeds.start,
             end: speeds.end,
-            slides,
-            turns_once: speeds.len() == 1 && !slides,
+            kind: Kind::new(body),
         }
     }
 }

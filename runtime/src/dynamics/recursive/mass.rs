@@ -2,6 +2,7 @@
 
 use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
+use super::link::Kind;
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use crate::spatial::fused::{add_cross, dot};
@@ -288,18 +289,24 @@ impl Recursive {
         moment: &Vector3<f64>,
         force: &Vector3<f64>,
     ) {
-        let rung = &self.rungs[body];
-        if rung.turns_once {
-            let (angular, _) = split(&self.columns[rung.start]);
-            row[rung.start] = dot(&angular, moment);
-            return;
+        let angular = |speed: usize| dot(&split(&self.columns[speed]).0, moment);
+        let linear = |speed: usize| dot(&split(&self.columns[speed]).1, force);
+        match self.rungs[body].kind {
+            Kind::TurnsOnce => row[speeds.start] = angular(speeds.start),
+            Kind::Apart(middle) => {
+                let middle = middle.min(speeds.end);
+                fill(row, speeds.start..middle, angular);
+                fill(row, middle..speeds.end, linear);
+            }
+            Kind::Mixed => fill(row, speeds, |speed| angular(speed) + linear(speed)),
         }
-        for (entry, column) in row[speeds.clone()].iter_mut().zip(&self.columns[speeds]) {
-            let (angular, linear) = split(column);
-            *entry = match rung.slides {
-                true => dot(&angular, moment) + dot(&linear, force),
-                false => dot(&angular, moment),
-            };
-        }
+    }
+}
+
+/// The entries of `row` at `speeds`.
+#[inline(always)]
+fn fill(row: &mut [f64], speeds: Range<usize>, entry: impl Fn(usize) -> f64) {
+    for (target, speed) in row[speeds.clone()].iter_mut().zip(speeds) {
+        *target = entry(speed);
     }
 }

@@ -6,6 +6,8 @@
 //!
 //! Forward dynamics solves `M̄ v̄̇ = S̄ᵀτ − (X̄ᵀF at v̄̇ = 0)` by articulated inertias; `v̄ = M̄⁻¹p̄` uses the same factors.
 //!
+//! Bodies with a tiny moment of inertia are the exception to world axes (`slender`).
+//!
 //! After construction nothing allocates.
 
 mod coupling;
