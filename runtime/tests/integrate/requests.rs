@@ -186,7 +186,7 @@ fn bad_requests_are_named() {
     );
     assert_eq!(
         with(Method::dormand_prince(0.5), 1.0, &[]),
-        "tolerance is 0.5: it must be between 1e-15 and 0.1"
+        "tolerance is 0.5: it must be between 1e-16 and 0.1"
     );
     assert_eq!(
         with(rk4, 1.0, &[0.5, 0.4]),

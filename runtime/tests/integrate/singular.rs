@@ -85,10 +85,15 @@ fn a_start_on_a_singular_set_is_refused() {
 /// Straight through the centre: a step of 0.25 s lands on r = 0, where M is singular.
 #[test]
 fn a_failure_on_a_singular_set_names_it() {
+    // In doubles the weights of the method add up to the number before 1.
+    let initial = State {
+        configuration: vec![0.25_f64.next_down(), 0.0],
+        ..towards_centre(0.0)
+    };
     let mut dynamics = Reference::new(free_point(1.0).expect("valid"));
     let error = integrate(
         &mut dynamics,
-        &towards_centre(0.0),
+        &initial,
         &options(Form::Lagrangian, Method::Rk4 { dt: 0.25 }, 4.0),
         &mut no_inputs,
         &mut no_observer,
