@@ -21,7 +21,7 @@ pub use mass::{MassError, MassProperties};
 pub use pose::Pose;
 pub use so3::nearest as nearest_rotation;
 pub use symmetric::Symmetric3;
-pub use twist::{bracket, bracket_dual_product, bracket_product, join, split};
+pub use twist::{bracket, bracket_dual_product, bracket_product, join, split, turn_back, turn_out};
 
 use crate::scalar::Scalar;
 use nalgebra::{Matrix3, Vector3};

@@ -1,9 +1,9 @@
 //! Twists and wrenches as 6-vectors: parts and brackets.
 
-use super::fused::{add_cross, cross};
+use super::fused::{add_cross, apply, apply_transposed, cross};
 use super::hat;
 use crate::scalar::Scalar;
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 /// Angular and linear part of a twist, or moment and force of a wrench.
 #[inline(always)]
@@ -17,6 +17,23 @@ pub fn split<T: Scalar>(vector: &Vector6<T>) -> (Vector3<T>, Vector3<T>) {
 pub fn join<T: Scalar>(angular: &Vector3<T>, linear: &Vector3<T>) -> Vector6<T> {
     let ([[a, b, c]], [[d, e, f]]) = (angular.data.0, linear.data.0);
     Vector6::new(a, b, c, d, e, f)
+}
+
+/// A twist, wrench or momentum in a frame's axes, in those of which `rotation` holds the frame's axes as columns; origin alike.
+#[inline(always)]
+pub fn turn_out<T: Scalar>(rotation: &Matrix3<T>, vector: &Vector6<T>) -> Vector6<T> {
+    let (angular, linear) = split(vector);
+    join(&apply(rotation, &angular), &apply(rotation, &linear))
+}
+
+/// The inverse of [`turn_out`].
+#[inline(always)]
+pub fn turn_back<T: Scalar>(rotation: &Matrix3<T>, vector: &Vector6<T>) -> Vector6<T> {
+    let (angular, linear) = split(vector);
+    join(
+        &apply_transposed(rotation, &angular),
+        &apply_transposed(rotation, &linear),
+    )
 }
 
 /// `ad_T = [ω~ 0; v~ ω~]`, 6×6: the bracket of twists in one frame.

@@ -4,7 +4,7 @@ use super::Motion;
 use crate::joint::{Entry, Joint};
 use crate::scalar::Scalar;
 use crate::spatial::fused::{add_scaled, apply, cross, product};
-use crate::spatial::{Pose, bracket_product, join, shift_twist, split};
+use crate::spatial::{Pose, bracket_product, join, shift_twist, split, turn_out};
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
@@ -198,9 +198,7 @@ where
     let turned = bracket::<T, J, N, K, S, C>(&carried, &relative);
     let mut rate = shift_twist(&parent.rate, &placement.offset) + turned;
     if !J::STRUCTURES.bias_acceleration.is_zero() {
-        let (angular, linear) = split(&joint.bias_acceleration(q, speeds));
-        let turn = |part: &Vector3<T>| apply(&placement.rotation, part);
-        rate += join(&turn(&angular), &turn(&linear));
+        rate += turn_out(&placement.rotation, &joint.bias_acceleration(q, speeds));
     }
     Motion {
         placement,

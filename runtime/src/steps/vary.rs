@@ -4,9 +4,9 @@ use super::Motion;
 use super::place::Parts;
 use crate::joint::Joint;
 use crate::scalar::Scalar;
-use crate::spatial::fused::{apply, cross};
-use crate::spatial::{bracket_product, join, shift_twist, split};
-use nalgebra::{Matrix3, SVector, Vector3, Vector6};
+use crate::spatial::fused::cross;
+use crate::spatial::{bracket_product, join, shift_twist, split, turn_out};
+use nalgebra::{SVector, Vector3, Vector6};
 
 /// What one unit of a local coordinate ϕ, and of a speed, changes; at the child frame's origin, in world axes.
 ///
@@ -34,13 +34,6 @@ impl<T: Scalar> Variation<T> {
             speed_rate: Vector6::zeros(),
         }
     }
-}
-
-/// A twist in child axes, turned into world axes.
-#[inline(always)]
-fn turned<T: Scalar>(rotation: &Matrix3<T>, twist: &Vector6<T>) -> Vector6<T> {
-    let (angular, linear) = split(twist);
-    join(&apply(rotation, &angular), &apply(rotation, &linear))
 }
 
 /// `ad_V X` for column `j` of X̄, without the part that this column does not have.
@@ -85,7 +78,7 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
         let variation = &mut out[b];
         match &local {
             Some(local) => {
-                let z = turned(&placement.rotation, &local.column(b).into_owned());
+                let z = turn_out(&placement.rotation, &local.column(b).into_owned());
                 variation.local = z;
                 variation.drift = bracket_product(&carried, &z);
                 variation.rate = bracket_product(&carried_rate, &z);
@@ -105,10 +98,10 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
             of_rate += joint.bias_acceleration_gradient(q, speeds);
         }
         for (b, variation) in out.iter_mut().enumerate() {
-            let own_drift = turned(&placement.rotation, &of_twist.column(b).into_owned());
+            let own_drift = turn_out(&placement.rotation, &of_twist.column(b).into_owned());
             variation.drift += own_drift;
             variation.rate += bracket_product(&own.twist, &own_drift)
-                + turned(&placement.rotation, &of_rate.column(b).into_owned());
+                + turn_out(&placement.rotation, &of_rate.column(b).into_owned());
         }
     }
     for variation in out.iter_mut() {
@@ -122,7 +115,7 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
     if !structures.bias_acceleration.is_zero() {
         let slope = joint.bias_acceleration_slope(q, speeds);
         for (a, variation) in out.iter_mut().enumerate().take(S) {
-            variation.speed_rate += turned(&placement.rotation, &slope.column(a).into_owned());
+            variation.speed_rate += turn_out(&placement.rotation, &slope.column(a).into_owned());
         }
     }
 }

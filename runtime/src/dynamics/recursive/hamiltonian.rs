@@ -4,9 +4,8 @@
 
 use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
-use super::slender::turned_back;
 use crate::spatial::fused::dot;
-use crate::spatial::{bracket_dual_product, shift_wrench};
+use crate::spatial::{bracket_dual_product, shift_wrench, turn_back};
 use nalgebra::Vector6;
 
 impl Recursive {
@@ -82,7 +81,7 @@ impl Recursive {
         let turned = own.motion.rate + bracket_dual_product(&own.motion.twist, &own.wrench);
         link.joint
             .gather(&turned, &self.columns[link.speeds.clone()], out);
-        turned_back(&own.motion.placement.rotation, &own.wrench)
+        turn_back(&own.motion.placement.rotation, &own.wrench)
     }
 
     /// Kinetic and potential energy at the placements, twists and inertias of the workspace, J.

@@ -3,8 +3,7 @@
 use super::Recursive;
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{StateError, WHOLE, check_size};
-use crate::spatial::fused::apply_transposed;
-use crate::spatial::{join, split};
+use crate::spatial::turn_back;
 use nalgebra::{Cholesky, Matrix6, Vector6};
 
 /// A joint moves a body in six ways at most.
@@ -68,12 +67,7 @@ impl Recursive {
     /// [`Recursive::inverse_dynamics`]; `None` when there is no such body.
     pub fn joint_wrench(&self, body: usize) -> Option<Vector6<f64>> {
         let node = self.nodes.get(body)?;
-        let (moment, force) = split(&node.wrench);
-        let rotation = &node.motion.placement.rotation;
-        Some(join(
-            &apply_transposed(rotation, &moment),
-            &apply_transposed(rotation, &force),
-        ))
+        Some(turn_back(&node.motion.placement.rotation, &node.wrench))
     }
 
     /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry a freedom), as of the last

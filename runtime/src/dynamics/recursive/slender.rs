@@ -6,15 +6,17 @@
 
 use super::Recursive;
 use super::link::{Link, Node};
+use super::sweeps::combine;
 use crate::dynamics::DynamicsError;
-use crate::spatial::fused::{add_cross, apply, apply_transposed, cross};
+use crate::spatial::fused::{add_cross, apply_transposed, cross};
 use crate::spatial::{
-    ArticulatedInertia, SpatialInertia, add_weighted, bracket_product, join, shift_twist, split,
+    ArticulatedInertia, SpatialInertia, bracket_product, join, shift_twist, split, turn_back,
+    turn_out,
 };
 use crate::steps::{Motion, Pivot};
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::{Matrix3, SymmetricEigen, Vector3, Vector6};
+use nalgebra::{SymmetricEigen, Vector3, Vector6};
 
 /// The ratio of moments from which on a body counts as slender: in world axes it costs as many digits as it has zeros.
 const RATIO: f64 = 1e4;
@@ -78,10 +80,11 @@ impl Slender {
             &node.motion.placement.rotation,
             &node.motion.placement.offset,
         );
-        let carried = turned_back(rotation, &shift_twist(&parent.twist, offset));
-        let relative = self.combine(speeds);
-        let mut rate = turned_back(rotation, &shift_twist(&parent.rate, offset));
-        rate += bracket_product(&carried, &relative) + self.combine(accelerations);
+        let carried = turn_back(rotation, &shift_twist(&parent.twist, offset));
+        let relative = combine(Vector6::zeros(), &self.columns, speeds);
+        let mut rate = turn_back(rotation, &shift_twist(&parent.rate, offset));
+        rate += bracket_product(&carried, &relative)
+            + combine(Vector6::zeros(), &self.columns, accelerations);
         if !link.joint.structures().bias_acceleration.is_zero() {
             rate += link.joint.bias_acceleration(q, speeds);
         }
@@ -94,7 +97,8 @@ impl Slender {
     /// V of the joint's speeds, on top of what the parent carries along.
     pub(super) fn set_twist(&mut self, speeds: &[f64], carried: &Vector6<f64>, node: &Node) {
         let rotation = &node.motion.placement.rotation;
-        self.twist = turned_back(rotation, carried) + self.combine(speeds);
+        self.twist =
+            turn_back(rotation, carried) + combine(Vector6::zeros(), &self.columns, speeds);
     }
 
     /// The momentum of the body alone.
@@ -154,15 +158,7 @@ impl Slender {
     /// What the joint carries of a sweep's wrenches: the body's own, and in `node` those of its children.
     pub(super) fn carried(&self, node: &Node) -> Vector6<f64> {
         let others = node.wrench - self.seen_wrench;
-        self.wrench + turned_back(&node.motion.placement.rotation, &others)
-    }
-
-    /// `X̄ weights`.
-    fn combine(&self, weights: &[f64]) -> Vector6<f64> {
-        let terms = self.columns.iter().zip(weights);
-        terms.fold(Vector6::zeros(), |sum, (column, &weight)| {
-            add_weighted(&sum, column, weight)
-        })
+        self.wrench + turn_back(&node.motion.placement.rotation, &others)
     }
 }
 
@@ -185,7 +181,7 @@ impl Recursive {
                 .articulate(&mut inertia, columns, &link.armature, pivots)
                 .map_err(|failure| self.mechanism.singular(index, &failure))?;
             for (seen, pivot) in self.pivots[link.speeds.clone()].iter_mut().zip(pivots) {
-                seen.momentum = turned_out(rotation, &pivot.momentum);
+                seen.momentum = turn_out(rotation, &pivot.momentum);
                 seen.inverse = pivot.inverse;
             }
         }
@@ -200,21 +196,14 @@ impl Recursive {
         forces: &[f64],
     ) -> Result<ArticulatedInertia<f64>, DynamicsError> {
         let inertia = self.articulate_slender(index, number)?;
-        let (link, own) = (&self.links[index], &self.slender[number]);
-        let node = &mut self.nodes[index];
-        let rotation = &node.motion.placement.rotation;
-        let mut wrench = own.carried(node);
+        let mut wrench = self.slender[number].carried(&self.nodes[index]);
+        let link = &self.links[index];
         if !link.driven {
-            let speeds = link.speeds.clone();
-            link.joint.reduce(
-                &mut wrench,
-                &own.columns,
-                &own.pivots,
-                &forces[speeds.clone()],
-                &mut self.loads[speeds],
-            );
+            let forces = &forces[link.speeds.clone()];
+            self.reduce_in_child(index, number, &mut wrench, forces);
         }
-        node.wrench = turned_out(rotation, &wrench);
+        let node = &mut self.nodes[index];
+        node.wrench = turn_out(&node.motion.placement.rotation, &wrench);
         Ok(inertia)
     }
 
@@ -229,11 +218,11 @@ impl Recursive {
         let (link, own) = (&self.links[index], &mut self.slender[number]);
         let motion = &mut self.nodes[index].motion;
         let rotation = &motion.placement.rotation;
-        own.twist = turned_back(rotation, carried);
+        own.twist = turn_back(rotation, carried);
         let loads = &self.loads[link.speeds.clone()];
         link.joint
             .resolve(&mut own.twist, &own.columns, &own.pivots, loads, rates);
-        motion.twist = turned_out(rotation, &own.twist);
+        motion.twist = turn_out(rotation, &own.twist);
     }
 
     /// [`crate::steps::Steps::reduce`] of a slender body's joint, for a `wrench` in world axes.
@@ -244,18 +233,24 @@ impl Recursive {
         wrench: &Vector6<f64>,
         forces: &[f64],
     ) -> Vector6<f64> {
+        let rotation = self.nodes[index].motion.placement.rotation;
+        let mut turned = turn_back(&rotation, wrench);
+        self.reduce_in_child(index, number, &mut turned, forces);
+        turn_out(&rotation, &turned)
+    }
+
+    /// [`crate::steps::Steps::reduce`] of a slender body's joint, for a `wrench` in child axes.
+    fn reduce_in_child(
+        &mut self,
+        index: usize,
+        number: usize,
+        wrench: &mut Vector6<f64>,
+        forces: &[f64],
+    ) {
         let (link, own) = (&self.links[index], &self.slender[number]);
-        let rotation = &self.nodes[index].motion.placement.rotation;
-        let speeds = link.speeds.clone();
-        let mut turned = turned_back(rotation, wrench);
-        link.joint.reduce(
-            &mut turned,
-            &own.columns,
-            &own.pivots,
-            forces,
-            &mut self.loads[speeds],
-        );
-        turned_out(rotation, &turned)
+        let loads = &mut self.loads[link.speeds.clone()];
+        link.joint
+            .reduce(wrench, &own.columns, &own.pivots, forces, loads);
     }
 
     /// `X̄ᵀF` of a slender body's joint into `out`, with all of F into the node.
@@ -264,7 +259,7 @@ impl Recursive {
         let node = &mut self.nodes[index];
         let wrench = own.carried(node);
         link.joint.gather(&wrench, &own.columns, out);
-        node.wrench = turned_out(&node.motion.placement.rotation, &wrench);
+        node.wrench = turn_out(&node.motion.placement.rotation, &wrench);
     }
 
     /// [`Recursive::turned_momenta`] of a slender body.
@@ -279,26 +274,11 @@ impl Recursive {
         let rotation = &node.motion.placement.rotation;
         let momentum = own.carried(node);
         let others = node.motion.rate - own.seen_weight;
-        let acting = own.weight + turned_back(rotation, &others);
+        let acting = own.weight + turn_back(rotation, &others);
         let turned = acting + own.turned(link, &momentum);
         link.joint.gather(&turned, &own.columns, out);
-        node.motion.rate = turned_out(rotation, &acting);
-        node.wrench = turned_out(rotation, &momentum);
+        node.motion.rate = turn_out(rotation, &acting);
+        node.wrench = turn_out(rotation, &momentum);
         momentum
     }
-}
-
-/// A spatial vector in child axes, in world axes.
-pub(super) fn turned_out(rotation: &Matrix3<f64>, vector: &Vector6<f64>) -> Vector6<f64> {
-    let (angular, linear) = split(vector);
-    join(&apply(rotation, &angular), &apply(rotation, &linear))
-}
-
-/// A spatial vector in world axes, in child axes.
-pub(super) fn turned_back(rotation: &Matrix3<f64>, vector: &Vector6<f64>) -> Vector6<f64> {
-    let (angular, linear) = split(vector);
-    join(
-        &apply_transposed(rotation, &angular),
-        &apply_transposed(rotation, &linear),
-    )
 }

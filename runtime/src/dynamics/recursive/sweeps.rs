@@ -226,7 +226,11 @@ fn whole(link: &Link, node: &Node, handed: &ArticulatedInertia<f64>) -> Articula
 }
 
 /// `start + Σ_j X_j weights_j`.
-fn combine(start: Vector6<f64>, columns: &[Vector6<f64>], weights: &[f64]) -> Vector6<f64> {
+pub(super) fn combine(
+    start: Vector6<f64>,
+    columns: &[Vector6<f64>],
+    weights: &[f64],
+) -> Vector6<f64> {
     columns
         .iter()
         .zip(weights)

@@ -151,14 +151,7 @@ impl Recursive {
 
 /// A wrench or momentum in the axes of the child frame.
 fn in_child(node: &Node, wrench: &nalgebra::Vector6<f64>) -> nalgebra::Vector6<f64> {
-    use crate::spatial::fused::apply_transposed;
-    use crate::spatial::{join, split};
-    let (moment, force) = split(wrench);
-    let rotation = &node.motion.placement.rotation;
-    join(
-        &apply_transposed(rotation, &moment),
-        &apply_transposed(rotation, &force),
-    )
+    crate::spatial::turn_back(&node.motion.placement.rotation, wrench)
 }
 
 /// Where the freedoms and speeds of each joint stand, and what it hangs on.
