@@ -29,8 +29,13 @@ impl<'a> Feedback<'a> {
         }
     }
 
-    /// The first failure, and its time; step control may have gone round it since.
-    pub fn failure(self) -> Option<(f64, ControlError)> {
-        self.failure
+    /// The controller itself.
+    pub fn controller(&mut self) -> &mut dyn Controller {
+        self.controller
+    }
+
+    /// The first failure, and its time (s); step control may have gone round it since.
+    pub const fn failure(&self) -> Option<&(f64, ControlError)> {
+        self.failure.as_ref()
     }
 }

@@ -18,6 +18,8 @@ mod energy;
 mod error;
 mod feedback;
 mod path;
+#[cfg(feature = "mpc")]
+mod predictive;
 mod reference;
 mod regulator;
 pub mod riccati;
@@ -28,6 +30,8 @@ pub use energy::{EnergyShaping, Port, PortSpring, Pump};
 pub use error::ControlError;
 pub use feedback::Feedback;
 pub use path::{Curve, PathFollower, PathGains};
+#[cfg(feature = "mpc")]
+pub use predictive::PredictiveRegulator;
 pub use reference::Reference;
 pub use regulator::{Equilibrium, Regulator, Weights};
 

@@ -28,7 +28,7 @@ impl Equilibrium {
     /// The equilibrium `goal` of `mechanism` with inputs on the freedoms of the joints under the bodies `actuated`.
     ///
     /// # Errors
-    /// A nonholonomic joint among those that have inputs; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
+    /// No joint that has inputs, or a nonholonomic one among them; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
     /// that gravity or elements would move there and that no input holds.
     pub fn new(
         mechanism: Arc<Mechanism>,
@@ -50,6 +50,9 @@ impl Equilibrium {
         }
         inputs.sort_unstable();
         inputs.dedup();
+        if inputs.is_empty() {
+            return Err(ControlError::Mechanism("no joint has inputs"));
+        }
         let layout = *mechanism.layout();
         let mut forces = vec![0.0; layout.speeds];
         let rest = vec![0.0; layout.speeds];

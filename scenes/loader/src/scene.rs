@@ -1,6 +1,7 @@
 //! A scene ready to simulate, and the ways to one.
 
 use crate::build::{self, State};
+use crate::control::Control;
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::forces::FrameDescription;
@@ -51,6 +52,8 @@ pub struct Scene {
     pub frames: Vec<FrameDescription>,
     /// What stands for bodies in pictures.
     pub shapes: Vec<ShapeDescription>,
+    /// What controls the mechanism, if anything does.
+    pub control: Option<Control>,
     /// Simulation settings.
     pub settings: Settings,
     /// What the scene says and the simulation leaves out.
@@ -167,6 +170,7 @@ fn describe(
             wrenches: draft.elements.wrenches,
             constraints: draft.elements.constraints,
             shapes: draft.elements.shapes,
+            controller: draft.controller,
             settings: draft.settings,
             ..SceneDescription::empty(source)
         }),
