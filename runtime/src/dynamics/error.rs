@@ -50,11 +50,16 @@ pub enum DynamicsError {
         limit: f64,
     },
     /// Derivatives of this mechanism are not covered.
-    #[error("derivatives of the dynamics do not cover {what}")]
+    #[error("derivatives of the dynamics do not cover {what}: `{name}`")]
     NotDifferentiable {
         /// What stands in the way.
         what: &'static str,
+        /// Its name.
+        name: String,
     },
+    /// Results were handed over that another mechanism's sizes were used for.
+    #[error("the derivatives are to be put into results that were made for another mechanism")]
+    ForeignResults,
     /// A vector has the wrong size or holds a number that is not finite.
     #[error(transparent)]
     State(#[from] StateError),
