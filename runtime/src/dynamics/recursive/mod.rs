@@ -13,12 +13,14 @@
 mod coupling;
 mod derivatives;
 mod elements;
+mod frames;
 mod hamiltonian;
 mod inverse;
 mod jacobian;
 mod link;
 mod lu;
 mod mass;
+mod operational;
 mod readings;
 mod slender;
 mod sweeps;
@@ -26,6 +28,7 @@ mod sweeps;
 pub use derivatives::{
     ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Sensitivity,
 };
+pub use frames::FrameReadings;
 pub use mass::MassMatrix;
 pub use readings::{Frame, Readings};
 

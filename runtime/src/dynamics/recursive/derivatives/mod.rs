@@ -166,7 +166,12 @@ impl Recursive {
     }
 
     /// The variations of the joint under body `index` at (q, v̄, v̄̇), one a freedom, after [`Recursive::advance`].
-    fn vary(&self, index: usize, state: (&[f64], &[f64], &[f64]), out: &mut [Variation<f64>]) {
+    pub(super) fn vary(
+        &self,
+        index: usize,
+        state: (&[f64], &[f64], &[f64]),
+        out: &mut [Variation<f64>],
+    ) {
         let link = &self.links[index];
         let parent = link
             .parent
