@@ -6,7 +6,8 @@ use hamel::dynamics::{
     Recursive,
 };
 use hamel::integrate::{
-    Control, Form, Method, Options, Pair, State, Statistics, integrate, no_inputs, no_observer,
+    Control, Form, LinearStep, Method, Options, Pair, State, Statistics, integrate, no_inputs,
+    no_observer,
 };
 use hamel::nalgebra::Vector6;
 use hamel_tests::random::{Case, cases, library};
@@ -109,6 +110,8 @@ fn derivatives_do_not_allocate() {
         let mut inverse = InverseDerivatives::new(&case.mechanism);
         let mut forward = ForwardDerivatives::new(&case.mechanism);
         let mut hamiltonian = HamiltonianDerivatives::new(&case.mechanism);
+        let mut steps = [Form::Lagrangian, Form::Hamiltonian]
+            .map(|form| LinearStep::new(&case.mechanism, form, &Method::Rk4 { dt: 1.0 }));
         let mut gradients = [vec![0.0; freedoms], vec![0.0; freedoms]];
         counts.of("inverse_dynamics_derivatives", || {
             let found = dynamics.inverse_dynamics_derivatives(q, v, &case.rates, &mut inverse);
@@ -127,12 +130,18 @@ fn derivatives_do_not_allocate() {
             let found = dynamics.energy_gradients(q, v, potential, kinetic);
             found.expect("sizes fit");
         });
+        counts.of("linearize", || {
+            for step in &mut steps {
+                let found = step.linearize(q, v, tau, 1.0 / 1024.0);
+                found.expect("a short step");
+            }
+        });
         counts.of("entries", || {
             std::hint::black_box(inverse.by_local().entry(0, 0));
             std::hint::black_box(forward.by_efforts().entries());
         });
     }
-    counts.assert_none(5);
+    counts.assert_none(6);
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod chains;
 mod derivatives;
 mod errata;
 mod euler_lagrange;
+mod linear_step;
 mod random_trees;
 mod reference_form;
 mod robot_references;
