@@ -73,7 +73,7 @@ fn a_controller_of_its_own_file_takes_the_place_of_the_scenes() {
             "scenes/ball_pendulum_upright.toml",
             "upright_sampled",
             "lqr",
-            Some(0.01),
+            Some(0.002),
         ),
         (
             "tests/data/urdf/panda7.urdf",

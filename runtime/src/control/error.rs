@@ -54,6 +54,18 @@ pub enum ControlError {
         /// What passes for rounding.
         limit: f64,
     },
+    /// An input too weak to hold the goal.
+    #[error(
+        "joint `{joint}` needs the effort {effort:e} N m or N to rest at the goal, and its limit is {limit:e}"
+    )]
+    Weak {
+        /// The joint.
+        joint: String,
+        /// What it needs.
+        effort: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// No feedback of the inputs holds the goal.
     #[error(
         "no feedback of these inputs brings the mechanism back to the goal: to first order a motion is beyond their reach, and does not fade by itself"

@@ -37,7 +37,7 @@ fn a_cart_on_its_path_leaves_it_by_rounding_alone() {
         );
     // The path begins at the origin with the speeds (0.8, 0.8) m/s, straight.
     let scene = parse(&on_path);
-    let (_, readings) = run(&scene, EXACT, 15.0);
+    let (_, readings) = run(&scene, EXACT, 4.0);
     let error = largest(&readings, 0);
     println!("{error:e}");
     // Ways of some metres, summed over a thousand steps with one rounding each; feedback holds what is left.

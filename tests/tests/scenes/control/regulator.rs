@@ -109,8 +109,8 @@ fn motion(scene: &Scene) -> Vec<Matrix3<f64>> {
     attitudes
 }
 
-/// A thousand steps of rounding, on angles up to π.
-const ALIKE: f64 = 1e-12;
+/// A thousand steps of rounding on angles up to π, 1e-13; and some ten times that from starts near half a turn, where neighbours part.
+const ALIKE: f64 = 1e-11;
 
 fn distance(a: &[Matrix3<f64>], b: impl Iterator<Item = Matrix3<f64>>) -> f64 {
     a.iter()

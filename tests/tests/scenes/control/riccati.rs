@@ -47,7 +47,7 @@ fn the_summator_is_known() -> Result<(), ControlError> {
 #[test]
 fn random_systems_have_small_residuals_and_stable_loops() -> Result<(), ControlError> {
     let mut rng = ChaCha8Rng::seed_from_u64(31);
-    for size in [1, 2, 3, 5, 8] {
+    for size in [1_usize, 2, 3, 5, 8] {
         for _ in 0..20 {
             let inputs = size.div_ceil(2);
             let (a, b) = (
