@@ -68,10 +68,6 @@ fn shaped_energy_is_lost_at_the_port_alone() {
                 .map(|l| step / 3.0 * (l[0] + 4.0 * l[1] + l[2]))
                 .sum();
             let change = energies[2000] - energies[0];
-            println!(
-                "{form:?} {spring:?}: {change} J, {lost} J, {:e}",
-                change + lost
-            );
             assert!(lost > 0.5);
             // Both are of order 4 in steps of 0.5 ms, with motions of some 30 1/s, as the lower link has: (1.5e-2)⁴ of the energy.
             assert!((change + lost).abs() <= 1e-7 * lost, "{change} J, {lost} J");

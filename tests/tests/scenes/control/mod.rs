@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// As exact as the integrators get: what is left is rounding.
-const EXACT: Method = Method::controlled(Pair::Verner9, 1e-15);
+const EXACT: Method = Method::controlled(Pair::Verner9, 1e-14);
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")

