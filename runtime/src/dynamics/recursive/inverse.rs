@@ -64,7 +64,8 @@ impl Recursive {
     }
 
     /// The wrench that the joint of `body` exerts on its child, in the joint's child frame, as of the last
-    /// [`Recursive::inverse_dynamics`]; `None` when there is no such body.
+    /// [`Recursive::inverse_dynamics`], or of [`Recursive::coupling_force`] where constraints couple joints; `None` when there is no such
+    /// body.
     pub fn joint_wrench(&self, body: usize) -> Option<Vector6<f64>> {
         let node = self.nodes.get(body)?;
         Some(turn_back(&node.motion.placement.rotation, &node.wrench))

@@ -4,7 +4,7 @@ use super::Recursive;
 use super::link::{Link, Node};
 use crate::dynamics::DynamicsError;
 use crate::spatial::{ArticulatedInertia, add_weighted, shift_twist, shift_wrench};
-use crate::steps::PivotFailure;
+use crate::steps::{Motion, PivotFailure};
 use nalgebra::Vector6;
 
 /// The node of a parent, or the world, beside the node of its child.
@@ -198,6 +198,28 @@ impl Recursive {
             own.motion.twist = carried;
             link.joint
                 .resolve(&mut own.motion.twist, columns, pivots, loads, rates);
+        }
+    }
+
+    /// What [`Recursive::advance`] gives at the `rates` that [`Recursive::resolve`] has just found: V, V̇ and the wrench that each body takes.
+    ///
+    /// Placements, X̄ and inertias stand, and V̇ is what it was at v̄̇ = 0 with what the rates add.
+    pub(super) fn set_accelerations(&mut self, q: &[f64], speeds: &[f64], rates: &[f64]) {
+        if !self.plain || !self.slender.is_empty() {
+            return self.advance(q, speeds, Some(rates));
+        }
+        for (index, link) in self.links.iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let Motion {
+                placement,
+                twist,
+                rate,
+            } = &mut own.motion;
+            *rate += *twist;
+            let carried = shift_twist(&parent.motion.twist, &placement.offset);
+            let speeds = &speeds[link.speeds.clone()];
+            *twist = combine(carried, &self.columns[link.speeds.clone()], speeds);
+            own.wrench = own.rigid.wrench(twist, rate);
         }
     }
 

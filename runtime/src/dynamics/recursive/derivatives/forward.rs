@@ -148,7 +148,7 @@ impl Recursive {
     ) -> Result<(), DynamicsError> {
         self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
-        self.advance(q, speeds, Some(&out.rates));
+        self.set_accelerations(q, speeds, &out.rates);
         if let (true, Some(inverse)) = (self.plain, &mut out.inverse) {
             self.differentiate_pairs(q, speeds, &out.rates, inverse);
             for index in 0..self.links.len() {
