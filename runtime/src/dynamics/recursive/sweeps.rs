@@ -262,6 +262,19 @@ pub(super) fn combine(
 }
 
 impl crate::mechanism::Mechanism {
+    /// The joint behind a speed whose pivot failed.
+    pub(super) fn singular_speed(&self, speed: usize, pivot: f64, limit: f64) -> DynamicsError {
+        let mut bodies = self.bodies().iter();
+        let body = bodies.position(|body| body.ranges().speeds.contains(&speed));
+        let body = body.unwrap_or(0);
+        let failure = PivotFailure {
+            speed: speed - self.bodies()[body].ranges().speeds.start,
+            pivot,
+            limit,
+        };
+        self.singular(body, &failure)
+    }
+
     /// The joint and speed behind a pivot that failed.
     pub(super) fn singular(&self, body: usize, failure: &PivotFailure) -> DynamicsError {
         let body = &self.bodies()[body];
