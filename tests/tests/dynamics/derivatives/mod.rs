@@ -2,7 +2,8 @@
 
 mod dual;
 
-use dual::{DualForm, Equipment};
+pub use dual::{DualForm, Equipment};
+
 use hamel::dynamics::{
     Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
     Recursive,
