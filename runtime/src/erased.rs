@@ -3,6 +3,8 @@
 //! [`AnyJoint`] mirrors the kernels of [`Joint`] over slices of `f64`. Matrices are stored column by column, and the K
 //! slices of a derivative in ϕ one after the other. Nothing here allocates.
 
+use crate::chart::Chart;
+use crate::elements::ElementKernels;
 use crate::joint::{Joint, Structures, VelocityFrame};
 use crate::spatial::Pose;
 use crate::steps::Steps;
@@ -27,7 +29,7 @@ pub struct Layout {
 ///
 /// With (N, K, S, C) of [`AnyJoint::layout`], shapes are as in [`Joint`]. The caller hands over slices of exactly these
 /// sizes; a method panics on any other, as an index out of bounds does.
-pub trait AnyJoint: Steps + Debug + Send + Sync {
+pub trait AnyJoint: Steps + Chart + ElementKernels + Debug + Send + Sync {
     /// Name of the spec.
     fn name(&self) -> &'static str;
     /// N, K, S and C.

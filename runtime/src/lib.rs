@@ -15,6 +15,8 @@ extern crate alloc;
 pub use nalgebra;
 
 #[cfg(feature = "alloc")]
+pub mod chart;
+#[cfg(feature = "alloc")]
 pub mod dynamics;
 #[cfg(feature = "alloc")]
 pub mod elements;

@@ -50,11 +50,41 @@ pub enum DynamicsError {
         limit: f64,
     },
     /// Derivatives of this mechanism are not covered.
-    #[error("derivatives of the dynamics do not cover {what}")]
+    #[error("derivatives of the dynamics do not cover {what}: `{name}`")]
     NotDifferentiable {
         /// What stands in the way.
         what: &'static str,
+        /// Its name.
+        name: String,
     },
+    /// A frame that cannot move in all six ways has no operational-space inertia.
+    #[error(
+        "frame `{frame}` has no operational-space inertia: its motion in direction `{direction}` depends on the directions before it, the \
+         scaled pivot {pivot:e} is not above {limit:e}"
+    )]
+    SingularFrame {
+        /// The frame.
+        frame: String,
+        /// The first direction that depends on those before it.
+        direction: &'static str,
+        /// Its pivot, the diagonal scaled to ones.
+        pivot: f64,
+        /// What a pivot must stand above.
+        limit: f64,
+    },
+    /// Operational-space inertia where constraints couple joints.
+    #[error(
+        "frame `{frame}`: operational-space inertia does not cover constraints that couple joints, such as `{constraint}`"
+    )]
+    CoupledFrame {
+        /// The frame.
+        frame: String,
+        /// One of the constraints.
+        constraint: String,
+    },
+    /// Results were handed over that another mechanism's sizes were used for.
+    #[error("the derivatives are to be put into results that were made for another mechanism")]
+    ForeignResults,
     /// A vector has the wrong size or holds a number that is not finite.
     #[error(transparent)]
     State(#[from] StateError),

@@ -13,8 +13,8 @@ pub mod reference;
 
 pub use error::DynamicsError;
 pub use recursive::{
-    ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, MassMatrix, Readings,
-    Recursive, Sensitivity,
+    ForwardDerivatives, Frame, FrameReadings, HamiltonianDerivatives, InverseDerivatives,
+    MassMatrix, Readings, Recursive, Sensitivity,
 };
 pub use reference::Reference;
 

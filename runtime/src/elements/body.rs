@@ -1,11 +1,11 @@
 //! Springs between bodies, and wrenches from outside.
 
 use super::error::{body, values};
-use super::{Action, Element, ElementError, View};
+use super::{Action, Element, ElementError, PointForce, Slope, Slopes, View};
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{apply, dot};
 use alloc::string::String;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A spring with a damper beside it, between two points: force `k (l − l₀) + c l̇` along the line that joins them.
 ///
@@ -72,6 +72,38 @@ impl Element for BodySpring {
         let stretch = self.line(view).1 - self.length;
         0.5 * self.stiffness * stretch * stretch
     }
+
+    fn slope(&self) -> Option<&dyn Slope> {
+        Some(self)
+    }
+}
+
+impl Slope for BodySpring {
+    /// With u along the line and the pull p, `F = −p u` on the second end: `∂F/∂x = −(k uuᵀ + (p/l) (1 − uuᵀ) + c u (u̇)ᵀ)`,
+    /// `∂F/∂ẋ = −c uuᵀ`, where `u̇ = (ẋ − l̇ u)/l`. Where the points coincide the force is zero, and so are these.
+    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
+        let (u, length, rate) = self.line(view);
+        if length == 0.0 {
+            return;
+        }
+        let velocity = |end: usize| view.point(self.bodies[end], &self.points[end]).1;
+        let turn = (velocity(1) - velocity(0) - u * rate) / length;
+        let pull = self.stiffness * (length - self.length) + self.damping * rate;
+        let along = u * u.transpose();
+        let across = Matrix3::identity() - along;
+        let turned = u * turn.transpose();
+        let end = |end: usize| {
+            let body = self.bodies[end]?;
+            Some((body, view.arm(body, &self.points[end])))
+        };
+        let force = PointForce {
+            ends: [end(0), end(1)],
+            force: -u * pull,
+            by_way: -(along * self.stiffness + across * (pull / length) + turned * self.damping),
+            by_rate: -along * self.damping,
+        };
+        slopes.add_point_force(view, &force);
+    }
 }
 
 /// The axes in which a wrench from outside is constant.
@@ -130,5 +162,25 @@ impl Element for BodyWrench {
     /// Work depends on the path in general: none is counted.
     fn energy(&self, _view: &View<'_>) -> f64 {
         0.0
+    }
+    fn slope(&self) -> Option<&dyn Slope> {
+        Some(self)
+    }
+}
+
+impl Slope for BodyWrench {
+    /// One in body axes is carried along with the body, so that nothing changes beside that.
+    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
+        if self.axes == WrenchAxes::Body {
+            return;
+        }
+        let force = PointForce {
+            ends: [None, Some((self.body, view.arm(self.body, &self.point)))],
+            force: self.force,
+            by_way: Matrix3::zeros(),
+            by_rate: Matrix3::zeros(),
+        };
+        slopes.add_point_force(view, &force);
+        slopes.add_moment(view, self.body, &self.moment);
     }
 }

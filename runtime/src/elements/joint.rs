@@ -1,7 +1,7 @@
 //! Dampers and actuators at a joint.
 
 use super::error::{body, values};
-use super::{Action, Element, ElementError, View};
+use super::{Action, Element, ElementError, Slope, Slopes, View};
 use crate::mechanism::Mechanism;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -42,6 +42,21 @@ impl Element for JointDamper {
     fn energy(&self, _view: &View<'_>) -> f64 {
         0.0
     }
+
+    fn slope(&self) -> Option<&dyn Slope> {
+        Some(self)
+    }
+}
+
+impl Slope for JointDamper {
+    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
+        let size = self.coefficients.len();
+        let mut by_velocity = [0.0; 36];
+        for (i, c) in self.coefficients.iter().enumerate() {
+            by_velocity[i * size + i] = -c;
+        }
+        slopes.add_effort(view, self.body, &[0.0; 36], &by_velocity);
+    }
 }
 
 /// Constant efforts of the actuators of a joint.
@@ -75,4 +90,12 @@ impl Element for JointEffort {
     fn energy(&self, _view: &View<'_>) -> f64 {
         0.0
     }
+
+    fn slope(&self) -> Option<&dyn Slope> {
+        Some(self)
+    }
+}
+
+impl Slope for JointEffort {
+    fn add_slopes(&self, _view: &View<'_>, _slopes: &mut Slopes<'_>) {}
 }

@@ -9,6 +9,8 @@ mod constraint;
 mod drive;
 mod error;
 mod joint;
+mod kernels;
+mod slopes;
 mod spring;
 mod view;
 
@@ -17,6 +19,8 @@ pub use constraint::PointConstraint;
 pub use drive::{Drive, Law};
 pub use error::ElementError;
 pub use joint::{JointDamper, JointEffort};
+pub use kernels::ElementKernels;
+pub use slopes::{End, PointForce, Slope, Slopes};
 pub use spring::{JointSpring, RotationSpring};
 pub(crate) use view::MotionList;
 pub use view::{Action, Motions, View};
@@ -40,4 +44,9 @@ pub trait Element: Debug + Send + Sync {
 
     /// The energy that it stores, J; 0 for one that stores none.
     fn energy(&self, view: &View<'_>) -> f64;
+    /// How what it exerts changes with the state, for derivatives of the dynamics; `None` where it does not say, and derivatives of a mechanism
+    /// with it are refused.
+    fn slope(&self) -> Option<&dyn Slope> {
+        None
+    }
 }

@@ -1,7 +1,7 @@
 //! Springs at a joint, measured on the joint's own manifold.
 
 use super::error::{body, values};
-use super::{Action, Element, ElementError, View};
+use super::{Action, Element, ElementError, Slope, Slopes, View};
 use crate::mechanism::{CONFIGURATION_TOLERANCE, Mechanism};
 use crate::spatial::fused::product;
 use crate::spatial::vee;
@@ -120,6 +120,20 @@ impl Element for JointSpring {
         let (phi, load) = self.stretch(view);
         phi.iter().zip(&load).map(|(x, l)| 0.5 * x * l).sum()
     }
+
+    fn slope(&self) -> Option<&dyn Slope> {
+        Some(self)
+    }
+}
+
+impl Slope for JointSpring {
+    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
+        let (joint, q) = (view.joint(self.body), view.joint_configuration(self.body));
+        let mut by_local = [0.0; 36];
+        let own = &mut by_local[..self.stiffness.len()];
+        joint.spring_slope(q, &self.rest, &self.stiffness, own);
+        slopes.add_effort(view, self.body, &by_local, &[0.0; 36]);
+    }
 }
 
 /// Energy `k (3 − tr R)/2` with R the rotation of the joint's child frame from its attitude at rest: `k (1 − cos θ)`, smooth at every attitude.
@@ -185,5 +199,20 @@ impl Element for RotationSpring {
         // (3 − tr R)/2 loses digits near rest; ¼ |R − I|² is the same and keeps them.
         let away = self.turn(view) - Matrix3::identity();
         0.25 * self.stiffness * away.norm_squared()
+    }
+
+    fn slope(&self) -> Option<&dyn Slope> {
+        Some(self)
+    }
+}
+
+impl Slope for RotationSpring {
+    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
+        let (joint, q) = (view.joint(self.body), view.joint_configuration(self.body));
+        let size = joint.layout().freedoms;
+        let mut by_local = [0.0; 36];
+        let own = &mut by_local[..size * size];
+        joint.turn_slope(q, &self.rest, self.stiffness, own);
+        slopes.add_effort(view, self.body, &by_local, &[0.0; 36]);
     }
 }

@@ -22,6 +22,12 @@ impl Display for Seconds {
 /// Why a step cannot be taken, or is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepFailure {
+    /// The length of a step that is asked for.
+    #[error("the step is {step} s long: it must be positive and finite")]
+    Length {
+        /// The length, s.
+        step: f64,
+    },
     /// The embedded error estimate exceeds the tolerance.
     #[error("the error of joint `{joint}` is {ratio:e} times the tolerance")]
     Inaccurate {

@@ -15,6 +15,18 @@ pub(super) struct Rates {
     pub(super) speeds: Vec<f64>,
 }
 
+impl Rates {
+    /// Room for those of a mechanism.
+    pub(super) fn new(mechanism: &Mechanism) -> Self {
+        let layout = mechanism.layout();
+        Self {
+            phi: vec![0.0; layout.freedoms],
+            y: vec![0.0; layout.speeds],
+            speeds: vec![0.0; layout.speeds],
+        }
+    }
+}
+
 /// The equations of motion with their inputs, as a vector field.
 pub(super) struct Flow<'a> {
     dynamics: &'a mut dyn Dynamics,
@@ -28,8 +40,6 @@ pub(super) struct Flow<'a> {
     local_rate: Vec<f64>,
     /// One joint's S̄, S₀ or S₀⁻¹, K×K at most.
     matrix: Vec<f64>,
-    /// One joint's X^c, 6×K.
-    twist_map: Vec<f64>,
 }
 
 impl<'a> Flow<'a> {
@@ -40,12 +50,7 @@ impl<'a> Flow<'a> {
     ) -> Self {
         let mechanism = Arc::clone(dynamics.mechanism());
         let layout = *mechanism.layout();
-        let widest = mechanism
-            .bodies()
-            .iter()
-            .map(|body| body.ranges().freedoms.len())
-            .max()
-            .unwrap_or(0);
+        let widest = widest(&mechanism);
         Self {
             dynamics,
             inputs,
@@ -56,19 +61,13 @@ impl<'a> Flow<'a> {
             velocity: vec![0.0; widest],
             local_rate: vec![0.0; widest],
             matrix: vec![0.0; widest * widest],
-            twist_map: vec![0.0; 6 * widest],
             mechanism,
         }
     }
 
     /// Room for the rates of one stage.
     pub(super) fn new_rates(&self) -> Rates {
-        let layout = self.mechanism.layout();
-        Rates {
-            phi: vec![0.0; layout.freedoms],
-            y: vec![0.0; layout.speeds],
-            speeds: vec![0.0; layout.speeds],
-        }
+        Rates::new(&self.mechanism)
     }
 
     /// y of an initial v̄: v̄ itself or `p̄ = M̄ v̄`.
@@ -144,27 +143,6 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Angular rows of X^c S₀ at `q`, 3×K column by column, joints one after the other: ϕ to each joint's rotation
-    /// vector, to first order, and exactly where Φ is an exponential.
-    pub(super) fn turn_maps(&mut self, q: &[f64], maps: &mut [f64]) {
-        for body in self.mechanism.bodies() {
-            let (own, size) = (&body.ranges().freedoms, body.ranges().freedoms.len());
-            let twist_map = &mut self.twist_map[..6 * size];
-            let velocity_map = &mut self.matrix[..size * size];
-            body.joint()
-                .twist_map_child(body.configuration(q), twist_map);
-            body.joint()
-                .velocity_map(body.configuration(q), velocity_map);
-            let columns = velocity_map.chunks_exact(size.max(1));
-            let targets = maps[3 * own.start..3 * own.end].chunks_exact_mut(3);
-            for (column, target) in columns.zip(targets) {
-                let mut twist = [0.0; 6];
-                multiply(twist_map, column, &mut twist);
-                target.copy_from_slice(&twist[..3]);
-            }
-        }
-    }
-
     /// v̄ and ẏ at the current configuration.
     fn dynamic_rates(
         &mut self,
@@ -235,6 +213,13 @@ impl<'a> Flow<'a> {
             joint.retract_differential_inverse(base, phi, local_rate, own_rates);
         }
     }
+}
+
+/// The largest number of freedoms of a joint.
+pub(super) fn widest(mechanism: &Mechanism) -> usize {
+    let bodies = mechanism.bodies().iter();
+    let widest = bodies.map(|body| body.ranges().freedoms.len()).max();
+    widest.unwrap_or(0)
 }
 
 /// `Φ(base, phi)` of all joints.

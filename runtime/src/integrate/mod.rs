@@ -12,15 +12,18 @@ mod dop853;
 mod driver;
 mod error;
 mod flow;
+mod linear;
 mod options;
 mod residue;
 mod solution;
 mod stepper;
 mod tableau;
+mod turns;
 mod verner;
 
 pub use approach::{Approach, Near};
 pub use error::{IntegrateError, StepFailure};
+pub use linear::LinearStep;
 pub use options::{Control, Form, Method, Options, Pair};
 pub use solution::{Solution, State, Statistics, Step};
 pub use tableau::{Estimate, Tableau};

@@ -1,13 +1,12 @@
 //! One step of an explicit method in (ϕ, y).
 
-use super::flow::{Flow, Rates, multiply, retract};
+use super::flow::{Flow, Rates, retract};
 use super::residue::{Residue, add_exactly};
+use super::turns::{Turns, check_finite};
 use super::{Estimate, StepFailure, Tableau};
-use crate::mechanism::Body;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
-use core::f64::consts::PI;
 
 /// The ϕ from which on a joint gets a new base point. Each of them costs one rounding of Q, which a base at every step would
 /// cost at every step; from a half on, ϕ bends more than most steps do.
@@ -32,8 +31,8 @@ pub(super) struct Stepper {
     next_residue: Residue,
     /// Estimated errors of ϕ and y, and what that of y amounts to in v̄.
     errors: Rates,
-    /// ϕ to the rotation of each joint at its base point, [`Flow::turn_maps`].
-    turn_maps: Vec<f64>,
+    /// How far each joint turns from its base point.
+    turns: Turns,
 }
 
 impl Stepper {
@@ -57,11 +56,11 @@ impl Stepper {
             residue: Residue::new(&flow.mechanism),
             next_residue: Residue::new(&flow.mechanism),
             errors: flow.new_rates(),
-            turn_maps: vec![0.0; 3 * freedoms],
+            turns: Turns::new(&flow.mechanism),
             y,
         };
         stepper.evaluate_state(flow, time)?;
-        flow.turn_maps(configuration, &mut stepper.turn_maps);
+        stepper.turns.set(&flow.mechanism, configuration);
         Ok(stepper)
     }
 
@@ -80,15 +79,15 @@ impl Stepper {
         let tableau = self.tableau;
         for i in 1..tableau.nodes.len() {
             self.combine(step, tableau.matrix[i]);
-            self.check_motion(flow)?;
+            self.turns.check(&flow.mechanism, &self.phi, &self.next_y)?;
             let (_, rest) = self.stages.split_at_mut(i);
             let at = time + step * tableau.nodes[i];
             flow.evaluate(at, &self.base, &self.phi, &self.next_y, &mut rest[0])?;
-            check_finite(flow, &rest[0])?;
+            check_finite(&flow.mechanism, &rest[0].phi, &rest[0].y)?;
         }
         if !tableau.first_same_as_last {
             self.combine(step, tableau.weights);
-            self.check_motion(flow)?;
+            self.turns.check(&flow.mechanism, &self.phi, &self.next_y)?;
         }
         Ok(())
     }
@@ -191,7 +190,7 @@ impl Stepper {
             moved = true;
         }
         if moved {
-            flow.turn_maps(&self.base, &mut self.turn_maps);
+            self.turns.set(&mechanism, &self.base);
         }
         Ok(())
     }
@@ -200,7 +199,7 @@ impl Stepper {
     fn evaluate_state(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
         let rates = &mut self.stages[0];
         flow.evaluate(time, &self.base, &self.offset, &self.y, rates)?;
-        check_finite(flow, &self.stages[0])
+        check_finite(&flow.mechanism, &self.stages[0].phi, &self.stages[0].y)
     }
 
     /// Largest rate at the state, as [`Stepper::error`] measures it, 1/s.
@@ -227,51 +226,6 @@ impl Stepper {
         }
         add_all_exactly(&self.offset, &mut self.phi, phi);
         add_all_exactly(&self.y, &mut self.next_y, y);
-    }
-
-    /// Refuses what is not finite, and rotations beyond π where the differential of Φ ends near a full turn. Angles about one
-    /// axis add up, so that no step is too long for them.
-    fn check_motion(&self, flow: &Flow<'_>) -> Result<(), StepFailure> {
-        for body in flow.mechanism.bodies() {
-            let ranges = body.ranges();
-            let phi = &self.phi[ranges.freedoms.clone()];
-            let y = &self.next_y[ranges.speeds.clone()];
-            if phi.iter().chain(y).any(|value| !value.is_finite()) {
-                return Err(not_finite(body));
-            }
-            if body.joint().structures().retract_differential.is_identity() {
-                continue;
-            }
-            let mut turn = [0.0; 3];
-            let own = 3 * ranges.freedoms.start..3 * ranges.freedoms.end;
-            multiply(&self.turn_maps[own], phi, &mut turn);
-            let square: f64 = turn.iter().map(|entry| entry * entry).sum();
-            if square > PI * PI {
-                return Err(StepFailure::Turn {
-                    joint: body.joint_name().into(),
-                    angle: num_traits::Float::sqrt(square),
-                });
-            }
-        }
-        Ok(())
-    }
-}
-
-fn check_finite(flow: &Flow<'_>, rates: &Rates) -> Result<(), StepFailure> {
-    for body in flow.mechanism.bodies() {
-        let ranges = body.ranges();
-        let phi = &rates.phi[ranges.freedoms.clone()];
-        let y = &rates.y[ranges.speeds.clone()];
-        if phi.iter().chain(y).any(|value| !value.is_finite()) {
-            return Err(not_finite(body));
-        }
-    }
-    Ok(())
-}
-
-fn not_finite(body: &Body) -> StepFailure {
-    StepFailure::NotFinite {
-        joint: body.joint_name().into(),
     }
 }
 

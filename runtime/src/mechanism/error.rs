@@ -1,5 +1,6 @@
 //! What a mechanism refuses, in its construction and in its state.
 
+use super::FrameFault;
 use crate::erased::FiniteMapError;
 use crate::spatial::{MassError, PoseError};
 use alloc::string::String;
@@ -51,6 +52,14 @@ pub enum MechanismError {
         index: usize,
         /// The parent's index as given.
         parent: usize,
+    },
+    /// A named frame.
+    #[error("frame `{frame}`: {fault}")]
+    Frame {
+        /// The frame.
+        frame: String,
+        /// What is wrong with it.
+        fault: FrameFault,
     },
     /// A fixed placement is no pose.
     #[error("body `{body}`, {which}: {cause}")]
@@ -151,6 +160,14 @@ pub enum StateError {
         /// The index given.
         index: usize,
         /// How many bodies there are.
+        count: usize,
+    },
+    /// No named frame has that index.
+    #[error("there is no frame of index {index}: the mechanism has {count}")]
+    UnknownFrame {
+        /// The index given.
+        index: usize,
+        /// How many frames there are.
         count: usize,
     },
     /// A number is NaN or infinite.

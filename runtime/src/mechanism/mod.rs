@@ -8,6 +8,7 @@ mod build;
 mod check;
 mod equipment;
 mod error;
+mod frame;
 mod initial;
 mod kinematics;
 mod reach;
@@ -17,6 +18,7 @@ pub use check::CONFIGURATION_TOLERANCE;
 pub(crate) use check::{WHOLE, check_size};
 pub(crate) use equipment::share;
 pub use error::{Loci, MechanismError, StateError};
+pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;
 pub use kinematics::{BodyState, Kinematics};
 pub use reach::REACH_TOLERANCE;
@@ -33,6 +35,7 @@ pub struct Mechanism {
     bodies: Vec<Body>,
     layout: Layout,
     equipment: equipment::Equipment,
+    frames: Vec<NamedFrame>,
 }
 
 impl Mechanism {
@@ -51,6 +54,7 @@ impl Mechanism {
             bodies,
             layout,
             equipment: equipment::Equipment::default(),
+            frames: Vec::new(),
         })
     }
 

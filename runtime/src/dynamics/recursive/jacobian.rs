@@ -1,11 +1,12 @@
 //! Geometric Jacobians, speeds to twists, and their products with vectors; the map from speeds to the momentum about the centre of mass.
 
 use super::Recursive;
-use super::readings::{Frame, Readings, read};
+use super::frames::{FrameReadings, read};
+use super::readings::{Frame, Readings};
 use crate::mechanism::{StateError, WHOLE, check_size};
-use crate::spatial::fused::{apply, dot};
-use crate::spatial::{join, shift_wrench, split};
-use nalgebra::{Vector3, Vector6};
+use crate::spatial::fused::dot;
+use crate::spatial::{shift_wrench, split};
+use nalgebra::Vector6;
 
 impl Readings<'_> {
     /// The 6×S̄ matrix that takes v̄ to the twist of `body` into `out`, column by column, one a speed.
@@ -13,14 +14,7 @@ impl Readings<'_> {
     /// # Errors
     /// When there is no such body; when `out` has not six entries a speed.
     pub fn jacobian(&self, body: usize, frame: Frame, out: &mut [f64]) -> Result<(), StateError> {
-        let speeds = self.recursive.mechanism.layout().speeds;
-        check_size(WHOLE, "Jacobian", 6 * speeds, out.len())?;
-        let pose = self.pose(body)?;
-        out.fill(0.0);
-        self.climb(body, |speed, arm, column| {
-            let seen = read(frame, &pose, arm, column);
-            out[6 * speed..6 * speed + 6].copy_from_slice(seen.as_slice());
-        })
+        self.body_frame(body)?.jacobian(frame, out)
     }
 
     /// The Jacobian of `body` times `weights`, one a speed: the twist under these speeds.
@@ -33,14 +27,7 @@ impl Readings<'_> {
         frame: Frame,
         weights: &[f64],
     ) -> Result<Vector6<f64>, StateError> {
-        let speeds = self.recursive.mechanism.layout().speeds;
-        check_size(WHOLE, "speeds", speeds, weights.len())?;
-        let pose = self.pose(body)?;
-        let mut twist = Vector6::zeros();
-        self.climb(body, |speed, arm, column| {
-            twist += read(frame, &pose, arm, column) * weights[speed];
-        })?;
-        Ok(twist)
+        self.body_frame(body)?.jacobian_product(frame, weights)
     }
 
     /// The transposed Jacobian of `body` times a `wrench` on it into `efforts`, one a speed: what the wrench does to the speeds.
@@ -54,54 +41,73 @@ impl Readings<'_> {
         wrench: &Vector6<f64>,
         efforts: &mut [f64],
     ) -> Result<(), StateError> {
+        self.body_frame(body)?
+            .jacobian_transpose_product(frame, wrench, efforts)
+    }
+}
+
+impl FrameReadings<'_> {
+    /// The 6×S̄ matrix J that takes v̄ to the frame's twist into `out`, column by column, one a speed.
+    ///
+    /// # Errors
+    /// When `out` has not six entries a speed.
+    pub fn jacobian(&self, axes: Frame, out: &mut [f64]) -> Result<(), StateError> {
+        let speeds = self.recursive.mechanism.layout().speeds;
+        check_size(WHOLE, "Jacobian", 6 * speeds, out.len())?;
+        let pose = self.pose();
+        out.fill(0.0);
+        for (index, arm) in self.path() {
+            for speed in self.recursive.links[index].speeds.clone() {
+                let seen = read(axes, &pose, &arm, &self.recursive.columns[speed]);
+                out[6 * speed..6 * speed + 6].copy_from_slice(seen.as_slice());
+            }
+        }
+        Ok(())
+    }
+
+    /// `J w` for `weights` w, one a speed: the frame's twist under these speeds.
+    ///
+    /// # Errors
+    /// When `weights` has the wrong size.
+    pub fn jacobian_product(
+        &self,
+        axes: Frame,
+        weights: &[f64],
+    ) -> Result<Vector6<f64>, StateError> {
+        let speeds = self.recursive.mechanism.layout().speeds;
+        check_size(WHOLE, "speeds", speeds, weights.len())?;
+        let pose = self.pose();
+        let mut twist = Vector6::zeros();
+        for (index, arm) in self.path() {
+            for speed in self.recursive.links[index].speeds.clone() {
+                let column = &self.recursive.columns[speed];
+                twist += read(axes, &pose, &arm, column) * weights[speed];
+            }
+        }
+        Ok(twist)
+    }
+
+    /// `Jᵀ W` for a `wrench` W on the frame's body into `efforts`, one a speed: what the wrench does to the speeds.
+    ///
+    /// # Errors
+    /// When `efforts` has the wrong size.
+    pub fn jacobian_transpose_product(
+        &self,
+        axes: Frame,
+        wrench: &Vector6<f64>,
+        efforts: &mut [f64],
+    ) -> Result<(), StateError> {
         let speeds = self.recursive.mechanism.layout().speeds;
         check_size(WHOLE, "efforts", speeds, efforts.len())?;
-        let (moment, force) = split(&self.at_body_origin(body, frame, wrench)?);
+        let (moment, force) = split(&self.at_origin(axes, wrench));
         efforts.fill(0.0);
-        self.climb(body, |speed, arm, column| {
-            let (turn, slide) = split(column);
-            // Power at the body's origin: its velocity is `slide + turn × arm`.
-            let velocity = slide + turn.cross(arm);
-            efforts[speed] = dot(&turn, &moment) + dot(&velocity, &force);
-        })
-    }
-
-    /// A wrench on `body` in world axes, about the origin of the body frame.
-    fn at_body_origin(
-        &self,
-        body: usize,
-        frame: Frame,
-        wrench: &Vector6<f64>,
-    ) -> Result<Vector6<f64>, StateError> {
-        let pose = self.pose(body)?;
-        let (moment, force) = split(wrench);
-        Ok(match frame {
-            Frame::WorldAligned => *wrench,
-            Frame::World => shift_wrench(wrench, &-pose.translation),
-            Frame::Body => join(
-                &apply(&pose.rotation, &moment),
-                &apply(&pose.rotation, &force),
-            ),
-        })
-    }
-
-    /// Hands every speed between `body` and the root to `visit`, with its column of X̄ and the way from that column's origin to
-    /// the body's.
-    fn climb(
-        &self,
-        body: usize,
-        mut visit: impl FnMut(usize, &Vector3<f64>, &Vector6<f64>),
-    ) -> Result<(), StateError> {
-        let recursive = self.recursive;
-        let mut arm = self.arm(body)?;
-        let mut next = Some(body);
-        while let Some(index) = next {
-            let link = &recursive.links[index];
-            for speed in link.speeds.clone() {
-                visit(speed, &arm, &recursive.columns[speed]);
+        for (index, arm) in self.path() {
+            for speed in self.recursive.links[index].speeds.clone() {
+                let (turn, slide) = split(&self.recursive.columns[speed]);
+                // Power at the frame's origin: its velocity is `slide + turn × arm`.
+                let velocity = slide + turn.cross(&arm);
+                efforts[speed] = dot(&turn, &moment) + dot(&velocity, &force);
             }
-            arm += recursive.nodes[index].motion.placement.offset;
-            next = link.parent;
         }
         Ok(())
     }
@@ -118,7 +124,12 @@ impl Recursive {
         let speeds = self.mechanism.layout().speeds;
         check_size(WHOLE, "centroidal map", 6 * speeds, out.len())?;
         self.weigh(q);
-        let center = Readings { recursive: self }.center_of_mass();
+        let readings = Readings {
+            recursive: self,
+            q,
+            speeds: &[],
+        };
+        let center = readings.center_of_mass();
         self.compose();
         for (link, node) in self.links.iter().zip(&self.nodes) {
             let speeds = link.speeds.clone();

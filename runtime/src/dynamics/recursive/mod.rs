@@ -13,12 +13,14 @@
 mod coupling;
 mod derivatives;
 mod elements;
+mod frames;
 mod hamiltonian;
 mod inverse;
 mod jacobian;
 mod link;
 mod lu;
 mod mass;
+mod operational;
 mod readings;
 mod slender;
 mod sweeps;
@@ -26,6 +28,7 @@ mod sweeps;
 pub use derivatives::{
     ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Sensitivity,
 };
+pub use frames::FrameReadings;
 pub use mass::MassMatrix;
 pub use readings::{Frame, Readings};
 
@@ -45,6 +48,8 @@ use slender::Slender;
 #[derive(Clone, Debug)]
 pub struct Recursive {
     mechanism: Arc<Mechanism>,
+    /// Whether S̄ = 1 at every joint.
+    holonomic: bool,
     /// Whether every joint is holonomic and nothing but gravity and inputs acts: τ is then all there is to solve for.
     plain: bool,
     /// Whether there are elements, or rotors that add velocity terms.
@@ -81,9 +86,11 @@ impl Recursive {
     pub fn new(mechanism: Arc<Mechanism>) -> Self {
         let world = Node::world(mechanism.gravity());
         let count = mechanism.bodies().len();
+        let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
         let links = Link::all(&mechanism);
         Self {
+            holonomic: mechanism.bodies().iter().all(holonomic),
             plain: false,
             acted_on: false,
             slender: Slender::all(&links),
@@ -110,13 +117,12 @@ impl Recursive {
 
     /// What the sweeps can leave out.
     fn classified(mut self) -> Self {
-        let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
         self.acted_on =
             !self.mechanism.elements().is_empty() || self.links.iter().any(Link::turns_rotors);
-        self.plain = !self.acted_on
+        self.plain = self.holonomic
+            && !self.acted_on
             && self.coupling.is_none()
-            && self.mechanism.drives().is_empty()
-            && self.mechanism.bodies().iter().all(holonomic);
+            && self.mechanism.drives().is_empty();
         self
     }
 

@@ -4,18 +4,18 @@
 
 use super::Recursive;
 use crate::mechanism::StateError;
-use crate::spatial::fused::{apply, apply_transposed, dot};
-use crate::spatial::{Pose, join, shift_twist, shift_wrench, split};
+use crate::spatial::fused::dot;
+use crate::spatial::{Pose, shift_wrench, split};
 use nalgebra::{Vector3, Vector6};
 
-/// Where and in which axes a body's twist, wrench or Jacobian is read.
+/// Where and in which axes the twist, wrench or Jacobian of a frame is read: of the frame of a body, or of a named one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
-    /// At the origin of the body frame, in body axes.
+    /// At the frame's origin, in its own axes; elsewhere called local.
     Body,
     /// At the world's origin, in world axes.
     World,
-    /// At the origin of the body frame, in world axes.
+    /// At the frame's origin, in world axes.
     WorldAligned,
 }
 
@@ -23,6 +23,10 @@ pub enum Frame {
 #[derive(Clone, Copy, Debug)]
 pub struct Readings<'a> {
     pub(super) recursive: &'a Recursive,
+    /// Q of all joints.
+    pub(super) q: &'a [f64],
+    /// v̄ of all joints.
+    pub(super) speeds: &'a [f64],
 }
 
 impl Recursive {
@@ -30,11 +34,19 @@ impl Recursive {
     ///
     /// # Errors
     /// When a vector has the wrong size.
-    pub fn readings(&mut self, q: &[f64], speeds: &[f64]) -> Result<Readings<'_>, StateError> {
+    pub fn readings<'a>(
+        &'a mut self,
+        q: &'a [f64],
+        speeds: &'a [f64],
+    ) -> Result<Readings<'a>, StateError> {
         self.check(q, &[("speeds", speeds.len())])?;
         self.weigh(q);
         self.set_twists(speeds);
-        Ok(Readings { recursive: self })
+        Ok(Readings {
+            recursive: self,
+            q,
+            speeds,
+        })
     }
 }
 
@@ -44,8 +56,7 @@ impl Readings<'_> {
     /// # Errors
     /// When there is no such body.
     pub fn pose(&self, body: usize) -> Result<Pose<f64>, StateError> {
-        let child_placement = self.recursive.mechanism.body(body)?.child_placement();
-        Ok(self.recursive.nodes[body].motion.placement.pose() * *child_placement)
+        Ok(self.body_frame(body)?.pose())
     }
 
     /// The twist of `body` relative to the world.
@@ -53,16 +64,7 @@ impl Readings<'_> {
     /// # Errors
     /// When there is no such body.
     pub fn twist(&self, body: usize, frame: Frame) -> Result<Vector6<f64>, StateError> {
-        let pose = self.pose(body)?;
-        let twist = &self.recursive.nodes[body].motion.twist;
-        Ok(read(frame, &pose, &self.arm(body)?, twist))
-    }
-
-    /// From the origin of the joint's child frame to that of the body frame, world axes.
-    pub(super) fn arm(&self, body: usize) -> Result<Vector3<f64>, StateError> {
-        let child_placement = self.recursive.mechanism.body(body)?.child_placement();
-        let rotation = &self.recursive.nodes[body].motion.placement.rotation;
-        Ok(apply(rotation, &child_placement.translation))
+        Ok(self.body_frame(body)?.twist(frame))
     }
 
     /// Kinetic energy, J.
@@ -109,25 +111,5 @@ impl Readings<'_> {
             shift_wrench(&momentum, &(node.motion.placement.origin - center))
         });
         momenta.sum()
-    }
-}
-
-/// A twist in world axes, read at a point with the body's origin `arm` away, as `frame` has it.
-pub(super) fn read(
-    frame: Frame,
-    pose: &Pose<f64>,
-    arm: &Vector3<f64>,
-    twist: &Vector6<f64>,
-) -> Vector6<f64> {
-    match frame {
-        Frame::WorldAligned => shift_twist(twist, arm),
-        Frame::World => shift_twist(twist, &(arm - pose.translation)),
-        Frame::Body => {
-            let (angular, linear) = split(&shift_twist(twist, arm));
-            join(
-                &apply_transposed(&pose.rotation, &angular),
-                &apply_transposed(&pose.rotation, &linear),
-            )
-        }
     }
 }

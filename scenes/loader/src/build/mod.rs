@@ -57,7 +57,6 @@ pub(crate) fn scene(
         mechanism,
         configuration,
         speeds,
-        frames: description.frames.clone(),
         shapes: description.shapes.clone(),
         settings: description.settings,
         notices: Vec::new(),

@@ -24,7 +24,7 @@ impl Recursive {
         check_size(WHOLE, "potential gradient", freedoms, potential.len())?;
         check_size(WHOLE, "kinetic gradient", freedoms, kinetic.len())?;
         self.advance(q, speeds, None);
-        self.sum_momenta();
+        self.sum_momenta(false);
         for index in 0..self.links.len() {
             let mut variations = [Variation::zero(); MOST_FREEDOMS];
             let own = self.links[index].freedoms.clone();
@@ -38,12 +38,16 @@ impl Recursive {
         Ok(())
     }
 
-    /// Inward, after [`Recursive::advance`]: the momentum of each body and of all that hangs on it into its wrench, their weight into its rate.
-    pub(super) fn sum_momenta(&mut self) {
+    /// Inward, after [`Recursive::advance`]: the momentum of each body and of all that hangs on it into its wrench, their weight into its rate;
+    /// with `acted`, what elements exert on them as well.
+    pub(super) fn sum_momenta(&mut self, acted: bool) {
         let gravity = *self.mechanism.gravity();
-        for node in &mut self.nodes {
+        for (node, external) in self.nodes.iter_mut().zip(&self.external) {
             node.wrench = node.rigid.apply(&node.motion.twist);
             node.motion.rate = node.rigid.weight(&gravity);
+            if acted {
+                node.motion.rate += external;
+            }
         }
         for index in (0..self.links.len()).rev() {
             if let Some(parent) = self.links[index].parent {

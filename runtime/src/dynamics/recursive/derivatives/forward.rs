@@ -1,5 +1,6 @@
 //! Derivatives of forward dynamics.
 
+use super::acting::{Acting, Yielding, add_response};
 use super::coriolis::{ArticulatedCoriolis, Coriolis};
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
@@ -25,6 +26,8 @@ pub struct ForwardDerivatives {
     /// For mechanisms of few speeds.
     inverse: Option<InverseDerivatives>,
     pub(super) responses: Responses,
+    acting: Acting,
+    yielding: Yielding,
 }
 
 /// Up to so many speeds a product with M̄⁻¹ costs less than sweeps.
@@ -110,6 +113,8 @@ impl ForwardDerivatives {
             inverse: (speeds <= FEW && speeds == freedoms)
                 .then(|| InverseDerivatives::new(mechanism)),
             responses: Responses::new(mechanism),
+            acting: Acting::new(mechanism),
+            yielding: Yielding::new(mechanism),
         }
     }
 
@@ -149,8 +154,8 @@ impl Recursive {
         self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
         self.set_accelerations(q, speeds, &out.rates);
-        if let (true, Some(inverse)) = (self.plain, &mut out.inverse) {
-            self.differentiate_pairs(q, speeds, &out.rates, inverse);
+        if let (true, Some(inverse)) = (self.holonomic, &mut out.inverse) {
+            self.differentiate_needed(q, speeds, &out.rates, inverse);
             for index in 0..self.links.len() {
                 self.push_efforts(index, q, &mut out.responses.forced);
             }
@@ -159,6 +164,9 @@ impl Recursive {
             negative_product(&out.by_efforts, &inverse.by_local, &mut out.by_local);
             negative_product(&out.by_efforts, &inverse.by_speeds, &mut out.by_speeds);
             return Ok(());
+        }
+        if self.acted_on {
+            self.act_and_vary(q, speeds, &mut out.acting);
         }
         self.drag(&mut out.responses);
         for index in 0..self.links.len() {
@@ -175,9 +183,16 @@ impl Recursive {
         let sweep = &mut responses.sweep;
         respond::<true>(&tree, sweep, &responses.pushes, &mut out.by_local);
         respond::<true>(&tree, sweep, &responses.faster, &mut out.by_speeds);
-        match self.plain {
+        match self.holonomic {
             true => invert(&tree, sweep, &responses.forced, &mut out.by_efforts),
             false => respond::<false>(&tree, sweep, &responses.forced, &mut out.by_efforts),
+        }
+        if self.acted_on {
+            self.push_units(&mut out.yielding);
+            let Yielding { units, inverse } = &mut out.yielding;
+            invert(&tree, sweep, units, inverse);
+            add_response(inverse, &out.acting.by_local, &mut out.by_local);
+            add_response(inverse, &out.acting.by_speeds, &mut out.by_speeds);
         }
         Ok(())
     }

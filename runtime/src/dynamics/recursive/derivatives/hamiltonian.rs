@@ -5,14 +5,15 @@
 //! p̄̇_j by `Uᵀ (N_j X°_j − ad_Xᵀ h_j) − (ad_Z g)ᵀ N_j X̄_j`. The speed does the same with U = X and Z = 0. With `∂v̄/∂ϕ = −M̄⁻¹ ∂(M̄ v̄)/∂ϕ` by
 //! sweeps that of fixed p̄ follow.
 
+use super::acting::Acting;
 use super::forward::{Responses, invert, respond};
+use super::product::add_product;
 use super::sweep::{Push, Tree};
 use super::{Sensitivity, in_child};
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::{Dynamics, DynamicsError};
 use crate::mechanism::Mechanism;
-use crate::scalar::Scalar;
 use crate::spatial::fused::{apply, cross};
 use crate::spatial::{bracket_dual_product, bracket_product, join, shift_wrench, split};
 use crate::steps::Variation;
@@ -37,6 +38,7 @@ pub struct HamiltonianDerivatives {
     variations: Vec<Variation<f64>>,
     /// One a speed: X°, and `N X° − ad_Xᵀ h`.
     moving: Vec<[Vector6<f64>; 2]>,
+    acting: Acting,
 }
 
 /// What a joint raises above itself, at some frame: δf and δh of its ϕ, `N X̄` and `N X° − ad_Xᵀ h` of its speed.
@@ -63,6 +65,7 @@ impl HamiltonianDerivatives {
             by_momenta: vec![Push::none(); speeds],
             variations: vec![Variation::zero(); freedoms],
             moving: vec![[Vector6::zeros(); 2]; speeds],
+            acting: Acting::new(mechanism),
         }
     }
 
@@ -113,7 +116,10 @@ impl Recursive {
         self.check_efforts(efforts)?;
         self.speeds(q, momenta, &mut out.speeds)?;
         self.advance(q, &out.speeds, None);
-        self.sum_momenta();
+        if self.acted_on {
+            self.act_and_vary(q, &out.speeds, &mut out.acting);
+        }
+        self.sum_momenta(self.acted_on);
         for index in 0..self.links.len() {
             let own = &mut out.variations[self.links[index].freedoms.clone()];
             self.vary(index, (q, &out.speeds, &[]), own);
@@ -121,11 +127,18 @@ impl Recursive {
         }
         self.respond_to_momenta(out);
         self.compose();
+        // Joints on different branches meet in the products alone, and in elements between bodies.
+        out.rates_by_local.clear();
+        out.rates_by_speeds.clear();
         for index in 0..self.links.len() {
             self.differentiate_rates(index, q, efforts, out);
         }
+        if self.acted_on {
+            out.rates_by_local.add_all(&out.acting.by_local);
+            out.rates_by_speeds.add_all(&out.acting.by_speeds);
+        }
         let rates_by_speeds = &out.rates_by_speeds;
-        out.rates_by_momenta.entries.fill(0.0);
+        out.rates_by_momenta.clear();
         add_product(
             rates_by_speeds,
             &out.speeds_by_momenta,
@@ -344,21 +357,6 @@ impl Recursive {
             link.joint.reduce_efforts(q, &unit[..freedoms], reduced);
             for (speed, entry) in link.speeds.clone().zip(reduced) {
                 out.rates_by_efforts.set(speed, slot, *entry);
-            }
-        }
-    }
-}
-
-/// `out += left right`.
-fn add_product(left: &Sensitivity, right: &Sensitivity, out: &mut Sensitivity) {
-    let width = right.columns.max(1);
-    let rows = out.entries.chunks_exact_mut(width);
-    for (row, weights) in rows.zip(left.entries.chunks_exact(left.columns.max(1))) {
-        for (weight, other) in weights.iter().zip(right.entries.chunks_exact(width)) {
-            if *weight != 0.0 {
-                for (sum, entry) in row.iter_mut().zip(other) {
-                    *sum = Scalar::mul_add(*weight, *entry, *sum);
-                }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Derivatives of inverse dynamics.
 
+use super::acting::Acting;
 use super::coriolis::Coriolis;
 use super::{Branch, Sensitivity, WORLD, branches, in_child};
 use crate::dynamics::DynamicsError;
@@ -37,6 +38,7 @@ pub struct InverseDerivatives {
     met: Vec<Four>,
     /// One a body.
     coriolis: Vec<Coriolis>,
+    acting: Acting,
 }
 
 impl InverseDerivatives {
@@ -51,6 +53,7 @@ impl InverseDerivatives {
             above: vec![[[0.0; 4]; 9]; freedoms],
             met: vec![[0.0; 4]; freedoms],
             coriolis: vec![Coriolis::zero(); mechanism.bodies().len()],
+            acting: Acting::new(mechanism),
         }
     }
 
@@ -84,12 +87,33 @@ impl Recursive {
         self.check(q, &sizes)?;
         self.check_differentiable(&[&out.by_local, &out.by_speeds])?;
         self.advance(q, speeds, Some(accelerations));
-        self.differentiate_pairs(q, speeds, accelerations, out);
+        self.differentiate_needed(q, speeds, accelerations, out);
         Ok(())
     }
 
-    /// What is left of [`Recursive::inverse_dynamics_derivatives`] after [`Recursive::advance`].
-    pub(super) fn differentiate_pairs(
+    /// [`Recursive::inverse_dynamics_derivatives`] of what has been checked.
+    pub(super) fn differentiate_needed(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        accelerations: &[f64],
+        out: &mut InverseDerivatives,
+    ) {
+        if self.acted_on {
+            self.act_and_vary(q, speeds, &mut out.acting);
+            // Elements between bodies reach from branch to branch, where no joint meets another.
+            out.by_local.clear();
+            out.by_speeds.clear();
+        }
+        self.differentiate_pairs(q, speeds, accelerations, out);
+        if self.acted_on {
+            out.by_local.subtract(&out.acting.by_local);
+            out.by_speeds.subtract(&out.acting.by_speeds);
+        }
+    }
+
+    /// The derivatives of what the wrenches of the nodes amount to.
+    fn differentiate_pairs(
         &mut self,
         q: &[f64],
         speeds: &[f64],

@@ -27,9 +27,10 @@
 //! its branch and one outward, O(n), eight columns at a time; M̄ is never formed. Mechanisms of few speeds
 //! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them.
 //!
-//! Elements (springs, dampers, wrenches), rotors that add velocity terms, joints whose motion is prescribed and constraints that couple joints are
-//! not covered: asking for derivatives of such a mechanism is an error.
+//! Elements and rotors add what [`acting`] says. Joints whose motion is prescribed, constraints that couple joints, and elements of one's own
+//! without slopes ([`Element::slope`](crate::elements::Element::slope)) are not covered: asking for derivatives of such a mechanism is an error.
 
+mod acting;
 mod coriolis;
 mod energy;
 mod forward;
@@ -60,7 +61,7 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    fn new(rows: usize, columns: usize) -> Self {
+    pub(crate) fn new(rows: usize, columns: usize) -> Self {
         Self {
             rows,
             columns,
@@ -97,6 +98,37 @@ impl Sensitivity {
         DMatrix::from_row_slice(self.rows, self.columns, &self.entries)
     }
 
+    /// All entries, row by row.
+    pub(crate) fn entries_mut(&mut self) -> &mut [f64] {
+        &mut self.entries
+    }
+
+    fn clear(&mut self) {
+        self.entries.fill(0.0);
+    }
+
+    fn add_all(&mut self, other: &Self) {
+        for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
+            *entry += other;
+        }
+    }
+
+    fn subtract(&mut self, other: &Self) {
+        for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
+            *entry -= other;
+        }
+    }
+
+    /// Adds `left right`.
+    pub(crate) fn add_product(&mut self, left: &Self, right: &Self) {
+        product::add_product(left, right, self);
+    }
+
+    /// Adds to entry (i, j).
+    pub(crate) fn add(&mut self, i: usize, j: usize, value: f64) {
+        self.entries[i * self.columns + j] += value;
+    }
+
     fn set(&mut self, i: usize, j: usize, value: f64) {
         self.entries[i * self.columns + j] = value;
     }
@@ -114,19 +146,32 @@ impl Recursive {
         let fits = |result: &&Sensitivity| {
             result.fits(layout.speeds, layout.freedoms) || result.fits(layout.speeds, layout.speeds)
         };
-        let what = match () {
-            () if !self.mechanism.elements().is_empty() => "springs, dampers and other elements",
-            () if self.acted_on => "rotor inertias of joints whose velocities are not rates",
-            () if self.coupling.is_some() => "constraints that couple joints",
-            () if !self.mechanism.drives().is_empty() => "joints whose motion is prescribed",
-            () if !results.iter().all(fits) => "results made for another mechanism",
-            () => return Ok(()),
-        };
-        Err(DynamicsError::NotDifferentiable { what })
+        if !results.iter().all(fits) {
+            return Err(DynamicsError::ForeignResults);
+        }
+        let mechanism = &self.mechanism;
+        let element = mechanism.elements().iter().find(|e| e.slope().is_none());
+        let element = element.map(|element| ("an element without slopes", element.name()));
+        let constraint = mechanism.constraints().first();
+        let constraint = constraint.map(|c| ("a constraint that couples joints", &c.name[..]));
+        let drive = mechanism.drives().first();
+        let drive = drive.map(|drive| ("a joint whose motion is prescribed", &drive.name[..]));
+        match element.or(constraint).or(drive) {
+            Some((what, name)) => Err(DynamicsError::NotDifferentiable {
+                what,
+                name: name.into(),
+            }),
+            None => Ok(()),
+        }
     }
 
     /// The variations of the joint under body `index` at (q, v̄, v̄̇), one a freedom, after [`Recursive::advance`].
-    fn vary(&self, index: usize, state: (&[f64], &[f64], &[f64]), out: &mut [Variation<f64>]) {
+    pub(super) fn vary(
+        &self,
+        index: usize,
+        state: (&[f64], &[f64], &[f64]),
+        out: &mut [Variation<f64>],
+    ) {
         let link = &self.links[index];
         let parent = link
             .parent

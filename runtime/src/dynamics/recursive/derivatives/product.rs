@@ -65,3 +65,18 @@ fn tile<const R: usize, const W: usize>(
         out.entries[start..start + W].copy_from_slice(sum);
     }
 }
+
+/// `out += left right`.
+pub(super) fn add_product(left: &Sensitivity, right: &Sensitivity, out: &mut Sensitivity) {
+    let width = right.columns.max(1);
+    let rows = out.entries.chunks_exact_mut(width);
+    for (row, weights) in rows.zip(left.entries.chunks_exact(left.columns.max(1))) {
+        for (weight, other) in weights.iter().zip(right.entries.chunks_exact(width)) {
+            if *weight != 0.0 {
+                for (sum, entry) in row.iter_mut().zip(other) {
+                    *sum = Scalar::mul_add(*weight, *entry, *sum);
+                }
+            }
+        }
+    }
+}

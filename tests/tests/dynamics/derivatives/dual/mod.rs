@@ -2,98 +2,26 @@
 //!
 //! Of a joint only H, X^c, S̄, c and Ẋ̄ᵀh enter, as functions of Q; none of the kernels that hold derivatives.
 
-use hamel::erased::AnyJoint;
-use hamel::joint::Joint;
+mod equipment;
+mod kernels;
+
+pub use equipment::Equipment;
+
 use hamel::mechanism::Mechanism;
-use hamel::nalgebra::{SMatrix, SVector, Vector3, Vector6};
+use hamel::nalgebra::{Vector3, Vector6};
 use hamel::scalar::Dual;
 use hamel::spatial::{Pose, SpatialInertia, bracket_dual_product, bracket_product, join};
+use kernels::{Kernels, constants, kernels};
 use std::sync::Arc;
 
 type D = Dual<f64>;
-
-/// The kernels of one joint in dual numbers.
-trait Kernels {
-    /// Φ(Q, ϕ).
-    fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D>;
-    fn pose(&self, q: &[D]) -> Pose<D>;
-    /// The columns of X̄^c.
-    fn columns(&self, q: &[D]) -> Vec<Vector6<D>>;
-    fn bias(&self, q: &[D], speeds: &[D]) -> Vector6<D>;
-    fn bias_momentum(&self, q: &[D], speeds: &[D], h: &Vector6<D>) -> Vec<D>;
-    /// S̄ᵀ τ.
-    fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D>;
-}
-
-struct Of<J, const N: usize, const K: usize, const S: usize, const C: usize>(J);
-
-fn vector<const M: usize>(slice: &[D]) -> SVector<D, M> {
-    SVector::from_column_slice(slice)
-}
-
-fn constants(values: &[f64]) -> Vec<D> {
-    values.iter().map(|value| Dual::constant(*value)).collect()
-}
-
-impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize> Kernels
-    for Of<J, N, K, S, C>
-{
-    fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D> {
-        let moved = self.0.retract(&vector::<N>(&constants(q)), &vector(phi));
-        moved.iter().copied().collect()
-    }
-
-    fn pose(&self, q: &[D]) -> Pose<D> {
-        self.0.pose(&vector(q))
-    }
-
-    fn columns(&self, q: &[D]) -> Vec<Vector6<D>> {
-        let q = vector(q);
-        let map: SMatrix<D, 6, S> = self.0.twist_map_child(&q) * self.0.speed_basis(&q);
-        map.column_iter()
-            .map(|column| column.into_owned())
-            .collect()
-    }
-
-    fn bias(&self, q: &[D], speeds: &[D]) -> Vector6<D> {
-        self.0.bias_acceleration(&vector(q), &vector(speeds))
-    }
-
-    fn bias_momentum(&self, q: &[D], speeds: &[D], h: &Vector6<D>) -> Vec<D> {
-        let dual = self.0.bias_momentum(&vector(q), &vector(speeds), h);
-        dual.iter().copied().collect()
-    }
-
-    fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D> {
-        let reduced = self.0.speed_basis(&vector(q)).tr_mul(&vector::<K>(efforts));
-        reduced.iter().copied().collect()
-    }
-}
-
-/// The joint of the library behind an erased one.
-fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
-    let mut found: Option<Box<dyn Kernels>> = None;
-    let mut parameters = vec![];
-    joint.parameters(&mut |_, value| parameters.push(value));
-    macro_rules! pick {
-        ($module:ident, $type:ty, $example:expr, $n:literal, $k:literal, $s:literal, $c:literal) => {
-            if joint.name() == stringify!($module) {
-                let example = $example;
-                let own = Joint::<$n, $k, $s, $c>::parameters(&example);
-                let own: Vec<f64> = own.map(|(_, value)| value).collect();
-                assert_eq!(own, parameters, "{}", joint.name());
-                found = Some(Box::new(Of::<$type, $n, $k, $s, $c>(example)));
-            }
-        };
-    }
-    hamel_joints::for_each_joint!(pick);
-    found.expect("a joint of the library")
-}
 
 struct Body {
     joint: Box<dyn Kernels>,
     parent: Option<usize>,
     frame: Pose<D>,
+    /// The body frame in the joint's child frame.
+    fixed: Pose<D>,
     inertia: SpatialInertia<D>,
     configuration: std::ops::Range<usize>,
     freedoms: std::ops::Range<usize>,
@@ -104,6 +32,7 @@ struct Body {
 pub struct DualForm {
     bodies: Vec<Body>,
     gravity: Vector3<D>,
+    equipment: Equipment,
 }
 
 /// A state in dual numbers.
@@ -122,7 +51,8 @@ fn lifted(pose: &Pose<f64>) -> Pose<D> {
 }
 
 impl DualForm {
-    pub fn new(mechanism: &Arc<Mechanism>) -> Self {
+    /// A mechanism that carries the given equipment.
+    pub fn new(mechanism: &Arc<Mechanism>, equipment: Equipment) -> Self {
         let bodies = mechanism.bodies();
         let body = |body: &hamel::mechanism::Body| {
             let above = body
@@ -143,6 +73,7 @@ impl DualForm {
                 joint: kernels(body.joint()),
                 parent: body.parent(),
                 frame: lifted(&(above * *body.placement())),
+                fixed: lifted(body.child_placement()),
                 inertia: lifted_inertia,
                 configuration: ranges.configuration.clone(),
                 freedoms: ranges.freedoms.clone(),
@@ -152,6 +83,7 @@ impl DualForm {
         Self {
             bodies: bodies.iter().map(body).collect(),
             gravity: mechanism.gravity().map(Dual::constant),
+            equipment,
         }
     }
 
@@ -180,7 +112,7 @@ impl DualForm {
         self.bodies.iter().map(pose).collect()
     }
 
-    /// τ̄ of inverse dynamics.
+    /// τ̄ of inverse dynamics; without gravity and elements if it does not fall.
     pub fn inverse(&self, q: &[D], speeds: &[D], accelerations: &[D], falls: bool) -> Vec<D> {
         let poses = self.poses(q);
         let zero = Vector3::zeros();
@@ -207,6 +139,13 @@ impl DualForm {
         for ((body, columns), wrench) in self.bodies.iter().zip(&columns).zip(&wrenches) {
             for (effort, column) in efforts[body.speeds.clone()].iter_mut().zip(columns) {
                 *effort = column.dot(wrench);
+            }
+        }
+        self.equipment.add_rotors(accelerations, &mut efforts);
+        if falls {
+            let acting = self.equipment.forces(self, q, speeds);
+            for (effort, force) in efforts.iter_mut().zip(acting) {
+                *effort -= force;
             }
         }
         efforts
@@ -250,6 +189,9 @@ impl DualForm {
                 *rate += column.dot(&turned) + more;
             }
         }
+        for (rate, force) in rates.iter_mut().zip(self.equipment.forces(self, q, speeds)) {
+            *rate += force;
+        }
         rates
     }
 
@@ -268,6 +210,24 @@ impl DualForm {
             potential -= self.gravity.dot(&moment);
         }
         (kinetic, potential)
+    }
+
+    /// The pose of a frame that is fixed in the child frame of the joint under `body`, and the frame's twist in its own axes.
+    pub fn frame(
+        &self,
+        (q, speeds): (&[D], &[D]),
+        body: usize,
+        fixed: &Pose<f64>,
+    ) -> (Pose<D>, Vector6<D>) {
+        let (poses, fixed) = (self.poses(q), lifted(fixed));
+        let twist = self.twists(&poses, q, speeds)[body];
+        let mut pose = poses[body] * fixed;
+        let mut next = self.bodies[body].parent;
+        while let Some(parent) = next {
+            pose = poses[parent] * pose;
+            next = self.bodies[parent].parent;
+        }
+        (pose, fixed.act_twist_inverse(&twist))
     }
 
     fn twists(&self, poses: &[Pose<D>], q: &[D], speeds: &[D]) -> Vec<Vector6<D>> {

@@ -1,0 +1,246 @@
+//! How the generalised forces of elements change with ϕ and v̄.
+//!
+//! One unit of a local coordinate of joint k moves all that hangs on it by the twist Z. The recursion reads an element's wrench on a body as
+//! one that is carried along with the body; what an element adds here is how its wrench changes beside that, projected on all speeds that move
+//! the body.
+
+use super::View;
+use crate::dynamics::Sensitivity;
+use crate::mechanism::Mechanism;
+use crate::spatial::fused::{add_cross, cross, dot};
+use crate::spatial::split;
+use crate::steps::Variation;
+use core::ops::Range;
+use nalgebra::{Matrix3, Vector3, Vector6};
+
+/// An element whose slopes are known.
+pub trait Slope {
+    /// Adds `∂/∂ϕ` and `∂/∂v̄` of what [`Element::act`](super::Element::act) exerts.
+    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>);
+}
+
+/// Where elements put how what they exert changes.
+#[derive(Debug)]
+pub struct Slopes<'a> {
+    /// X̄, one column a speed.
+    pub(crate) columns: &'a [Vector6<f64>],
+    /// One a freedom.
+    pub(crate) variations: &'a [Variation<f64>],
+    /// `∂(generalised force)/∂ϕ`: a row a speed, a column a freedom.
+    pub(crate) by_local: &'a mut Sensitivity,
+    /// `∂(generalised force)/∂v̄`.
+    pub(crate) by_speeds: &'a mut Sensitivity,
+}
+
+/// A point of a body: which, and the way to it from the origin of the joint-child frame, world axes, as [`View::arm`] has it.
+pub type End = (usize, Vector3<f64>);
+
+/// A force F on the second of two points and −F on the first, and how it changes with the way x from the first to the second and with its
+/// rate; world axes. A point that is `None` belongs to the world.
+#[derive(Clone, Copy, Debug)]
+pub struct PointForce {
+    /// The points.
+    pub ends: [Option<End>; 2],
+    /// F, N.
+    pub force: Vector3<f64>,
+    /// `∂F/∂x`, N/m.
+    pub by_way: Matrix3<f64>,
+    /// `∂F/∂ẋ`, N·s/m.
+    pub by_rate: Matrix3<f64>,
+}
+
+/// The signs with which a force acts on its two points.
+const SIGNS: [f64; 2] = [-1.0, 1.0];
+
+/// A column of one of both matrices.
+#[derive(Clone, Copy)]
+enum Column {
+    /// That of a freedom.
+    Local(usize),
+    /// That of a speed.
+    Speed(usize),
+}
+
+/// A point of a body, where it is and how it moves.
+struct Place {
+    body: usize,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+}
+
+impl Slopes<'_> {
+    /// Efforts of the joint under a body, with `∂τ/∂ϕ` and `∂τ/∂v`: K×K each, column by column.
+    pub fn add_effort(
+        &mut self,
+        view: &View<'_>,
+        body: usize,
+        by_local: &[f64],
+        by_velocity: &[f64],
+    ) {
+        let ranges = view.mechanism.bodies()[body].ranges();
+        let (freedoms, speeds) = (&ranges.freedoms, &ranges.speeds);
+        let (size, q) = (freedoms.len(), view.joint_configuration(body));
+        let (mut basis, mut turned) = ([0.0; 36], [0.0; 216]);
+        let basis = &mut basis[..size * speeds.len()];
+        let turned = &mut turned[..size * basis.len()];
+        view.joint(body).speed_basis(q, basis);
+        view.joint(body).speed_basis_gradient(q, turned);
+        let v = &view.speeds[speeds.clone()];
+        for (k, freedom) in freedoms.clone().enumerate() {
+            let slice = &turned[k * basis.len()..(k + 1) * basis.len()];
+            let velocity = combination(slice, v, size);
+            let mut effort = combination(by_velocity, &velocity[..size], size);
+            for (sum, entry) in effort.iter_mut().zip(&by_local[k * size..(k + 1) * size]) {
+                *sum += entry;
+            }
+            self.project_effort(speeds, basis, Column::Local(freedom), &effort[..size]);
+        }
+        for (speed, column) in speeds.clone().zip(basis.chunks_exact(size.max(1))) {
+            let effort = combination(by_velocity, column, size);
+            self.project_effort(speeds, basis, Column::Speed(speed), &effort[..size]);
+        }
+    }
+
+    /// A moment on a body that keeps its direction in the world, N·m.
+    pub fn add_moment(&mut self, view: &View<'_>, body: usize, moment: &Vector3<f64>) {
+        for index in path(view.mechanism, body) {
+            for freedom in view.mechanism.bodies()[index].ranges().freedoms.clone() {
+                let (turn, _) = split(&self.variations[freedom].local);
+                let change = -cross(&turn, moment);
+                let power =
+                    |column: &Vector6<f64>, _: &Vector3<f64>| dot(&split(column).0, &change);
+                self.project(view, body, Column::Local(freedom), power);
+            }
+        }
+    }
+
+    /// A force between two points.
+    pub fn add_point_force(&mut self, view: &View<'_>, force: &PointForce) {
+        let places = force.ends.map(|end| end.map(|end| Place::new(view, end)));
+        for (place, sign) in places.iter().zip(SIGNS) {
+            let Some(place) = place else {
+                continue;
+            };
+            for index in path(view.mechanism, place.body) {
+                let ranges = view.mechanism.bodies()[index].ranges();
+                let arm = place.position - view.motions.placement(index).origin;
+                for freedom in ranges.freedoms.clone() {
+                    let Variation { local, drift, .. } = &self.variations[freedom];
+                    let (turn, moved) = (split(local).0, at(local, &arm));
+                    let rate = add_cross(&at(drift, &arm), &turn, &place.velocity);
+                    let change = (force.by_way * moved + force.by_rate * rate) * sign;
+                    let carried = cross(&turn, &force.force) * sign;
+                    let column = Column::Local(freedom);
+                    self.project_force(view, &places, column, &change);
+                    self.project_point(view, place, column, &-carried);
+                }
+                for speed in ranges.speeds.clone() {
+                    let rate = at(&self.columns[speed], &arm);
+                    let change = force.by_rate * rate * sign;
+                    self.project_force(view, &places, Column::Speed(speed), &change);
+                }
+            }
+        }
+    }
+
+    /// Adds `S̄ᵀ effort` of one joint.
+    fn project_effort(
+        &mut self,
+        speeds: &Range<usize>,
+        basis: &[f64],
+        column: Column,
+        effort: &[f64],
+    ) {
+        for (row, own) in speeds.clone().zip(basis.chunks_exact(effort.len().max(1))) {
+            let entry = own.iter().zip(effort).map(|(s, t)| s * t).sum();
+            self.add(row, column, entry);
+        }
+    }
+
+    /// Adds what a `change` of the force between two points does to all speeds.
+    fn project_force(
+        &mut self,
+        view: &View<'_>,
+        places: &[Option<Place>; 2],
+        column: Column,
+        change: &Vector3<f64>,
+    ) {
+        for (place, sign) in places.iter().zip(SIGNS) {
+            if let Some(place) = place {
+                self.project_point(view, place, column, &(change * sign));
+            }
+        }
+    }
+
+    /// Adds what a `change` of a force at a point does to all speeds.
+    fn project_point(
+        &mut self,
+        view: &View<'_>,
+        place: &Place,
+        column: Column,
+        change: &Vector3<f64>,
+    ) {
+        let power = |twist: &Vector6<f64>, origin: &Vector3<f64>| {
+            dot(&at(twist, &(place.position - origin)), change)
+        };
+        self.project(view, place.body, column, power);
+    }
+
+    /// Adds the power of something on `body` with each column of X̄ that moves it; `power` is handed the column and the origin at which it is read.
+    fn project(
+        &mut self,
+        view: &View<'_>,
+        body: usize,
+        column: Column,
+        power: impl Fn(&Vector6<f64>, &Vector3<f64>) -> f64,
+    ) {
+        for index in path(view.mechanism, body) {
+            let origin = view.motions.placement(index).origin;
+            for speed in view.mechanism.bodies()[index].ranges().speeds.clone() {
+                let entry = power(&self.columns[speed], &origin);
+                self.add(speed, column, entry);
+            }
+        }
+    }
+
+    fn add(&mut self, row: usize, column: Column, entry: f64) {
+        match column {
+            Column::Local(freedom) => self.by_local.add(row, freedom, entry),
+            Column::Speed(speed) => self.by_speeds.add(row, speed, entry),
+        }
+    }
+}
+
+/// The body and all that it hangs on, up to the root.
+fn path(mechanism: &Mechanism, body: usize) -> impl Iterator<Item = usize> + '_ {
+    let parent = |index: &usize| mechanism.bodies()[*index].parent();
+    core::iter::successors(Some(body), parent)
+}
+
+impl Place {
+    fn new(view: &View<'_>, (body, arm): End) -> Self {
+        let (turn, slide) = split(view.motions.twist(body));
+        Self {
+            body,
+            position: view.motions.placement(body).origin + arm,
+            velocity: add_cross(&slide, &turn, &arm),
+        }
+    }
+}
+
+/// The velocity that a twist gives the end of an arm.
+fn at(twist: &Vector6<f64>, arm: &Vector3<f64>) -> Vector3<f64> {
+    let (turn, slide) = split(twist);
+    add_cross(&slide, &turn, arm)
+}
+
+/// The columns of a matrix of `rows` rows, weighted.
+fn combination(matrix: &[f64], weights: &[f64], rows: usize) -> [f64; 6] {
+    let mut sum = [0.0; 6];
+    for (column, weight) in matrix.chunks_exact(rows.max(1)).zip(weights) {
+        for (sum, entry) in sum.iter_mut().zip(column) {
+            *sum += entry * weight;
+        }
+    }
+    sum
+}

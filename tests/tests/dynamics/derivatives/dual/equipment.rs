@@ -1,0 +1,261 @@
+//! Elements and rotors in dual numbers: their forces as their definitions have them, and the same for the library.
+
+use super::kernels::constants;
+use super::{D, DualForm};
+use hamel::elements::{
+    BodySpring, BodyWrench, Element, JointDamper, JointEffort, JointSpring, RotationSpring,
+    WrenchAxes,
+};
+use hamel::mechanism::Mechanism;
+use hamel::nalgebra::{Matrix3, Vector3, Vector6};
+use hamel::scalar::Dual;
+use hamel::spatial::{Pose, join, so3, split, vee};
+use hamel_tests::random::numbers;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
+
+/// What a mechanism carries besides its bodies; nothing by default.
+#[derive(Clone, Debug, Default)]
+pub struct Equipment {
+    springs: Vec<JointSpring>,
+    turns: Vec<RotationSpring>,
+    dampers: Vec<JointDamper>,
+    motors: Vec<JointEffort>,
+    ropes: Vec<BodySpring>,
+    wrenches: Vec<BodyWrench>,
+    /// One entry a speed.
+    armature: Vec<f64>,
+}
+
+fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| random.random_range(-1.0..1.0))
+}
+
+/// `H Hᵀ` of a random H, by rows.
+fn stiffness(random: &mut ChaCha8Rng, size: usize) -> Vec<f64> {
+    let half = numbers(random, size * size);
+    let row = |i: usize| &half[i * size..(i + 1) * size];
+    let product = |i, j| row(i).iter().zip(row(j)).map(|(x, y)| x * y).sum();
+    (0..size * size)
+        .map(|n| product(n / size, n % size))
+        .collect()
+}
+
+impl Equipment {
+    /// Everything at every body, of order 1.
+    pub fn random(mechanism: &Mechanism, q: &[f64], seed: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut all = Self::default();
+        let bodies = mechanism.bodies();
+        for (body, owner) in bodies.iter().enumerate() {
+            let ranges = owner.ranges();
+            let size = ranges.freedoms.len();
+            let near = numbers(&mut random, size);
+            let mut rest = vec![0.0; ranges.configuration.len()];
+            owner
+                .joint()
+                .retract(owner.configuration(q), &near, &mut rest);
+            let name = |kind: &str| format!("{kind} {body}");
+            all.springs.push(JointSpring {
+                name: name("spring"),
+                body,
+                stiffness: stiffness(&mut random, size),
+                rest,
+            });
+            all.turns.push(RotationSpring {
+                name: name("rotation spring"),
+                body,
+                stiffness: 1.7,
+                rest: so3::exp(&vector(&mut random)),
+            });
+            all.dampers.push(JointDamper {
+                name: name("damper"),
+                body,
+                coefficients: numbers(&mut random, size).iter().map(|c| c.abs()).collect(),
+            });
+            all.motors.push(JointEffort {
+                name: name("motor"),
+                body,
+                efforts: numbers(&mut random, size),
+            });
+            let anywhere = random.random_range(0..=bodies.len());
+            all.ropes.push(BodySpring {
+                name: name("rope"),
+                bodies: [(anywhere < bodies.len()).then_some(anywhere), Some(body)],
+                points: [vector(&mut random), vector(&mut random) * 2.0],
+                stiffness: 3.0,
+                damping: 0.6,
+                length: 0.4,
+            });
+            for axes in [WrenchAxes::World, WrenchAxes::Body] {
+                all.wrenches.push(BodyWrench {
+                    name: name("push"),
+                    body,
+                    point: vector(&mut random),
+                    force: vector(&mut random),
+                    moment: vector(&mut random),
+                    axes,
+                });
+            }
+            let holonomic = owner.joint().structures().speed_basis.is_identity();
+            let inertia = numbers(&mut random, ranges.speeds.len());
+            let inertia = inertia.iter().map(|a| f64::from(holonomic) * a.abs());
+            all.armature.extend(inertia);
+        }
+        all
+    }
+
+    /// The mechanism with it.
+    pub fn equip(&self, mechanism: &Mechanism) -> Arc<Mechanism> {
+        fn shared<E: Element + Clone + 'static>(all: &[E]) -> Vec<Arc<dyn Element>> {
+            let shared = |element: &E| -> Arc<dyn Element> { Arc::new(element.clone()) };
+            all.iter().map(shared).collect()
+        }
+        let elements = [
+            shared(&self.springs),
+            shared(&self.turns),
+            shared(&self.dampers),
+            shared(&self.motors),
+            shared(&self.ropes),
+            shared(&self.wrenches),
+        ];
+        let equipped = mechanism.clone().with_elements(elements.concat());
+        let mut equipped = equipped.expect("it fits");
+        for (body, owner) in mechanism.bodies().iter().enumerate() {
+            if owner.joint().structures().speed_basis.is_identity() {
+                let own = &self.armature[owner.ranges().speeds.clone()];
+                equipped = equipped.with_armature(body, own).expect("it fits");
+            }
+        }
+        Arc::new(equipped)
+    }
+
+    /// Adds `a v̄̇` to inverse dynamics.
+    pub fn add_rotors(&self, accelerations: &[D], efforts: &mut [D]) {
+        let terms = constants(&self.armature);
+        let terms = terms.iter().zip(accelerations).map(|(a, x)| *a * *x);
+        for (effort, term) in efforts.iter_mut().zip(terms) {
+            *effort += term;
+        }
+    }
+
+    /// Generalised forces, one a speed.
+    pub fn forces(&self, form: &DualForm, q: &[D], speeds: &[D]) -> Vec<D> {
+        let mut forces = form.reduced(q, &self.efforts(form, q, speeds));
+        let poses = form.poses(q);
+        let wrenches = form.gathered(&poses, self.on_bodies(form, &poses, q, speeds));
+        for (body, wrench) in form.bodies.iter().zip(&wrenches) {
+            let columns = body.joint.columns(&q[body.configuration.clone()]);
+            let own = forces[body.speeds.clone()].iter_mut();
+            for (force, column) in own.zip(&columns) {
+                *force += column.dot(wrench);
+            }
+            if let Some(inertia) = self.armature.get(body.speeds.clone())
+                && body.speeds.len() == body.freedoms.len()
+            {
+                let (q, v) = (&q[body.configuration.clone()], &speeds[body.speeds.clone()]);
+                let own = forces[body.speeds.clone()].iter_mut();
+                for (force, term) in own.zip(body.joint.rotors(q, v, inertia)) {
+                    *force -= term;
+                }
+            }
+        }
+        forces
+    }
+
+    /// τ of all joints.
+    fn efforts(&self, form: &DualForm, q: &[D], speeds: &[D]) -> Vec<D> {
+        let size = form.bodies.iter().map(|body| body.freedoms.len()).sum();
+        let mut efforts = vec![Dual::constant(0.0); size];
+        let mut add = |body: usize, own: Vec<D>| {
+            let sum = efforts[form.bodies[body].freedoms.clone()].iter_mut();
+            sum.zip(own).for_each(|(sum, own)| *sum += own);
+        };
+        let at = |body: usize| &q[form.bodies[body].configuration.clone()];
+        for spring in &self.springs {
+            let joint = &form.bodies[spring.body].joint;
+            add(
+                spring.body,
+                joint.spring(at(spring.body), &spring.rest, &spring.stiffness),
+            );
+        }
+        for spring in &self.turns {
+            let joint = &form.bodies[spring.body].joint;
+            let back: Matrix3<D> = spring.rest.transpose().map(Dual::constant);
+            let turn = vee(&(joint.pose(at(spring.body)).rotation * back));
+            let moment = turn * Dual::constant(-spring.stiffness);
+            add(spring.body, joint.moment(at(spring.body), &moment));
+        }
+        for damper in &self.dampers {
+            let body = &form.bodies[damper.body];
+            let v = body
+                .joint
+                .velocity(at(damper.body), &speeds[body.speeds.clone()]);
+            let damped = v.iter().zip(constants(&damper.coefficients));
+            add(damper.body, damped.map(|(v, c)| -(c * *v)).collect());
+        }
+        for motor in &self.motors {
+            add(motor.body, constants(&motor.efforts));
+        }
+        efforts
+    }
+
+    /// Wrenches on the bodies, in their joints' child frames.
+    fn on_bodies(
+        &self,
+        form: &DualForm,
+        poses: &[Pose<D>],
+        q: &[D],
+        speeds: &[D],
+    ) -> Vec<Vector6<D>> {
+        let twists = form.twists(poses, q, speeds);
+        let mut placed: Vec<Pose<D>> = vec![];
+        for (body, pose) in form.bodies.iter().zip(poses) {
+            let pose = body.parent.map_or(*pose, |parent| placed[parent] * *pose);
+            placed.push(pose);
+        }
+        let lift = |v: &Vector3<f64>| v.map(Dual::constant);
+        let mut wrenches = vec![Vector6::zeros(); placed.len()];
+        // A force in child axes at a point of the body frame.
+        let mut push = |body: usize, point: &Vector3<D>, force: &Vector3<D>, moment: Vector3<D>| {
+            let arm = form.bodies[body].fixed.transform_point(point);
+            wrenches[body] += join(&(arm.cross(force) + moment), force);
+        };
+        for rope in &self.ropes {
+            let end = |end: usize| {
+                let point = lift(&rope.points[end]);
+                let Some(body) = rope.bodies[end] else {
+                    return (point, Vector3::zeros());
+                };
+                let arm = form.bodies[body].fixed.transform_point(&point);
+                let (turn, slide) = split(&twists[body]);
+                let velocity = placed[body].rotation * (slide + turn.cross(&arm));
+                (placed[body].transform_point(&arm), velocity)
+            };
+            let ((from, slow), (to, fast)) = (end(0), end(1));
+            let (way, rate) = (to - from, fast - slow);
+            let length = hamel::scalar::Scalar::sqrt(way.dot(&way));
+            let u = way / length;
+            let pull = (length - Dual::constant(rope.length)) * Dual::constant(rope.stiffness)
+                + u.dot(&rate) * Dual::constant(rope.damping);
+            for (n, sign) in [(0, 1.0), (1, -1.0)] {
+                if let Some(body) = rope.bodies[n] {
+                    let force =
+                        placed[body].rotation.transpose() * u * (pull * Dual::constant(sign));
+                    push(body, &lift(&rope.points[n]), &force, Vector3::zeros());
+                }
+            }
+        }
+        for wrench in &self.wrenches {
+            let body = wrench.body;
+            let turn = match wrench.axes {
+                WrenchAxes::World => placed[body].rotation.transpose(),
+                WrenchAxes::Body => form.bodies[body].fixed.rotation,
+            };
+            let (force, moment) = (turn * lift(&wrench.force), turn * lift(&wrench.moment));
+            push(body, &lift(&wrench.point), &force, moment);
+        }
+        wrenches
+    }
+}

@@ -1,0 +1,125 @@
+//! The kernels of one joint in dual numbers.
+
+use super::D;
+use hamel::erased::AnyJoint;
+use hamel::joint::Joint;
+use hamel::nalgebra::{SMatrix, SVector, Vector3, Vector6};
+use hamel::scalar::Dual;
+use hamel::spatial::Pose;
+
+/// The kernels of one joint in dual numbers.
+pub(super) trait Kernels {
+    /// Φ(Q, ϕ).
+    fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D>;
+    fn pose(&self, q: &[D]) -> Pose<D>;
+    /// The columns of X̄^c.
+    fn columns(&self, q: &[D]) -> Vec<Vector6<D>>;
+    fn bias(&self, q: &[D], speeds: &[D]) -> Vector6<D>;
+    fn bias_momentum(&self, q: &[D], speeds: &[D], h: &Vector6<D>) -> Vec<D>;
+    /// S̄ᵀ τ.
+    fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D>;
+    /// S̄ v̄.
+    fn velocity(&self, q: &[D], speeds: &[D]) -> Vec<D>;
+    /// `−S₀⁻ᵀ D⁻ᵀ K ϕ` with Φ(rest, ϕ) = Q and K by rows.
+    fn spring(&self, q: &[D], rest: &[f64], stiffness: &[f64]) -> Vec<D>;
+    /// Efforts of a moment on the child that has the parent's axes.
+    fn moment(&self, q: &[D], moment: &Vector3<D>) -> Vec<D>;
+    /// `Σ_k γ_k v_k (a v)`.
+    fn rotors(&self, q: &[D], speeds: &[D], inertia: &[f64]) -> Vec<D>;
+}
+
+struct Of<J, const N: usize, const K: usize, const S: usize, const C: usize>(J);
+
+fn vector<const M: usize>(slice: &[D]) -> SVector<D, M> {
+    SVector::from_column_slice(slice)
+}
+
+pub(super) fn constants(values: &[f64]) -> Vec<D> {
+    values.iter().map(|value| Dual::constant(*value)).collect()
+}
+
+impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize> Kernels
+    for Of<J, N, K, S, C>
+{
+    fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D> {
+        let moved = self.0.retract(&vector::<N>(&constants(q)), &vector(phi));
+        moved.iter().copied().collect()
+    }
+
+    fn pose(&self, q: &[D]) -> Pose<D> {
+        self.0.pose(&vector(q))
+    }
+
+    fn columns(&self, q: &[D]) -> Vec<Vector6<D>> {
+        let q = vector(q);
+        let map: SMatrix<D, 6, S> = self.0.twist_map_child(&q) * self.0.speed_basis(&q);
+        map.column_iter()
+            .map(|column| column.into_owned())
+            .collect()
+    }
+
+    fn bias(&self, q: &[D], speeds: &[D]) -> Vector6<D> {
+        self.0.bias_acceleration(&vector(q), &vector(speeds))
+    }
+
+    fn bias_momentum(&self, q: &[D], speeds: &[D], h: &Vector6<D>) -> Vec<D> {
+        let dual = self.0.bias_momentum(&vector(q), &vector(speeds), h);
+        dual.iter().copied().collect()
+    }
+
+    fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D> {
+        let reduced = self.0.speed_basis(&vector(q)).tr_mul(&vector::<K>(efforts));
+        reduced.iter().copied().collect()
+    }
+
+    fn velocity(&self, q: &[D], speeds: &[D]) -> Vec<D> {
+        let velocity = self.0.speed_basis(&vector(q)) * vector::<S>(speeds);
+        velocity.iter().copied().collect()
+    }
+
+    fn spring(&self, q: &[D], rest: &[f64], stiffness: &[f64]) -> Vec<D> {
+        let (q, rest) = (vector(q), vector(&constants(rest)));
+        let phi = self.0.local(&rest, &q);
+        let load = SMatrix::<f64, K, K>::from_row_slice(stiffness).map(Dual::constant) * phi;
+        let inverse = self.0.velocity_map_inverse(&q);
+        let effort = |column: SVector<D, K>| {
+            let rate = self.0.retract_differential_inverse(&rest, &phi, &column);
+            -rate.dot(&load)
+        };
+        let columns = inverse.column_iter().map(|column| column.into_owned());
+        columns.map(effort).collect()
+    }
+
+    fn moment(&self, q: &[D], moment: &Vector3<D>) -> Vec<D> {
+        let map = self.0.twist_map(&vector(q));
+        let effort = map.fixed_rows::<3>(0).tr_mul(moment);
+        effort.iter().copied().collect()
+    }
+
+    fn rotors(&self, q: &[D], speeds: &[D], inertia: &[f64]) -> Vec<D> {
+        let v = vector::<K>(speeds);
+        let momentum = v.component_mul(&vector::<K>(&constants(inertia)));
+        let force = self.0.gamma(&vector(q), &v) * momentum;
+        force.iter().copied().collect()
+    }
+}
+
+/// The joint of the library behind an erased one.
+pub(super) fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
+    let mut found: Option<Box<dyn Kernels>> = None;
+    let mut parameters = vec![];
+    joint.parameters(&mut |_, value| parameters.push(value));
+    macro_rules! pick {
+        ($module:ident, $type:ty, $example:expr, $n:literal, $k:literal, $s:literal, $c:literal) => {
+            if joint.name() == stringify!($module) {
+                let example = $example;
+                let own = Joint::<$n, $k, $s, $c>::parameters(&example);
+                let own: Vec<f64> = own.map(|(_, value)| value).collect();
+                assert_eq!(own, parameters, "{}", joint.name());
+                found = Some(Box::new(Of::<$type, $n, $k, $s, $c>(example)));
+            }
+        };
+    }
+    hamel_joints::for_each_joint!(pick);
+    found.expect("a joint of the library")
+}
