@@ -45,6 +45,7 @@ pub fn all() -> Vec<Scene> {
         mechanism.elements().is_empty()
             && mechanism.drives().is_empty()
             && mechanism.constraints().is_empty()
+            && scene.control.is_none()
     });
     scenes
 }

@@ -5,7 +5,7 @@ use super::{settings, times};
 use crate::output::{Failure, tell};
 use hamel::integrate::{Method, Options};
 use hamel::registry::JointRegistry;
-use hamel_scene::{Scene, Settings, urdf};
+use hamel_scene::{Control, Scene, Settings, urdf};
 use std::path::{Path, PathBuf};
 
 /// A run, decided in every respect.
@@ -15,6 +15,8 @@ pub struct Plan {
     pub scene: Scene,
     /// Its settings under the options given; `t_end` is the end of the simulation.
     pub settings: Settings,
+    /// What controls the mechanism, if anything does.
+    pub control: Option<Control>,
     /// Sample times, s.
     pub times: Vec<f64>,
     /// Where the trajectory goes as CSV, if anywhere.
@@ -32,6 +34,10 @@ impl Plan {
     /// Mistakes in the scene; options out of range.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
         let scene = load(args, registry)?;
+        let control = match &args.controller {
+            Some(path) => Some(Control::load(path, &scene)?),
+            None => scene.control.clone(),
+        };
         if !args.quiet {
             tell(&scene.notices);
         }
@@ -47,6 +53,7 @@ impl Plan {
         Ok(Self {
             scene,
             settings,
+            control,
             times,
             csv: csv_path(args),
             parquet: args.parquet.clone(),

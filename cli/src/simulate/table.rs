@@ -1,5 +1,6 @@
 //! The summary for people: final state, energy, and what the simulation took.
 
+use super::control::Outcome;
 use super::json::Statistics;
 use super::plan::Plan;
 use super::sample::{BodySample, Sample};
@@ -23,6 +24,8 @@ pub struct Summary<'a> {
     pub first_kinetic_energy: f64,
     /// Samples of the trajectory.
     pub samples: usize,
+    /// What the controller did, where there is one.
+    pub outcome: Option<&'a Outcome>,
     /// What the simulation took.
     pub statistics: Statistics,
     /// How near joints came to singular sets.
@@ -34,6 +37,9 @@ impl fmt::Display for Summary<'_> {
         self.scene(f)?;
         writeln!(f, "{}", bodies(self.last).trim_fmt())?;
         self.energy(f)?;
+        if let Some(outcome) = self.outcome {
+            write!(f, "{outcome}")?;
+        }
         let Statistics {
             steps,
             rejected,

@@ -196,7 +196,11 @@ impl Stepper {
     }
 
     /// Rates at the state: stage 0 of the next step.
-    fn evaluate_state(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
+    pub(super) fn evaluate_state(
+        &mut self,
+        flow: &mut Flow<'_>,
+        time: f64,
+    ) -> Result<(), StepFailure> {
         let rates = &mut self.stages[0];
         flow.evaluate(time, &self.base, &self.offset, &self.y, rates)?;
         check_finite(&flow.mechanism, &self.stages[0].phi, &self.stages[0].y)
