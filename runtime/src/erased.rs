@@ -153,19 +153,15 @@ pub fn erase<J, const N: usize, const K: usize, const S: usize, const C: usize>(
 where
     J: Joint<N, K, S, C>,
 {
-    Arc::new(Erased::<J, N, K, S, C>(joint))
+    Arc::new((joint, Sizes::<N, K, S, C>))
 }
 
-/// The adapter behind [`erase`]; its constants make the sizes part of the type.
+/// The sizes of a joint as a type, beside which the pair `(J, Sizes)` is the adapter behind [`erase`].
+///
+/// A pair and not a struct around J: rustc puts the code of an `impl` for a pair beside the pair's first type. So each joint is compiled
+/// on its own, and an edit of one spec leaves the others as they are.
 #[derive(Debug)]
-pub(crate) struct Erased<J, const N: usize, const K: usize, const S: usize, const C: usize>(J);
-
-impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Erased<J, N, K, S, C> {
-    /// The joint itself.
-    pub(crate) const fn joint(&self) -> &J {
-        &self.0
-    }
-}
+pub(crate) struct Sizes<const N: usize, const K: usize, const S: usize, const C: usize>;
 
 fn vector<const D: usize>(slice: &[f64]) -> SVector<f64, D> {
     SVector::from_column_slice(slice)
@@ -187,7 +183,7 @@ fn store_slices<const R: usize, const C: usize, const K: usize>(
 }
 
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> AnyJoint
-    for Erased<J, N, K, S, C>
+    for (J, Sizes<N, K, S, C>)
 where
     J: Joint<N, K, S, C>,
 {

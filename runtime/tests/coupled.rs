@@ -113,6 +113,47 @@ fn constraint_forces_agree() {
     }
 }
 
+/// `S̄ᵀ` of efforts of every joint.
+fn reduced(case: &Case, efforts: &[f64]) -> Vec<f64> {
+    let bodies = case.mechanism.bodies().iter();
+    let of_joint = |body: &hamel::mechanism::Body| {
+        let ranges = body.ranges();
+        let (rows, columns) = (ranges.freedoms.len(), ranges.speeds.len());
+        let mut basis = vec![0.0; rows * columns];
+        body.joint()
+            .speed_basis(body.configuration(&case.q), &mut basis);
+        let own = efforts[ranges.freedoms.clone()].to_vec();
+        let dot = |column: &[f64]| column.iter().zip(&own).map(|(s, t)| s * t).sum();
+        basis.chunks(rows.max(1)).map(dot).collect::<Vec<f64>>()
+    };
+    bodies.flat_map(of_joint).collect()
+}
+
+/// What the joints carry beside the constraints is what their inputs exert.
+#[test]
+fn joint_wrenches_leave_out_what_constraints_exert() {
+    for case in cases() {
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let mut rates = vec![0.0; case.speeds.len()];
+        dynamics
+            .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
+            .expect("regular");
+        let mut forces = vec![0.0; case.mechanism.constraints().len()];
+        dynamics
+            .coupling_force(&case.q, &case.speeds, &rates, &case.efforts, &mut forces)
+            .expect("sizes fit");
+        let mut carried = vec![0.0; case.efforts.len()];
+        dynamics
+            .joint_efforts(&case.q, &mut carried)
+            .expect("sizes fit");
+        same(
+            &reduced(&case, &carried),
+            &reduced(&case, &case.efforts),
+            "S_bar^T of the joints' efforts",
+        );
+    }
+}
+
 #[test]
 fn constraints_hold_and_do_no_work() {
     let mut finished = 0;

@@ -8,6 +8,8 @@ pub mod fuzz;
 pub mod laws;
 pub mod motion;
 pub mod oracle;
+#[cfg(doctest)]
+mod pages;
 pub mod peers;
 pub mod random;
 pub mod reference_form;

@@ -75,7 +75,7 @@ pub struct Args {
     )]
     pub tol: Option<f64>,
 
-    /// Step of rk4, s; implies rk4
+    /// Step of rk4, s, shorter where samples are closer; implies rk4
     #[arg(
         long,
         value_name = "SECONDS",
@@ -88,7 +88,7 @@ pub struct Args {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub t_end: Option<f64>,
 
-    /// Time between two samples of the trajectory, s
+    /// Time between two samples of the trajectory, s; every method steps onto each of them
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub sample_step: Option<f64>,
 

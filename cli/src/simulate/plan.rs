@@ -2,7 +2,7 @@
 
 use super::args::Args;
 use super::{settings, times};
-use crate::output::{Failure, tell};
+use crate::output::{Failure, refuse_overwriting, tell};
 use hamel::integrate::{Method, Options};
 use hamel::registry::JointRegistry;
 use hamel_scene::{Control, Scene, Settings, urdf};
@@ -50,7 +50,7 @@ impl Plan {
             settings.t_end = t_end;
             times
         };
-        Ok(Self {
+        let plan = Self {
             scene,
             settings,
             control,
@@ -58,7 +58,16 @@ impl Plan {
             csv: csv_path(args),
             parquet: args.parquet.clone(),
             html: args.html.clone(),
-        })
+        };
+        let read = [Some(&args.scene), args.controller.as_ref()];
+        refuse_overwriting(read.into_iter().flatten(), plan.files())?;
+        Ok(plan)
+    }
+
+    /// Whether anything but gravity can change the energy.
+    pub fn does_work(&self) -> bool {
+        let mechanism = &self.scene.mechanism;
+        self.control.is_some() || !mechanism.elements().is_empty() || !mechanism.drives().is_empty()
     }
 
     /// The files of the trajectory.
@@ -70,7 +79,15 @@ impl Plan {
     /// The method of integration and its accuracy, in words.
     pub fn method(&self) -> String {
         match self.settings.method {
-            Method::Rk4 { dt } => format!("rk4 with steps of {dt:?} s"),
+            Method::Rk4 { dt } => {
+                let shorter = self.times.windows(2).any(|pair| pair[1] - pair[0] < dt);
+                let note = if shorter {
+                    ", shorter where samples are closer"
+                } else {
+                    ""
+                };
+                format!("rk4 with steps of {dt:?} s{note}")
+            }
             Method::Controlled { pair, control } => {
                 format!("{} to {:e}", pair.name(), control.tolerance)
             }

@@ -217,13 +217,20 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
     let solution = &run.solution;
     let mechanism = &plan.scene.mechanism;
     let (first, last) = (initial(plan), &solution.state);
-    let kinematics = mechanism.kinematics(&first.configuration, &first.speeds);
-    let kinematics = kinematics.map_err(|error| Failure::Simulation(error.to_string()))?;
+    let kinetic = |state: &State| {
+        let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
+        kinematics.map(|kinematics| kinematics.kinetic_energy())
+    };
+    let states = solution.samples.iter().chain([&first, last]);
+    let most = states
+        .map(kinetic)
+        .try_fold(0.0, |most: f64, energy| energy.map(|e| most.max(e)));
+    let most_kinetic_energy = most.map_err(|error| Failure::Simulation(error.to_string()))?;
     let summary = Summary {
         plan,
         first: &sample(mechanism, &first)?,
         last: &sample(mechanism, last)?,
-        first_kinetic_energy: kinematics.kinetic_energy(),
+        most_kinetic_energy,
         samples: solution.samples.len(),
         outcome: run.outcome.as_ref(),
         statistics: run.statistics,

@@ -173,7 +173,13 @@ fn spring(
                 "at least 0 and finite",
             )?;
             let size = body.ranges().freedoms.len();
-            let diagonal = |i: usize| if i % (size + 1) == 0 { stiffness } else { 0.0 };
+            let diagonal = |i: usize| {
+                if i.is_multiple_of(size + 1) {
+                    stiffness
+                } else {
+                    0.0
+                }
+            };
             Arc::new(JointSpring {
                 name,
                 body: port.body,

@@ -18,7 +18,7 @@ pub struct PointConstraint {
     pub body: usize,
     /// P in the body frame, m.
     pub point: Vector3<f64>,
-    /// d in body axes; its length does not matter but for the size of λ.
+    /// d in body axes; its length does not matter: λ is the force along it, N.
     pub direction: Vector3<f64>,
 }
 

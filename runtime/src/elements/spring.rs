@@ -2,12 +2,12 @@
 
 use super::error::{body, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{CONFIGURATION_TOLERANCE, Mechanism};
 use crate::spatial::fused::product;
 use crate::spatial::vee;
 use alloc::string::String;
 use alloc::vec::Vec;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 
 /// Energy `½ ϕᵀ K ϕ` with ϕ the local coordinates of Q seen from the rest configuration: `Φ(rest, ϕ) = Q`.
 ///
@@ -60,6 +60,15 @@ impl Element for JointSpring {
             coordinates,
             true,
         )?;
+        let residual = body.joint().residual(&self.rest);
+        if residual.is_nan() || residual > CONFIGURATION_TOLERANCE {
+            return Err(ElementError::Value {
+                element: self.name.clone(),
+                quantity: "distance of the rest configuration from the joint's manifold",
+                value: residual,
+                requirement: "at most 1e-9",
+            });
+        }
         values(&self.name, "stiffness", &self.stiffness, size * size, true)?;
         let entry = |i: usize, j: usize| self.stiffness[i * size + j];
         let pairs = (0..size).flat_map(|i| (0..=i).map(move |j| (i, j)));
@@ -74,6 +83,17 @@ impl Element for JointSpring {
                 quantity: "stiffness",
                 value: found,
                 requirement,
+            });
+        }
+        let matrix = DMatrix::from_row_slice(size, size, &self.stiffness);
+        let (most, least) = (matrix.amax(), matrix.symmetric_eigenvalues().min());
+        // Rounding of a stiffness of less than full rank.
+        if least < -1e-12 * most {
+            return Err(ElementError::Value {
+                element: self.name.clone(),
+                quantity: "least eigenvalue of the stiffness",
+                value: least,
+                requirement: "not negative",
             });
         }
         Ok(())
@@ -148,7 +168,18 @@ impl Element for RotationSpring {
     fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
         body(&self.name, mechanism, self.body)?;
         values(&self.name, "stiffness", &[self.stiffness], 1, false)?;
-        values(&self.name, "rest rotation", self.rest.as_slice(), 9, true)
+        values(&self.name, "rest rotation", self.rest.as_slice(), 9, true)?;
+        let away = (self.rest.transpose() * self.rest - Matrix3::identity()).amax();
+        let proper = self.rest.determinant() > 0.0;
+        match proper && away <= CONFIGURATION_TOLERANCE {
+            true => Ok(()),
+            false => Err(ElementError::Value {
+                element: self.name.clone(),
+                quantity: "distance of the rest rotation from a rotation",
+                value: if proper { away } else { 2.0 },
+                requirement: "at most 1e-9",
+            }),
+        }
     }
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {

@@ -204,7 +204,13 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
-        let (error, joint) = self.stepper.error(&mut self.flow, step, tolerance)?;
+        let (error, joint) = match self.stepper.error(&mut self.flow, step, tolerance) {
+            Ok(found) => found,
+            Err(cause) => {
+                pacing.step = step * pacing.controller.reject(None);
+                return Err(cause);
+            }
+        };
         if error.is_nan() || error > 1.0 {
             pacing.step = step * pacing.controller.reject(Some(error));
             return Err(self.inaccurate(joint, error));

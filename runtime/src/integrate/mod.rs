@@ -47,7 +47,8 @@ pub fn no_observer(_step: &Step<'_>) -> ControlFlow<()> {
 
 /// Moves a mechanism from `initial` to [`Options::t_end`].
 ///
-/// Sample times are hit exactly, by shortening steps. The initial state is checked, not projected.
+/// Sample times are hit exactly, by shortening steps. The initial state is checked, not projected; speeds of
+/// joints whose motion is prescribed are those of their laws, whatever it says.
 ///
 /// # Errors
 /// Options out of range; `t_end` before the initial time; an initial state of the wrong size, not finite, or off the

@@ -94,7 +94,7 @@ impl Mechanism {
     /// The mechanism with these drives instead of those it had.
     ///
     /// # Errors
-    /// Every drive that does not fit; two drives of one joint.
+    /// Every drive that does not fit; two drives of one joint; a joint whose speeds constraints already make depend on others.
     pub fn with_drives(mut self, drives: Vec<Drive>) -> Result<Self, Vec<MechanismError>> {
         let failures = drives.iter().enumerate().filter_map(|(index, drive)| {
             let twice = drives[..index].iter().any(|other| other.body == drive.body);
@@ -107,7 +107,16 @@ impl Mechanism {
                     .into(),
                 reason: "is driven already",
             });
-            drive.check(&self).err().or(twice)
+            let dependent = self.bodies.get(drive.body).filter(|body| {
+                let mut dependent = self.equipment.dependent.iter();
+                dependent.any(|speed| body.ranges.speeds.contains(speed))
+            });
+            let dependent = dependent.map(|body| ElementError::Joint {
+                element: drive.name.clone(),
+                joint: body.joint_name().into(),
+                reason: "has speeds that constraints make depend on others: give drives before constraints",
+            });
+            drive.check(&self).err().or(twice).or(dependent)
         });
         refuse(failures)?;
         self.equipment.drives = drives;
@@ -211,6 +220,14 @@ fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), Vec<Mechan
     }
 }
 
+/// A pivot as a share of the largest entry; 0 where all are.
+pub(crate) fn share(pivot: f64, largest: f64) -> f64 {
+    match largest > 0.0 {
+        true => pivot.abs() / largest,
+        false => 0.0,
+    }
+}
+
 /// One column for each row of `matrix`, by elimination with pivoting among the columns that are not `taken`, in the order of the rows; else a row that
 /// depends on others, with the ratio of its pivot to the largest entry.
 fn dependent(
@@ -234,7 +251,7 @@ fn dependent(
         let (row, column) = deepest.unwrap_or(best);
         let pivot = matrix[(row, column)];
         if pivot.is_nan() || pivot.abs() <= INDEPENDENCE * largest {
-            return Err((row, pivot.abs() / largest));
+            return Err((row, share(pivot, largest)));
         }
         rows.retain(|&i| i != row);
         columns.retain(|&j| j != column);

@@ -140,7 +140,7 @@ impl Mechanism {
     /// `Φ(home, ϕ)` of the joint under body `body`.
     ///
     /// # Errors
-    /// NaN; wrong size; no such body.
+    /// NaN; wrong size; no such body; ϕ so large that Φ does not end on the manifold.
     pub fn configuration_from_local(
         &self,
         body: usize,
@@ -154,6 +154,8 @@ impl Mechanism {
             phi.len(),
         )?;
         body.check_finite("phi", body.joint().freedoms(), phi)?;
-        Ok(body.moved(&body.home(), &DVector::from_column_slice(phi)))
+        let moved = body.moved(&body.home(), &DVector::from_column_slice(phi));
+        body.check_configuration(&moved)?;
+        Ok(moved)
     }
 }

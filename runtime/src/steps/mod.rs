@@ -15,7 +15,7 @@ pub use articulate::{Pivot, PivotFailure};
 pub use place::Placement;
 pub use vary::Variation;
 
-use crate::erased::Erased;
+use crate::erased::Sizes;
 use crate::joint::Joint;
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use nalgebra::{Matrix3, SVector, Vector6};
@@ -153,7 +153,7 @@ fn sized_mut<E, const S: usize>(slice: &mut [E]) -> &mut [E; S] {
 }
 
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps
-    for Erased<J, N, K, S, C>
+    for (J, Sizes<N, K, S, C>)
 where
     J: Joint<N, K, S, C>,
 {
@@ -173,7 +173,7 @@ where
         own: &mut Placement<f64>,
     ) {
         let q = SVector::from(*sized::<_, N>(q));
-        *own = place::child(self.joint(), &q, joint_frame, parent);
+        *own = place::child(&self.0, &q, joint_frame, parent);
     }
 
     fn stand(
@@ -185,13 +185,13 @@ where
         columns: &mut [Vector6<f64>],
     ) {
         let q = SVector::from(*sized::<_, N>(q));
-        *own = place::child(self.joint(), &q, joint_frame, parent);
-        *sized_mut(columns) = place::columns(self.joint(), &q, &own.rotation);
+        *own = place::child(&self.0, &q, joint_frame, parent);
+        *sized_mut(columns) = place::columns(&self.0, &q, &own.rotation);
     }
 
     fn speed_map(&self, q: &[f64], columns: &mut [Vector6<f64>]) {
         let q = SVector::from(*sized::<_, N>(q));
-        *sized_mut(columns) = place::columns(self.joint(), &q, &Matrix3::identity());
+        *sized_mut(columns) = place::columns(&self.0, &q, &Matrix3::identity());
     }
 
     fn advance(
@@ -205,7 +205,7 @@ where
         let q = SVector::from(*sized::<_, N>(q));
         let speeds = SVector::from(*sized::<_, S>(speeds));
         let columns: &mut [Vector6<f64>; S] = sized_mut(columns);
-        *own = place::advance(self.joint(), (&q, &speeds), joint_frame, parent, columns);
+        *own = place::advance(&self.0, (&q, &speeds), joint_frame, parent, columns);
         if !accelerations.is_empty() {
             let accelerations = SVector::from(*sized::<_, S>(accelerations));
             own.rate = place::add_columns::<f64, J, N, K, S, C>(&own.rate, columns, &accelerations);
@@ -293,7 +293,7 @@ where
             out.copy_from_slice(efforts);
             return;
         }
-        let basis = self.joint().speed_basis(&SVector::from(*sized::<_, N>(q)));
+        let basis = self.0.speed_basis(&SVector::from(*sized::<_, N>(q)));
         let reduced = basis.tr_mul(&SVector::from(*sized::<_, K>(efforts)));
         out.copy_from_slice(reduced.as_slice());
     }
@@ -313,6 +313,6 @@ where
         };
         let state = (&q, &speeds, &accelerations);
         let (columns, out) = (sized::<_, S>(columns), sized_mut::<_, K>(out));
-        vary::variations::<J, N, K, S, C>(self.joint(), state, motions, columns, out);
+        vary::variations::<J, N, K, S, C>(&self.0, state, motions, columns, out);
     }
 }

@@ -4,7 +4,6 @@ use crate::build::{self, State};
 use crate::control::Control;
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::forces::FrameDescription;
 use crate::notice::Notice;
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
@@ -42,14 +41,12 @@ pub struct Scene {
     pub name: String,
     /// What the scene shows; may be empty.
     pub description: String,
-    /// The mechanism. Its bodies stand in the order of the file, except that parents come first.
+    /// The mechanism, with its named frames. Its bodies stand in the order of the file, except that parents come first.
     pub mechanism: Arc<Mechanism>,
     /// Configurations Q of all joints at time 0, one joint after the other.
     pub configuration: Vec<f64>,
     /// Speeds v̄ of all joints at time 0, one joint after the other.
     pub speeds: Vec<f64>,
-    /// Named frames.
-    pub frames: Vec<FrameDescription>,
     /// What stands for bodies in pictures.
     pub shapes: Vec<ShapeDescription>,
     /// What controls the mechanism, if anything does.

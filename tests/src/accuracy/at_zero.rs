@@ -44,10 +44,10 @@ pub struct Arguments {
 }
 
 impl AtZero {
-    /// The definitions at Q.
-    pub fn new(declared: &Declared, q: &[Node]) -> Self {
+    /// The definitions at Q, from polynomials of that degree in ϕ: 2 for first derivatives of an X that is one of H itself, 3 for second ones.
+    pub fn new(declared: &Declared, q: &[Node], degree: usize) -> Self {
         let base = constants(q);
-        let moving = declared.moved(&base, &declared.variables(&declared.zero(), 0));
+        let moving = declared.moved(&base, &declared.variables(&declared.zero(), 0, degree));
         let pose = declared.pose(&moving);
         let jacobian = declared.jacobian(&pose, 0);
         let x = declared.twist_map(&moving);
@@ -110,6 +110,31 @@ impl AtZero {
         sheet.put("bias_momentum", rate.transpose().times(&arguments.wrench));
         sheet.put("twist_map_rate", rate.clone());
         self.derivatives_of_speeds(basis, &rate, arguments, sheet);
+        self.gradients_of_bias(basis, arguments, sheet);
+    }
+
+    /// c and its dual to first order in ϕ: at Φ(Q, ϕ) the motion is `ϕ̇ = S(Q, ϕ)⁻¹ S̄ v̄`, with `(S⁻¹)_k = −S₀⁻¹ S_k S₀⁻¹`.
+    fn gradients_of_bias(&self, basis: &Grid<Jet>, arguments: &Arguments, sheet: &mut Sheet<Node>) {
+        let k = self.freedoms();
+        let turned = self.slopes.iter().map(|slope| {
+            let turned = self.inverse.times(slope).times(&self.inverse);
+            turned.map(|entry| entry.negative())
+        });
+        let turned: Vec<Grid<Node>> = turned.collect();
+        let inverse = Grid::from_fn(k, k, |i, j| {
+            let slopes = turned.iter().map(|slope| slope.at(i, j).clone());
+            Jet::linear(self.inverse.at(i, j).clone(), slopes)
+        });
+        let speeds = arguments.speeds.map(|entry| Jet::constant(entry.clone()));
+        let rate = inverse.times(&basis.times(&speeds));
+        let map = self.twist_map_child.times(basis);
+        let term = |m: usize| map.map(|entry| entry.partial(m).times(rate.at(m, 0)));
+        let moving = (1..k).fold(term(0), |sum, m| sum.plus(&term(m)));
+        let wrench = arguments.wrench.map(|entry| Jet::constant(entry.clone()));
+        let (bias, dual) = (moving.times(&speeds), moving.transpose().times(&wrench));
+        let columns = |of: &Grid<Jet>| beside((0..k).map(|m| slopes(of, m)));
+        sheet.put("bias_acceleration_gradient", columns(&bias));
+        sheet.put("bias_momentum_gradient", columns(&dual));
     }
 
     /// `∂(X̄ v̄)/∂ϕ`, `∂(X̄ᵀh)/∂ϕ`, and the derivatives of c and of its dual by v̄, in which Ẋ̄ is linear.

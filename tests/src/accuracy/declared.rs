@@ -1,7 +1,7 @@
 //! What a spec declares, as functions of Q and ϕ with their derivatives: H, Φ, X, A, S̄, and J of (23).
 
 use super::environment::Environment;
-use super::jet::ONCE;
+use super::jet::{MOST, ONCE};
 use super::{Grid, Jet, Node};
 use hamel_codegen::algebra;
 use hamel_codegen::expr::{Expr, Number, Symbol};
@@ -91,8 +91,8 @@ impl Declared {
     }
 
     /// ϕ, each coordinate a variable; numbered from `first`.
-    pub fn variables(&self, phi: &[Node], first: usize) -> Vec<Jet> {
-        let variable = |(i, value): (usize, &Node)| Jet::variable(value.clone(), first + i);
+    pub fn variables(&self, phi: &[Node], first: usize, degree: usize) -> Vec<Jet> {
+        let variable = |(i, value): (usize, &Node)| Jet::variable(value.clone(), first + i, degree);
         phi.iter().enumerate().map(variable).collect()
     }
 
@@ -130,7 +130,7 @@ impl Declared {
 
     /// J(Q, 0) where Q itself may vary: the twist of the child for each ϕ̇.
     fn directions(&self, q: &[Jet]) -> Grid<Jet> {
-        let step = self.variables(&self.zero(), ONCE);
+        let step = self.variables(&self.zero(), ONCE, MOST);
         self.jacobian(&self.pose(&self.moved(q, &step)), ONCE)
     }
 

@@ -2,7 +2,7 @@
 
 use super::at_zero::{Arguments, AtZero};
 use super::declared::{Declared, constants};
-use super::jet::ONCE;
+use super::jet::{MOST, ONCE};
 use super::program::{Program, Sheet};
 use super::{Grid, Node, Tracked};
 use hamel_codegen::derived::{Derived, KernelKind};
@@ -38,7 +38,7 @@ fn column(entries: &[Node]) -> Grid<Node> {
 
 /// Φ(Q, ϕ) and ∂Φ/∂ϕ.
 fn moved_with_tangent(declared: &Declared, q: &[Node], phi: &[Node]) -> Sheet<Node> {
-    let moved = declared.moved(&constants(q), &declared.variables(phi, ONCE));
+    let moved = declared.moved(&constants(q), &declared.variables(phi, ONCE, 1));
     let mut sheet = Sheet::default();
     let entry = |i: usize, k: usize| moved[i].slope(ONCE + k);
     sheet.put("tangent", Grid::from_fn(moved.len(), phi.len(), entry));
@@ -75,7 +75,7 @@ impl Definition {
                     speeds: column(speeds),
                     wrench: column(wrench),
                 };
-                AtZero::new(&declared, q).kernels(&arguments)
+                AtZero::new(&declared, q, MOST).kernels(&arguments)
             }),
             moved: Program::new(n + k, |all| {
                 let (q, phi) = all.split_at(n);
@@ -128,7 +128,7 @@ impl Definition {
         let n = self.configuration;
         Program::new(n + self.freedoms(), |all| {
             let (q, v) = all.split_at(n);
-            AtZero::new(&self.declared, q).derivatives(&column(v))
+            AtZero::new(&self.declared, q, 2).derivatives(&column(v))
         })
     }
 

@@ -1,4 +1,4 @@
-//! Polynomials of degree 2 in local coordinates, exactly: values with all first and second derivatives.
+//! Polynomials of degree 3 in local coordinates, exactly: values with all derivatives up to the third.
 
 use super::Node;
 use hamel_codegen::expr::{Function, Number, Rational};
@@ -7,13 +7,17 @@ use std::collections::BTreeMap;
 /// Variables from here on are only differentiated once: products of two of them are dropped.
 pub const ONCE: usize = 64;
 
-/// `value + Σ first_i x_i + Σ_{i ≤ j} second_ij x_i x_j`; what is not listed is zero.
+/// The highest degree that is ever asked for: second derivatives of an X that itself is a derivative of H.
+pub const MOST: usize = 3;
+
+/// `value + Σ terms`, one term a monomial `x_i x_j …` by its sorted indices, up to a degree; what is not listed is zero.
 #[derive(Clone, Debug)]
 pub struct Jet {
     /// The constant term.
     pub value: Node,
-    first: BTreeMap<usize, Node>,
-    second: BTreeMap<(usize, usize), Node>,
+    /// Up to this degree terms are exact, and there are none beyond it.
+    degree: usize,
+    terms: BTreeMap<Vec<usize>, Node>,
 }
 
 impl Jet {
@@ -21,8 +25,8 @@ impl Jet {
     pub fn constant(value: Node) -> Self {
         Self {
             value,
-            first: BTreeMap::new(),
-            second: BTreeMap::new(),
+            degree: MOST,
+            terms: BTreeMap::new(),
         }
     }
 
@@ -31,42 +35,57 @@ impl Jet {
         Self::constant(Node::input(value))
     }
 
-    /// `value + x_i`.
-    pub fn variable(value: Node, i: usize) -> Self {
+    /// `value + x_i`, for products of up to `degree` variables.
+    pub fn variable(value: Node, i: usize, degree: usize) -> Self {
         Self {
-            first: BTreeMap::from([(i, Node::input(1.0))]),
+            degree,
+            terms: BTreeMap::from([(vec![i], Node::input(1.0))]),
+            ..Self::constant(value)
+        }
+    }
+
+    /// `value + Σ slope_i x_i`, and nothing known beyond.
+    pub fn linear(value: Node, slopes: impl IntoIterator<Item = Node>) -> Self {
+        let slopes = slopes.into_iter().enumerate();
+        Self {
+            degree: 1,
+            terms: slopes.map(|(i, slope)| (vec![i], slope)).collect(),
             ..Self::constant(value)
         }
     }
 
     /// The coefficient of x_i.
     pub fn slope(&self, i: usize) -> Node {
-        self.first.get(&i).cloned().unwrap_or(Node::input(0.0))
+        let found = self.terms.get([i].as_slice());
+        found.cloned().unwrap_or(Node::input(0.0))
     }
 
-    /// `∂/∂x_i` to first order in the others.
+    /// `∂/∂x_i`, to one degree less.
     pub fn partial(&self, i: usize) -> Self {
-        let mut first = BTreeMap::new();
-        for (&(a, b), value) in &self.second {
-            match (a == i, b == i) {
-                (true, true) => _ = first.insert(i, value.times(&Node::input(2.0))),
-                (true, false) => _ = first.insert(b, value.clone()),
-                (false, true) => _ = first.insert(a, value.clone()),
-                _ => {}
+        let mut partial = Self {
+            degree: self.degree.saturating_sub(1),
+            ..Self::constant(self.slope(i))
+        };
+        for (monomial, value) in self.terms.iter().filter(|(m, _)| m.len() > 1) {
+            if let Some(place) = monomial.iter().position(|j| *j == i) {
+                let times = monomial.iter().filter(|j| **j == i).count();
+                let mut rest = monomial.clone();
+                rest.remove(place);
+                let value = match times {
+                    1 => value.clone(),
+                    times => value.times(&Node::input(times as f64)),
+                };
+                partial.terms.insert(rest, value);
             }
         }
-        Self {
-            value: self.slope(i),
-            first,
-            second: BTreeMap::new(),
-        }
+        partial
     }
 
     /// Without the variables from `ONCE` on.
     pub fn at_zero_of_once(&self) -> Self {
         let mut kept = self.clone();
-        kept.first.retain(|i, _| *i < ONCE);
-        kept.second.retain(|(_, j), _| *j < ONCE);
+        kept.terms
+            .retain(|monomial, _| monomial.iter().all(|i| *i < ONCE));
         kept
     }
 
@@ -75,7 +94,7 @@ impl Jet {
     }
 
     fn is_constant(&self) -> bool {
-        self.first.is_empty() && self.second.is_empty()
+        self.terms.is_empty()
     }
 
     /// The part without the constant term.
@@ -86,42 +105,65 @@ impl Jet {
         }
     }
 
-    /// `f(self)` from f, f′ and f″ at its value; the derivatives are made only where something varies.
+    /// `f(self)` from the derivatives of f at its value, of which as many are made as there are degrees in what varies.
     fn mapped(&self, f: impl Fn(u8) -> Node) -> Self {
-        let start = Self::constant(f(0));
         if self.is_constant() {
-            return start;
+            return Self::constant(f(0));
         }
         let n = self.varying();
-        let half = Self::constant(f(2).times(&Node::input(0.5)));
-        let slope = Self::constant(f(1)).plus(&half.times(&n));
-        start.plus(&slope.times(&n))
+        let (mut sum, mut power) = (Self::constant(f(0)), n.clone());
+        let mut factorial = 1.0;
+        for order in 1..=self.degree {
+            if power.is_constant() {
+                break;
+            }
+            factorial *= order as f64;
+            let factor = match order {
+                1 => f(1),
+                _ => f(order as u8).over(&Node::input(factorial)),
+            };
+            sum = sum.plus(&power.scaled(&factor));
+            power = power.times(&n);
+        }
+        sum
     }
 
     /// `self` with every coefficient times `factor`.
     fn scaled(&self, factor: &Node) -> Self {
+        let terms = self.terms.iter().filter(|_| !factor.is_nothing());
         Self {
             value: self.value.times(factor),
-            first: scaled(&self.first, factor),
-            second: scaled(&self.second, factor),
+            degree: self.degree,
+            terms: terms
+                .map(|(monomial, value)| (monomial.clone(), value.times(factor)))
+                .collect(),
+        }
+    }
+
+    fn add(&mut self, monomial: Vec<usize>, value: &Node) {
+        let total = match self.terms.get(&monomial) {
+            Some(known) => known.plus(value),
+            None => value.clone(),
+        };
+        self.terms.insert(monomial, total);
+    }
+
+    /// Drops what is beyond the degree to which `other` is known as well.
+    fn limited_by(&mut self, other: &Self) {
+        let degree = self.degree.min(other.degree);
+        if degree < self.degree {
+            self.terms.retain(|monomial, _| monomial.len() <= degree);
+            self.degree = degree;
         }
     }
 }
 
-fn scaled<K: Ord + Copy>(terms: &BTreeMap<K, Node>, factor: &Node) -> BTreeMap<K, Node> {
-    terms
-        .iter()
-        .filter(|_| !factor.is_nothing())
-        .map(|(key, value)| (*key, value.times(factor)))
-        .collect()
-}
-
-fn add<K: Ord + Copy>(sum: &mut BTreeMap<K, Node>, key: K, value: &Node) {
-    let total = match sum.get(&key) {
-        Some(known) => known.plus(value),
-        None => value.clone(),
-    };
-    sum.insert(key, total);
+/// The product of two monomials; nothing where two variables are differentiated once.
+fn joined(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
+    let mut both = [a, b].concat();
+    both.sort_unstable();
+    let once = both.iter().filter(|i| **i >= ONCE).count();
+    (once <= 1).then_some(both)
 }
 
 impl Number for Jet {
@@ -130,16 +172,17 @@ impl Number for Jet {
     }
 
     fn plus(&self, other: &Self) -> Self {
-        if self.is_nothing() {
-            return other.clone();
-        }
         let mut sum = self.clone();
-        sum.value = sum.value.plus(&other.value);
-        for (key, value) in &other.first {
-            add(&mut sum.first, *key, value);
+        sum.limited_by(other);
+        if self.is_nothing() {
+            sum.value = other.value.clone();
+        } else {
+            sum.value = sum.value.plus(&other.value);
         }
-        for (key, value) in &other.second {
-            add(&mut sum.second, *key, value);
+        for (monomial, value) in &other.terms {
+            if monomial.len() <= sum.degree {
+                sum.add(monomial.clone(), value);
+            }
         }
         sum
     }
@@ -152,12 +195,14 @@ impl Number for Jet {
             return self.scaled(&other.value);
         }
         let mut product = self.scaled(&other.value);
-        let varying = other.varying().scaled(&self.value);
-        product = product.plus(&varying);
-        for (&i, a) in &self.first {
-            for (&j, b) in &other.first {
-                if i < ONCE || j < ONCE {
-                    add(&mut product.second, (i.min(j), i.max(j)), &a.times(b));
+        product = product.plus(&other.varying().scaled(&self.value));
+        for (a, left) in &self.terms {
+            for (b, right) in &other.terms {
+                if a.len() + b.len() > product.degree {
+                    continue;
+                }
+                if let Some(monomial) = joined(a, b) {
+                    product.add(monomial, &left.times(right));
                 }
             }
         }
@@ -181,7 +226,7 @@ impl Number for Jet {
     }
 }
 
-/// The angle of (x₀, y₀), and from there that of (x₀x + y₀y, x₀y − y₀x): small, so that its tangent is itself to second order.
+/// The angle of (x₀, y₀), and from there that of (x₀x + y₀y, x₀y − y₀x): small, `t − t³/3` of its tangent to third order.
 fn angle(y: &Jet, x: &Jet) -> Jet {
     let start = Jet::constant(
         y.value
@@ -195,10 +240,13 @@ fn angle(y: &Jet, x: &Jet) -> Jet {
         .scaled(&x.value)
         .plus(&x.varying().scaled(&y.value.negative()));
     let along = y.scaled(&y.value).plus(&x.scaled(&x.value));
-    start.plus(&across.over(&along))
+    let tangent = across.over(&along);
+    let cube = tangent.times(&tangent).times(&tangent);
+    let third = Node::input(1.0).over(&Node::input(-3.0));
+    start.plus(&tangent).plus(&cube.scaled(&third))
 }
 
-/// The value, first or second derivative of a function of one argument.
+/// The value or a derivative, up to the third, of a function of one argument.
 fn derivative(function: Function, order: u8, x: &Node) -> Node {
     let number = |value: i64| Node::input(value as f64);
     let at = |function: Function| x.function(function, std::slice::from_ref(x));
@@ -212,15 +260,17 @@ fn derivative(function: Function, order: u8, x: &Node) -> Node {
         (Function::Sqrt, 1) => at(Function::Recip)
             .times(&at(Function::Sqrt))
             .times(&Node::input(0.5)),
-        (Function::Sqrt, _) => {
-            let recip = at(Function::Recip);
-            recip
-                .times(&recip)
-                .times(&at(Function::Sqrt))
-                .times(&Node::input(-0.25))
-        }
+        (Function::Sqrt, 2) => at(Function::Recip)
+            .power(2)
+            .times(&at(Function::Sqrt))
+            .times(&Node::input(-0.25)),
+        (Function::Sqrt, _) => at(Function::Recip)
+            .power(3)
+            .times(&at(Function::Sqrt))
+            .times(&Node::input(0.375)),
         (Function::Recip, 1) => at(Function::Recip).power(2).negative(),
-        (Function::Recip, _) => at(Function::Recip).power(3).times(&number(2)),
+        (Function::Recip, 2) => at(Function::Recip).power(3).times(&number(2)),
+        (Function::Recip, _) => at(Function::Recip).power(4).times(&number(-6)),
         (Function::Stumpff(k), _) => {
             let ahead = number(k.into()).times(&once(Function::Stumpff(k + 2)));
             let behind = once(Function::Stumpff(k + 1)).negative();
@@ -234,7 +284,7 @@ fn derivative(function: Function, order: u8, x: &Node) -> Node {
 
 #[cfg(test)]
 mod tests {
-    use super::Jet;
+    use super::{Jet, MOST};
     use crate::accuracy::environment::Environment;
     use crate::accuracy::{Node, Wide};
     use hamel_codegen::expr::{Expr, Role, Symbol};
@@ -261,14 +311,14 @@ mod tests {
         node.known().expect("arguments are known").value
     }
 
-    /// First and second derivatives against those of the symbolic engine: 256 bits, less 56 for sums of a few terms of order 100.
+    /// Derivatives up to the third against those of the symbolic engine: 256 bits, less 56 for sums of a few terms of order 100.
     #[test]
     fn derivatives_are_those_of_the_function() {
         let symbols = [0, 1].map(|i| Symbol::new(Role::Local, i, ["x", "y"][i]));
         let [x, y] = symbols.each_ref().map(Expr::symbol);
         let values = [0.75, 1.25];
         let variables: Vec<Jet> = (0..2)
-            .map(|i| Jet::variable(Node::input(values[i]), i))
+            .map(|i| Jet::variable(Node::input(values[i]), i, MOST))
             .collect();
         let constants: Vec<Jet> = values.iter().map(|v| Jet::input(*v)).collect();
         let moving = Environment::default().with(&symbols, &variables);
@@ -284,6 +334,12 @@ mod tests {
                     let second = known(&still.evaluate(&first.derivative(b)).value);
                     let error = known(&jet.partial(i).slope(j)) - second;
                     assert!(error.to_f64().abs() < smallest, "d{i} d{j} {f}");
+                    for (k, c) in symbols.iter().enumerate() {
+                        let third = first.derivative(b).derivative(c);
+                        let error = known(&jet.partial(i).partial(j).slope(k))
+                            - known(&still.evaluate(&third).value);
+                        assert!(error.to_f64().abs() < smallest, "d{i} d{j} d{k} {f}");
+                    }
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The table of worst errors, kept as a file that pages show.
 
 use super::Worst;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Joint, kernel and type of numbers.
@@ -26,21 +26,30 @@ impl Table {
         }
     }
 
-    /// Takes the errors of a joint in place of those it held.
-    pub fn insert(&mut self, joint: &str, number: &str, worst: &Worst, points: usize) {
-        self.rows.retain(|(j, _, n), _| j != joint || n != number);
+    /// Takes the errors of a joint in place of those it held, but for the `known` ones.
+    pub fn insert(
+        &mut self,
+        joint: &str,
+        number: &str,
+        worst: &Worst,
+        points: usize,
+        known: &BTreeSet<String>,
+    ) {
+        self.rows
+            .retain(|(j, kernel, n), _| j != joint || n != number || known.contains(kernel));
         for (kernel, (error, _)) in &worst.errors {
             let key = (joint.to_owned(), (*kernel).to_owned(), number.to_owned());
             self.rows.insert(key, (*error, points));
         }
     }
 
-    /// Whether errors of the joint at so many points are there.
-    pub fn holds(&self, joint: &str, number: &str, points: usize) -> bool {
+    /// The kernels of the joint whose errors at so many points are there.
+    pub fn known(&self, joint: &str, number: &str, points: usize) -> BTreeSet<String> {
         let rows = self.rows.iter();
-        let found =
-            |((j, _, n), (_, count)): (&Key, &Entry)| j == joint && n == number && *count == points;
-        rows.into_iter().any(found)
+        let found = rows.filter(|((j, _, n), (_, count))| {
+            (j.as_str(), n.as_str(), *count) == (joint, number, points)
+        });
+        found.map(|((_, kernel, _), _)| kernel.clone()).collect()
     }
 
     /// Writes the file.

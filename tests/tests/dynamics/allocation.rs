@@ -1,5 +1,6 @@
 //! After construction nothing allocates: every method of the recursive form and of its mass matrix, and steps of the integrators.
 
+use crate::derivatives::Equipment;
 use allocation_counter::measure;
 use hamel::dynamics::{
     Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, MassMatrix,
@@ -9,7 +10,9 @@ use hamel::integrate::{
     Control, Form, LinearStep, Method, Options, Pair, State, Statistics, integrate, no_inputs,
     no_observer,
 };
-use hamel::nalgebra::Vector6;
+use hamel::mechanism::NamedFrame;
+use hamel::nalgebra::{Vector3, Vector6};
+use hamel::spatial::Pose;
 use hamel_tests::random::{Case, cases, library};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -29,6 +32,69 @@ impl Counts {
         let some: Vec<_> = self.0.iter().filter(|(_, count)| **count > 0).collect();
         assert!(some.is_empty(), "allocations: {some:?}");
     }
+}
+
+/// A frame on the last body of each.
+fn framed() -> impl Iterator<Item = Case> {
+    trees().into_iter().map(|case| {
+        let tool = NamedFrame {
+            name: "tool".to_owned(),
+            body: Some(case.mechanism.bodies().len() - 1),
+            at: Pose::from_translation(Vector3::new(0.1, 0.2, 0.3)),
+        };
+        let mechanism = (*case.mechanism).clone().with_frames(vec![tool]);
+        let mechanism = Arc::new(mechanism.expect("it fits"));
+        Case { mechanism, ..case }
+    })
+}
+
+#[test]
+fn frames_do_not_allocate() {
+    let mut counts = Counts::default();
+    for case in framed() {
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let layout = *case.mechanism.layout();
+        let mut locals = vec![0.0; 6 * layout.freedoms];
+        for axes in [Frame::Body, Frame::World, Frame::WorldAligned] {
+            counts.of("operational_mobility", || {
+                let found = dynamics.operational_mobility(&case.q, 0, axes);
+                found.expect("every body has mass");
+            });
+            let readings = dynamics.readings(&case.q, &case.speeds).expect("sizes fit");
+            counts.of("frame", || {
+                let frame = readings.frame(0).expect("a frame");
+                std::hint::black_box((frame.pose(), frame.twist(axes)));
+                std::hint::black_box(frame.jacobian_rate_product(axes));
+                frame.local_jacobian(axes, &mut locals).expect("sizes fit");
+                frame.twist_gradient(axes, &mut locals).expect("sizes fit");
+            });
+        }
+    }
+    counts.assert_none(2);
+}
+
+/// Derivatives of mechanisms with elements.
+#[test]
+fn elements_do_not_allocate() {
+    let mut counts = Counts::default();
+    for case in trees() {
+        let equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
+        let mechanism = equipment.equip(&case.mechanism);
+        let (q, v, tau) = (&case.q[..], &case.speeds[..], &case.efforts[..]);
+        let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+        let mut inverse = InverseDerivatives::new(&mechanism);
+        let mut forward = ForwardDerivatives::new(&mechanism);
+        let mut hamiltonian = HamiltonianDerivatives::new(&mechanism);
+        counts.of("derivatives", || {
+            let found = dynamics.inverse_dynamics_derivatives(q, v, &case.rates, &mut inverse);
+            found.expect("covered");
+            let found = dynamics.forward_dynamics_derivatives(q, v, tau, &mut forward);
+            found.expect("every body has mass");
+            let found = dynamics.hamiltonian_derivatives(q, v, tau, &mut hamiltonian);
+            found.expect("every body has mass");
+        });
+    }
+    counts.assert_none(1);
 }
 
 /// Trees of all types of the library, up to 12 joints each.

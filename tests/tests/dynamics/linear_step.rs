@@ -1,5 +1,6 @@
 //! Linearised steps of the integrators against central differences of the steps themselves, through Φ and its inverse.
 
+use crate::derivatives::Equipment;
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel::integrate::{
     Control, Form, LinearStep, Method, Options, Pair, State, StepFailure, integrate, no_observer,
@@ -185,6 +186,21 @@ fn random_trees() {
     for form in FORMS {
         let mut worst = Largest::new("A and B of a step of rk4");
         for case in cases(&library(), 6, 48) {
+            worst.meet(stepping(&case, form, FIXED).error(&case), place(&case));
+        }
+        worst.assert_within(BOUND);
+    }
+}
+
+/// Springs, dampers, wrenches and rotors of all kinds at every joint.
+#[test]
+fn equipped_trees() {
+    for form in FORMS {
+        let mut worst = Largest::new("A and B with elements and rotors");
+        for case in cases(&library(), 4, 24) {
+            let equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
+            let mechanism = equipment.equip(&case.mechanism);
+            let case = Case { mechanism, ..case };
             worst.meet(stepping(&case, form, FIXED).error(&case), place(&case));
         }
         worst.assert_within(BOUND);

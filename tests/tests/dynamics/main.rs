@@ -5,6 +5,7 @@ mod chains;
 mod derivatives;
 mod errata;
 mod euler_lagrange;
+mod frames;
 mod linear_step;
 mod random_trees;
 mod reference_form;

@@ -146,12 +146,10 @@ fn round_trip(import: &Import) -> Result<(), Box<dyn Error>> {
     let text = import.to_toml();
     let scene = Scene::parse(&text, "imported.toml", &registry)?;
     assert_eq!((&scene.name, scene.settings), (&robot.name, robot.settings));
-    assert_eq!(scene.frames.len(), robot.frames.len());
-    for (frame, wanted) in scene.frames.iter().zip(&robot.frames) {
-        assert_eq!(
-            (&frame.name.value, frame.body),
-            (&wanted.name.value, wanted.body)
-        );
+    let (frames, wanted) = (scene.mechanism.frames(), robot.mechanism.frames());
+    assert_eq!(frames.len(), wanted.len());
+    for (frame, wanted) in frames.iter().zip(wanted) {
+        assert_eq!((&frame.name, frame.body), (&wanted.name, wanted.body));
         assert!((frame.at.matrix() - wanted.at.matrix()).amax() <= AGREEMENT);
     }
     let bodies = scene

@@ -55,8 +55,8 @@ impl<'a> Header<'a> {
     /// What there is to tell of the run of `plan`.
     pub fn new(plan: &'a Plan, frames: usize, charts: Vec<Chart>) -> Self {
         let (scene, settings) = (&plan.scene, &plan.settings);
-        let marks = scene.frames.iter().map(|frame| Mark {
-            name: &frame.name.value,
+        let marks = scene.mechanism.frames().iter().map(|frame| Mark {
+            name: &frame.name,
             body: frame.body,
             pose: seven(&frame.at),
         });

@@ -36,13 +36,10 @@ impl Recursive {
         Ok(MotionList(pairs.collect()))
     }
 
-    /// What elements exert at the placements and twists of the nodes: wrenches into `external`, `S̄ᵀ` of their efforts and of `efforts` into
-    /// `forces`.
+    /// What elements exert at the placements and twists of the nodes: wrenches into `external`, their efforts into `efforts`, `S̄ᵀ` of these and
+    /// of the inputs' into `forces`.
     pub(super) fn act(&mut self, q: &[f64], speeds: &[f64], efforts: Option<&[f64]>) {
-        match efforts {
-            Some(efforts) => self.efforts.copy_from_slice(efforts),
-            None => self.efforts.fill(0.0),
-        }
+        self.efforts.fill(0.0);
         self.external.fill(Vector6::zeros());
         let mechanism = Arc::clone(&self.mechanism);
         let view = View {
@@ -58,9 +55,13 @@ impl Recursive {
         for element in mechanism.elements() {
             element.act(&view, &mut action);
         }
-        let efforts = core::mem::take(&mut self.efforts);
-        self.reduce_efforts(q, &efforts);
-        self.efforts = efforts;
+        let mut all = core::mem::take(&mut self.combined);
+        all.copy_from_slice(&self.efforts);
+        for (all, input) in all.iter_mut().zip(efforts.unwrap_or_default()) {
+            *all += input;
+        }
+        self.reduce_efforts(q, &all);
+        self.combined = all;
         self.add_rotor_forces(q, speeds);
     }
 

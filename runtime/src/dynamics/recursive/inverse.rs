@@ -11,7 +11,7 @@ pub(super) const MOST_FREEDOMS: usize = 6;
 
 impl Recursive {
     /// `S̄ᵀτ` into `efforts` (one entry a speed): what inputs must exert, beside the elements, for the mechanism to accelerate with
-    /// `accelerations` = v̄̇ at `q` and v̄.
+    /// `accelerations` = v̄̇ at `q` and v̄. Constraints that couple joints exert nothing here: for their share see [`Recursive::coupling_force`].
     ///
     /// # Errors
     /// When a vector has the wrong size.
@@ -34,7 +34,7 @@ impl Recursive {
         Ok(())
     }
 
-    /// `C̄ v̄ + S̄ᵀN̂` into `efforts` (one entry a speed): inverse dynamics at v̄̇ = 0.
+    /// `C̄ v̄ + S̄ᵀN̂` of the tree into `efforts` (one entry a speed): inverse dynamics at v̄̇ = 0.
     ///
     /// # Errors
     /// When a vector has the wrong size.
@@ -64,14 +64,16 @@ impl Recursive {
     }
 
     /// The wrench that the joint of `body` exerts on its child, in the joint's child frame, as of the last
-    /// [`Recursive::inverse_dynamics`]; `None` when there is no such body.
+    /// [`Recursive::inverse_dynamics`], or of [`Recursive::coupling_force`] where constraints couple joints; `None` when there is no such
+    /// body.
     pub fn joint_wrench(&self, body: usize) -> Option<Vector6<f64>> {
         let node = self.nodes.get(body)?;
         Some(turn_back(&node.motion.placement.rotation, &node.wrench))
     }
 
     /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry a freedom), as of the last
-    /// [`Recursive::inverse_dynamics`] at `q`.
+    /// [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints: also what it takes to move a
+    /// joint whose motion is prescribed.
     ///
     /// # Errors
     /// When a vector has the wrong size.
@@ -98,7 +100,8 @@ impl Recursive {
     }
 
     /// `λ = (AᵀA)⁻¹Aᵀ(X^cᵀF − τ)` into `forces` (one entry a constraint), for applied efforts τ (one a freedom), as of
-    /// the last [`Recursive::inverse_dynamics`] at `q`.
+    /// the last [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints. Entries of τ of joints
+    /// whose motion is prescribed are not read.
     ///
     /// # Errors
     /// When a vector has the wrong size; when A has lost rank.
@@ -116,7 +119,12 @@ impl Recursive {
             let mut carried = [0.0; MOST_FREEDOMS];
             let carried = &mut carried[..ranges.freedoms.len()];
             self.joint_effort(index, q, carried);
-            for (effort, applied) in carried.iter_mut().zip(&efforts[ranges.freedoms.clone()]) {
+            let applied = match self.links[index].driven {
+                // They begin with its accelerations, and no effort of its own has a part along A.
+                true => &[],
+                false => &efforts[ranges.freedoms.clone()],
+            };
+            for (effort, applied) in carried.iter_mut().zip(applied) {
                 *effort -= applied;
             }
             if !self.mechanism.elements().is_empty() {

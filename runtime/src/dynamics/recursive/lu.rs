@@ -1,5 +1,6 @@
 //! LU factors of a small square matrix in place, with row pivoting: what nalgebra does, without its allocations.
 
+use crate::mechanism::share;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -47,7 +48,7 @@ impl Lu {
             }
             let pivot = at(&self.entries, best);
             if pivot.is_nan() || pivot <= limit * largest {
-                return Err((self.rows[best], pivot / largest));
+                return Err((self.rows[best], share(pivot, largest)));
             }
             for j in 0..n {
                 self.entries.swap(k * n + j, best * n + j);

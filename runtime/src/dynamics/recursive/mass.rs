@@ -7,7 +7,6 @@ use crate::dynamics::DynamicsError;
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use crate::spatial::fused::{add_cross, dot};
 use crate::spatial::{shift_wrench, split};
-use crate::steps::PivotFailure;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -85,7 +84,7 @@ impl MassMatrix {
             let pivot = self.factors[k * size + k];
             let limit = ROUNDINGS * size as f64 * f64::EPSILON * self.rows[k * size + k];
             if pivot.is_nan() || pivot <= limit {
-                return Err(singular(mechanism, k, pivot, limit));
+                return Err(mechanism.singular_speed(k, pivot, limit));
             }
             let (above, row) = self.factors.split_at_mut(k * size);
             let mut ancestor = self.parents[k];
@@ -136,22 +135,6 @@ fn subtract(target: &mut [f64], row: &[f64], weight: f64, parents: &[Option<usiz
     }
 }
 
-fn singular(mechanism: &Mechanism, speed: usize, pivot: f64, limit: f64) -> DynamicsError {
-    let owner = |range: &Range<usize>| range.contains(&speed);
-    let body = mechanism
-        .bodies()
-        .iter()
-        .position(|body| owner(&body.ranges().speeds));
-    let body = body.unwrap_or(0);
-    let start = mechanism.bodies()[body].ranges().speeds.start;
-    let failure = PivotFailure {
-        speed: speed - start,
-        pivot,
-        limit,
-    };
-    mechanism.singular(body, &failure)
-}
-
 /// The next speed towards the root, for each speed.
 fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
     let mut parents = vec![None; mechanism.layout().speeds];
@@ -178,7 +161,7 @@ fn nearest_speed(mechanism: &Mechanism, mut body: Option<usize>) -> Option<usize
 }
 
 impl Recursive {
-    /// M̄ at `q` into `mass`.
+    /// M̄ of the tree at `q` into `mass`; constraints that couple joints do not reduce it.
     ///
     /// # Errors
     /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
@@ -215,7 +198,8 @@ impl Recursive {
         }
     }
 
-    /// M̄⁻¹ at `q` into `inverse`, column by column with the factors of the articulated inertias.
+    /// M̄⁻¹ of the tree at `q` into `inverse`, column by column with the factors of the articulated inertias. Joints whose motion is prescribed
+    /// do not give way: their rows are zero.
     ///
     /// # Errors
     /// A singular mass matrix; a wrong size.

@@ -68,8 +68,10 @@ pub struct Recursive {
     loads: Vec<f64>,
     /// `S̄ᵀτ`, one entry a speed.
     forces: Vec<f64>,
-    /// τ, one entry a freedom.
+    /// Efforts of the elements alone, one entry a freedom.
     efforts: Vec<f64>,
+    /// The same with τ.
+    combined: Vec<f64>,
     /// τ of the inputs, one entry a freedom.
     inputs: Vec<f64>,
     /// Wrenches of elements on the bodies, at the child frames' origins, in world axes.
@@ -103,6 +105,7 @@ impl Recursive {
             loads: vec![0.0; speeds],
             forces: vec![0.0; speeds],
             efforts: vec![0.0; freedoms],
+            combined: vec![0.0; freedoms],
             inputs: vec![0.0; freedoms],
             external: vec![Vector6::zeros(); count],
             driven: vec![0.0; speeds],
@@ -297,8 +300,8 @@ impl Dynamics for Recursive {
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
         let mut speeds = core::mem::take(&mut self.forces);
         let solved = self.speeds(q, momenta, &mut speeds);
-        let energy = self.energy_here(q, &speeds);
+        let energy = solved.map(|()| self.energy_here(q, &speeds));
         self.forces = speeds;
-        solved.map(|()| energy)
+        energy
     }
 }

@@ -122,8 +122,7 @@ fn inverse(matrix: &Matrix6<f64>) -> Result<Matrix6<f64>, (usize, f64)> {
     let mut left = scaled;
     for k in 0..6 {
         let pivot = left[(k, k)];
-        // A comparison that NaN fails as well.
-        if !(pivot > LEAST_PIVOT) {
+        if pivot.is_nan() || pivot <= LEAST_PIVOT {
             return Err((k, pivot));
         }
         let column = left.column(k).into_owned();

@@ -4,7 +4,7 @@ use super::Recursive;
 use super::link::{Link, Node};
 use crate::dynamics::DynamicsError;
 use crate::spatial::{ArticulatedInertia, add_weighted, shift_twist, shift_wrench};
-use crate::steps::PivotFailure;
+use crate::steps::{Motion, PivotFailure};
 use nalgebra::Vector6;
 
 /// The node of a parent, or the world, beside the node of its child.
@@ -37,9 +37,6 @@ impl Recursive {
             let q = &q[link.configuration.clone()];
             let columns = &mut self.columns[link.speeds.clone()];
             link.joint.stand(q, &link.frame, from, to, columns);
-            if let Some(number) = link.slender {
-                self.slender[number].stand(link, q);
-            }
             // The body before: to load what a joint has just stored is to wait for it.
             if let Some(last) = index.checked_sub(1) {
                 self.links[last].turn(&mut self.nodes[last]);
@@ -47,6 +44,19 @@ impl Recursive {
         }
         if let (Some(link), Some(node)) = (self.links.last(), self.nodes.last_mut()) {
             link.turn(node);
+        }
+        if !self.slender.is_empty() {
+            self.stand_slender(q);
+        }
+    }
+
+    /// [`Recursive::weigh`] of the slender bodies. Apart from the others, here and in [`Recursive::advance`]: what they need would
+    /// slow down the sweep over all.
+    fn stand_slender(&mut self, q: &[f64]) {
+        for link in &self.links {
+            if let Some(number) = link.slender {
+                self.slender[number].stand(link, &q[link.configuration.clone()]);
+            }
         }
     }
 
@@ -65,11 +75,31 @@ impl Recursive {
             let motion = &mut own.motion;
             link.joint
                 .advance(state, &link.frame, &parent.motion, motion, columns);
-            own.rigid = link.inertia.rotated(&motion.placement.rotation);
-            own.wrench = own.rigid.wrench(&motion.twist, &motion.rate);
-            if let Some(number) = link.slender {
-                self.slender[number].advance(link, state, &parent.motion, own);
+            // The body before, as in `weigh`.
+            if let Some(last) = index.checked_sub(1) {
+                self.links[last].load(&mut self.nodes[last]);
             }
+        }
+        if let (Some(link), Some(node)) = (self.links.last(), self.nodes.last_mut()) {
+            link.load(node);
+        }
+        if !self.slender.is_empty() {
+            self.advance_slender(q, speeds, accelerations);
+        }
+    }
+
+    /// [`Recursive::advance`] of the slender bodies, once all bodies move.
+    fn advance_slender(&mut self, q: &[f64], speeds: &[f64], accelerations: Option<&[f64]>) {
+        for (index, link) in self.links.iter().enumerate() {
+            let Some(number) = link.slender else { continue };
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let accelerations = accelerations.map_or(&[][..], |all| &all[link.speeds.clone()]);
+            let state = (
+                &q[link.configuration.clone()],
+                &speeds[link.speeds.clone()],
+                accelerations,
+            );
+            self.slender[number].advance(link, state, &parent.motion, own);
         }
     }
 
@@ -201,6 +231,28 @@ impl Recursive {
         }
     }
 
+    /// What [`Recursive::advance`] gives at the `rates` that [`Recursive::resolve`] has just found: V, V̇ and the wrench that each body takes.
+    ///
+    /// Placements, X̄ and inertias stand, and V̇ is what it was at v̄̇ = 0 with what the rates add.
+    pub(super) fn set_accelerations(&mut self, q: &[f64], speeds: &[f64], rates: &[f64]) {
+        if !self.plain || !self.slender.is_empty() {
+            return self.advance(q, speeds, Some(rates));
+        }
+        for (index, link) in self.links.iter().enumerate() {
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let Motion {
+                placement,
+                twist,
+                rate,
+            } = &mut own.motion;
+            *rate += *twist;
+            let carried = shift_twist(&parent.motion.twist, &placement.offset);
+            let speeds = &speeds[link.speeds.clone()];
+            *twist = combine(carried, &self.columns[link.speeds.clone()], speeds);
+            own.wrench = own.rigid.wrench(twist, rate);
+        }
+    }
+
     /// Inward: the wrench of each node and of all that hangs on it; `X̄ᵀ` of it into `out`, one entry a speed.
     pub(super) fn gather(&mut self, out: &mut [f64]) {
         for index in (0..self.links.len()).rev() {
@@ -240,6 +292,19 @@ pub(super) fn combine(
 }
 
 impl crate::mechanism::Mechanism {
+    /// The joint behind a speed whose pivot failed.
+    pub(super) fn singular_speed(&self, speed: usize, pivot: f64, limit: f64) -> DynamicsError {
+        let mut bodies = self.bodies().iter();
+        let body = bodies.position(|body| body.ranges().speeds.contains(&speed));
+        let body = body.unwrap_or(0);
+        let failure = PivotFailure {
+            speed: speed - self.bodies()[body].ranges().speeds.start,
+            pivot,
+            limit,
+        };
+        self.singular(body, &failure)
+    }
+
     /// The joint and speed behind a pivot that failed.
     pub(super) fn singular(&self, body: usize, failure: &PivotFailure) -> DynamicsError {
         let body = &self.bodies()[body];

@@ -8,10 +8,10 @@ use hamel::elements::{
     BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, PointConstraint,
     RotationSpring,
 };
-use hamel::mechanism::{Mechanism, MechanismError};
+use hamel::mechanism::{Mechanism, MechanismError, NamedFrame};
 use std::sync::Arc;
 
-/// The mechanism with its elements, rotors and drives; `acting` goes with the bodies of `description`.
+/// The mechanism with its elements, rotors, drives and named frames; `acting` goes with the bodies of `description`.
 pub(super) fn equip(
     mut mechanism: Mechanism,
     description: &SceneDescription,
@@ -25,7 +25,15 @@ pub(super) fn equip(
             mechanism = with_rotor.map_err(|error| vec![error])?;
         }
     }
-    mechanism.with_elements(elements)?.with_drives(drives)
+    let frames = description.frames.iter().map(|frame| NamedFrame {
+        name: frame.name.value.clone(),
+        body: frame.body,
+        at: frame.at,
+    });
+    mechanism
+        .with_elements(elements)?
+        .with_drives(drives)?
+        .with_frames(frames.collect())
 }
 
 /// The mechanism with the constraints that couple its joints, independent at `q`.

@@ -66,7 +66,6 @@ pub(crate) fn scene(
         mechanism,
         configuration,
         speeds,
-        frames: description.frames.clone(),
         shapes: description.shapes.clone(),
         control,
         settings: description.settings,

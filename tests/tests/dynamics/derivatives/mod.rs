@@ -1,15 +1,12 @@
 //! Derivatives of the dynamics by recursion against dual numbers, on random trees of all joints of the library and on real robots.
 
 mod dual;
+mod refusals;
 
-use dual::{DualForm, Equipment};
-use hamel::dynamics::{
-    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
-    Recursive,
-};
-use hamel::elements::{Action, Drive, Element, ElementError, Law, PointConstraint, View};
-use hamel::mechanism::Mechanism;
-use hamel::nalgebra::{DMatrix, DVector, Vector3};
+pub use dual::{DualForm, Equipment};
+
+use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Recursive};
+use hamel::nalgebra::{DMatrix, DVector};
 use hamel::scalar::Dual;
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::peers::{Reference, convert, numbers};
@@ -367,72 +364,4 @@ fn results_are_used_again() {
         let again = entries(&[&case.speeds, &still]);
         assert!(once == again, "case {}", case.seed);
     }
-}
-
-/// An element that does not say how what it exerts changes.
-#[derive(Debug)]
-struct Silent;
-
-impl Element for Silent {
-    fn name(&self) -> &str {
-        "silent"
-    }
-
-    fn check(&self, _: &Mechanism) -> Result<(), ElementError> {
-        Ok(())
-    }
-
-    fn act(&self, _: &View<'_>, _: &mut Action<'_>) {}
-
-    fn energy(&self, _: &View<'_>) -> f64 {
-        0.0
-    }
-}
-
-/// The message of the refusal; the mechanism itself moves.
-fn refusal(case: &Case, mechanism: Mechanism) -> String {
-    let mechanism = Arc::new(mechanism);
-    let mut dynamics = Recursive::new(Arc::clone(&mechanism));
-    let mut rates = case.rates.clone();
-    let moved = dynamics.accelerations(&case.q, &case.speeds, &case.efforts, &mut rates);
-    moved.expect("it moves");
-    let mut out = ForwardDerivatives::new(&mechanism);
-    let refused =
-        dynamics.forward_dynamics_derivatives(&case.q, &case.speeds, &case.efforts, &mut out);
-    let error = refused.expect_err("refused");
-    assert!(matches!(error, DynamicsError::NotDifferentiable { .. }));
-    error.to_string()
-}
-
-#[test]
-fn what_is_not_covered_is_refused_by_name() {
-    let case = cases(&library(), 2, 2).last().expect("two bodies");
-    let mechanism = || (*case.mechanism).clone();
-    let silent = mechanism().with_elements(vec![Arc::new(Silent)]);
-    let drive = Drive {
-        name: "shaker".to_owned(),
-        body: 0,
-        laws: vec![Law::default(); case.mechanism.bodies()[0].ranges().speeds.len()],
-    };
-    let constraint = PointConstraint {
-        name: "wheel".to_owned(),
-        body: 1,
-        point: Vector3::new(0.1, 0.2, 0.3),
-        direction: Vector3::new(0.2, 0.9, 0.4),
-    };
-    let driven = mechanism().with_drives(vec![drive]);
-    let coupled = mechanism().with_constraints(vec![constraint], &case.q);
-    for (changed, name) in [(silent, "silent"), (driven, "shaker"), (coupled, "wheel")] {
-        let message = refusal(&case, changed.expect("it fits"));
-        assert!(message.contains(&format!("`{name}`")), "{message}");
-    }
-    let other = cases(&library(), 3, 3).last().expect("three bodies");
-    let mut out = InverseDerivatives::new(&other.mechanism);
-    let refused = Recursive::new(Arc::clone(&case.mechanism)).inverse_dynamics_derivatives(
-        &case.q,
-        &case.speeds,
-        &case.rates,
-        &mut out,
-    );
-    assert_eq!(refused, Err(DynamicsError::ForeignResults));
 }

@@ -4,7 +4,7 @@ use super::{Coupling, Recursive, Row};
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{WHOLE, check_size};
 use crate::spatial::fused::{add_cross, apply, cross, dot};
-use crate::spatial::split;
+use crate::spatial::{shift_wrench, split};
 use nalgebra::Vector3;
 
 impl Recursive {
@@ -93,7 +93,8 @@ impl Recursive {
 
     /// λ of the constraints that couple joints into `forces`, one entry a constraint: they act on the tree with efforts `S̄ᵀ`-wise `Aλ`.
     ///
-    /// `rates` are the accelerations that [`Dynamics::accelerations`](crate::dynamics::Dynamics::accelerations) found for `efforts`.
+    /// `rates` are the accelerations that [`Dynamics::accelerations`](crate::dynamics::Dynamics::accelerations) found for `efforts`. The
+    /// joints' wrenches can be read afterwards, as after [`Recursive::inverse_dynamics`]: what the constraints exert is not the joints' to carry.
     ///
     /// # Errors
     /// A wrong size; constraints that no longer determine their speeds.
@@ -144,7 +145,21 @@ impl Recursive {
             *force = needed[speed];
         }
         coupling.lu.solve_transposed(forces);
+        self.take_over(&coupling.rows, forces);
         (coupling.whole, coupling.other) = (needed, all);
         Ok(())
+    }
+
+    /// Takes what the constraints exert on their bodies off the wrenches of all joints between them and the root.
+    fn take_over(&mut self, rows: &[Row], forces: &[f64]) {
+        for (row, force) in rows.iter().zip(forces) {
+            let (mut next, mut wrench) = (Some(row.body), row.wrench * *force);
+            while let Some(body) = next {
+                let node = &mut self.nodes[body];
+                node.wrench -= wrench;
+                wrench = shift_wrench(&wrench, &node.motion.placement.offset);
+                next = self.links[body].parent;
+            }
+        }
     }
 }

@@ -15,7 +15,8 @@ use crate::spatial::fused::{apply, cross};
 use crate::spatial::join;
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::{Cholesky, DMatrix, Vector3, Vector6};
+use nalgebra::{DMatrix, Vector3, Vector6};
+use num_traits::Float;
 
 /// How small the pivots of A_d may become next to its largest entry: at 1e-8 half of the digits of v̄_d are gone.
 const PIVOT_LIMIT: f64 = 1e-8;
@@ -47,6 +48,8 @@ pub(super) struct Coupling {
     momenta: DMatrix<f64>,
     /// `S̄ᵀ M S̄`.
     mass: DMatrix<f64>,
+    /// Its factor.
+    factored: DMatrix<f64>,
     multipliers: Vec<f64>,
     reduced: Vec<f64>,
     /// Speeds of the tree.
@@ -78,6 +81,7 @@ impl Coupling {
             basis: DMatrix::zeros(dependent.len(), rest),
             momenta: DMatrix::zeros(size, rest),
             mass: DMatrix::zeros(rest, rest),
+            factored: DMatrix::zeros(rest, rest),
             multipliers: vec![0.0; count],
             reduced: vec![0.0; rest],
             whole: vec![0.0; size],
@@ -123,7 +127,7 @@ fn rows(mechanism: &Mechanism) -> Vec<Row> {
         Row {
             body: constraint.body,
             point: fixed.transform_point(&constraint.point),
-            direction: apply(&fixed.rotation, &constraint.direction),
+            direction: apply(&fixed.rotation, &constraint.direction.normalize()),
             wrench: Vector6::zeros(),
         }
     });
@@ -230,7 +234,8 @@ impl Recursive {
 
     /// `(S̄ᵀMS̄)⁻¹ x` in place; entries of prescribed speeds become 0.
     fn solve_reduced(&self, coupling: &mut Coupling, x: &mut [f64]) -> Result<(), DynamicsError> {
-        let mut mass = core::mem::replace(&mut coupling.mass, DMatrix::zeros(0, 0));
+        coupling.factored.copy_from(&coupling.mass);
+        let mass = &mut coupling.factored;
         for (j, _) in coupling
             .driven
             .iter()
@@ -242,32 +247,35 @@ impl Recursive {
             mass[(j, j)] = 1.0;
             x[j] = 0.0;
         }
-        let size = mass.nrows();
-        let Some(factors) = Cholesky::new(mass) else {
-            coupling.mass = DMatrix::zeros(size, size);
-            return Err(self.singular_reduced(coupling));
-        };
-        let mut side = nalgebra::DVectorViewMut::from_slice(x, size);
-        factors.solve_mut(&mut side);
-        coupling.mass = factors.unpack_dirty();
+        if let Err((row, pivot, limit)) = cholesky(mass) {
+            let speed = coupling.independent[row];
+            return Err(self.mechanism.singular_speed(speed, pivot, limit));
+        }
+        let mut side = nalgebra::DVectorViewMut::from_slice(x, mass.nrows());
+        // The pivots are above zero.
+        _ = mass.solve_lower_triangular_mut(&mut side)
+            && mass.tr_solve_lower_triangular_mut(&mut side);
         Ok(())
     }
+}
 
-    fn singular_reduced(&self, coupling: &Coupling) -> DynamicsError {
-        let speed = coupling.independent.first().copied().unwrap_or(0);
-        let bodies = self.mechanism.bodies().iter();
-        let owner = bodies
-            .enumerate()
-            .find(|(_, body)| body.ranges().speeds.contains(&speed));
-        let (body, start) =
-            owner.map_or((0, 0), |(index, body)| (index, body.ranges().speeds.start));
-        self.mechanism.singular(
-            body,
-            &crate::steps::PivotFailure {
-                speed: speed - start,
-                pivot: 0.0,
-                limit: 0.0,
-            },
-        )
+/// `M = L Lᵀ` in the lower triangle; a row whose pivot does not stand above its rounding, with both.
+fn cholesky(matrix: &mut DMatrix<f64>) -> Result<(), (usize, f64, f64)> {
+    let size = matrix.nrows();
+    for row in 0..size {
+        let limit = size as f64 * f64::EPSILON * matrix[(row, row)];
+        for column in 0..=row {
+            let known = (0..column).map(|k| matrix[(row, k)] * matrix[(column, k)]);
+            let rest = matrix[(row, column)] - known.sum::<f64>();
+            if column < row {
+                matrix[(row, column)] = rest / matrix[(column, column)];
+                continue;
+            }
+            if rest.is_nan() || rest <= limit {
+                return Err((row, rest, limit));
+            }
+            matrix[(row, row)] = Float::sqrt(rest);
+        }
     }
+    Ok(())
 }

@@ -153,6 +153,7 @@ impl Recursive {
     ) -> Result<(), DynamicsError> {
         self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
+        self.set_accelerations(q, speeds, &out.rates);
         if let (true, Some(inverse)) = (self.holonomic, &mut out.inverse) {
             self.differentiate_needed(q, speeds, &out.rates, inverse);
             for index in 0..self.links.len() {
@@ -164,7 +165,6 @@ impl Recursive {
             negative_product(&out.by_efforts, &inverse.by_speeds, &mut out.by_speeds);
             return Ok(());
         }
-        self.advance(q, speeds, Some(&out.rates));
         if self.acted_on {
             self.act_and_vary(q, speeds, &mut out.acting);
         }

@@ -86,11 +86,12 @@ impl Recursive {
         ];
         self.check(q, &sizes)?;
         self.check_differentiable(&[&out.by_local, &out.by_speeds])?;
+        self.advance(q, speeds, Some(accelerations));
         self.differentiate_needed(q, speeds, accelerations, out);
         Ok(())
     }
 
-    /// [`Recursive::inverse_dynamics_derivatives`] of what has been checked.
+    /// What is left of [`Recursive::inverse_dynamics_derivatives`] once the bodies move.
     pub(super) fn differentiate_needed(
         &mut self,
         q: &[f64],
@@ -98,7 +99,6 @@ impl Recursive {
         accelerations: &[f64],
         out: &mut InverseDerivatives,
     ) {
-        self.advance(q, speeds, Some(accelerations));
         if self.acted_on {
             self.act_and_vary(q, speeds, &mut out.acting);
             // Elements between bodies reach from branch to branch, where no joint meets another.

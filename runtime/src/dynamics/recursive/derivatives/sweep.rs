@@ -111,7 +111,7 @@ impl Sweep {
         out: (&mut [f64], usize, usize),
     ) {
         let last = self.inward(tree, pushes);
-        self.outward::<TURNS>(tree, pushes, (last, tree.branches.len()), out);
+        self.outward::<TURNS, true>(tree, pushes, (last, tree.branches.len()), out);
         self.met[..=last].fill(false);
     }
 
@@ -124,7 +124,7 @@ impl Sweep {
         (rows, width, first): (&mut [f64], usize, usize),
     ) {
         let last = self.inward(tree, pushes);
-        self.outward::<false>(tree, pushes, (last, last + 1), (rows, width, first));
+        self.outward::<false, false>(tree, pushes, (last, last + 1), (rows, width, first));
         self.met[..=last].fill(false);
         let (before, own) = rows.split_at_mut(first * width);
         for (row, entries) in before.chunks_exact(width).enumerate() {
@@ -209,9 +209,9 @@ impl Sweep {
         }
     }
 
-    /// Outward over the bodies up to `end`, of which those after `last` have no loads.
+    /// Outward over the bodies up to `end`, of which those after `last` have no loads; `MOVES` says whether any push has a W or a U.
     #[inline(always)]
-    fn outward<const TURNS: bool>(
+    fn outward<const TURNS: bool, const MOVES: bool>(
         &mut self,
         tree: &Tree<'_>,
         pushes: &[Push],
@@ -276,7 +276,7 @@ impl Sweep {
             if TURNS {
                 self.turns[body] = turn;
             }
-            if pushes.first().is_some_and(|push| push.body <= body) && body <= last {
+            if MOVES && pushes.first().is_some_and(|push| push.body <= body) && body <= last {
                 self.add_own(pushes, body);
             }
         }

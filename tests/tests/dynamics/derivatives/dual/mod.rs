@@ -212,6 +212,24 @@ impl DualForm {
         (kinetic, potential)
     }
 
+    /// The pose of a frame that is fixed in the child frame of the joint under `body`, and the frame's twist in its own axes.
+    pub fn frame(
+        &self,
+        (q, speeds): (&[D], &[D]),
+        body: usize,
+        fixed: &Pose<f64>,
+    ) -> (Pose<D>, Vector6<D>) {
+        let (poses, fixed) = (self.poses(q), lifted(fixed));
+        let twist = self.twists(&poses, q, speeds)[body];
+        let mut pose = poses[body] * fixed;
+        let mut next = self.bodies[body].parent;
+        while let Some(parent) = next {
+            pose = poses[parent] * pose;
+            next = self.bodies[parent].parent;
+        }
+        (pose, fixed.act_twist_inverse(&twist))
+    }
+
     fn twists(&self, poses: &[Pose<D>], q: &[D], speeds: &[D]) -> Vec<Vector6<D>> {
         let mut twists: Vec<Vector6<D>> = vec![];
         for (body, pose) in self.bodies.iter().zip(poses) {
