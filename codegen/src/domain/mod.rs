@@ -4,8 +4,10 @@
 //! parameters, away from the loci that the spec excepts. Random points never show that. A certificate does: a constant, a sum of
 //! positive terms, or 1 as a combination of the functions and the relations.
 
+mod critical;
 mod sign;
 
+pub use self::critical::{Critical, Smooth};
 pub use self::sign::positive_parameters;
 
 use self::sign::Signs;
@@ -13,7 +15,7 @@ use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget
 use crate::manifold::Ideal;
 use crate::model::JointSpec;
 use num_traits::One;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most term operations that one search for a certificate may take.
 const CERTIFICATE_LIMIT: u64 = 60_000;
@@ -26,6 +28,8 @@ pub struct Domain<'a> {
     signs: Signs,
     /// Parameters of which the range holds 0.
     vanishing: BTreeSet<Symbol>,
+    /// The stored scalars at home.
+    home: BTreeMap<Symbol, Expr>,
 }
 
 /// Why some functions have no common zero.
@@ -85,6 +89,7 @@ impl<'a> Domain<'a> {
                 .filter(|parameter| parameter.may_vanish())
                 .map(|parameter| parameter.symbol.clone())
                 .collect(),
+            home: spec.home_values(),
         }
     }
 
@@ -114,6 +119,12 @@ impl<'a> Domain<'a> {
     pub fn is_positive(&self, expression: &Expr) -> bool {
         let normal = self.ideal.normal_form(expression);
         self.signs.is_positive(expression) || self.signs.is_positive(&normal)
+    }
+
+    /// Whether the expression is negative nowhere.
+    pub fn is_not_negative(&self, expression: &Expr) -> bool {
+        let normal = self.ideal.normal_form(expression);
+        self.signs.is_not_negative(expression) || self.signs.is_not_negative(&normal)
     }
 
     fn search(&self, expressions: &[Expr]) -> Option<Certificate> {

@@ -82,8 +82,18 @@ impl Signs {
     /// Whether the expression is positive wherever it is defined: a sum of terms that are not negative, one of them positive, or of which
     /// the constant ones outweigh the bounds of all that may be negative.
     pub fn is_positive(&self, expression: &Expr) -> bool {
+        self.exceeds(expression, false)
+    }
+
+    /// Whether the expression is negative nowhere, by the same means.
+    pub fn is_not_negative(&self, expression: &Expr) -> bool {
+        self.exceeds(expression, true)
+    }
+
+    /// Whether the expression is positive, or, where that is `enough`, not negative.
+    fn exceeds(&self, expression: &Expr, enough: bool) -> bool {
         let mut constant = Expr::zero();
-        let mut strict = false;
+        let mut strict = enough;
         for (monomial, coefficient) in expression.terms() {
             if monomial.is_unit() {
                 constant += &Expr::term(coefficient.clone(), monomial.clone());
