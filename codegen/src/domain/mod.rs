@@ -127,6 +127,12 @@ impl<'a> Domain<'a> {
         self.signs.is_not_negative(expression) || self.signs.is_not_negative(&normal)
     }
 
+    /// Whether no parameter that may be 0 is a factor of the only term.
+    fn has_unit_factor(&self, expression: &Expr) -> bool {
+        let mut units = expression.terms().flat_map(|(monomial, _)| monomial.units());
+        units.all(|(atom, _)| !matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s)))
+    }
+
     fn search(&self, expressions: &[Expr]) -> Option<Certificate> {
         let normal = |e: &Expr| self.ideal.normal_form(e);
         let all: Vec<Expr> = expressions
@@ -143,6 +149,7 @@ impl<'a> Domain<'a> {
         }
         let functions = all.len();
         let mut generators = all.clone();
+        let under_root = |e: &Expr| under_root(e).filter(|_| self.has_unit_factor(e));
         let under_roots: Vec<Expr> = expressions.iter().filter_map(under_root).collect();
         generators.extend(under_roots.iter().cloned());
         // A sum of terms that are never negative vanishes only where each of them does.
@@ -150,11 +157,11 @@ impl<'a> Domain<'a> {
             generators.extend(self.signs.zero_terms(e).into_iter().flatten());
         }
         let found = |except| Some(Certificate::NoCommonZero { functions, except });
-        if functions > 0 && self.ideal.has_no_zero_with(&generators) {
+        if functions > 0 && self.ideal.has_no_zero_with(&generators, &self.vanishing) {
             return found(false);
         }
         generators.extend(self.loci.iter().enumerate().map(away_from));
-        match !self.loci.is_empty() && self.ideal.has_no_zero_with(&generators) {
+        match !self.loci.is_empty() && self.ideal.has_no_zero_with(&generators, &self.vanishing) {
             true => found(true),
             false => None,
         }

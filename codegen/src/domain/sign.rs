@@ -259,6 +259,12 @@ impl Signs {
                 let Some(units) = of_condition.recip().map(|m| monomial.times(&m)) else {
                     return false;
                 };
+                let vanishes = |(atom, power): &(Atom, i32)| {
+                    *power < 0 && matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s))
+                };
+                if units.units().iter().any(vanishes) {
+                    return false;
+                }
                 let sign = self.sign(&units);
                 let rest = rest - &condition.scaled(&(coefficient / c), &units);
                 sign != Sign::Unknown
