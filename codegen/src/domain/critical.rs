@@ -2,6 +2,8 @@
 
 use super::Domain;
 use crate::expr::{Atom, Expr, Function, Symbol};
+use crate::matrix::Matrix;
+use crate::model::JointSpec;
 use std::collections::BTreeSet;
 
 /// A function that is not smooth at every argument, as it stands in an expression.
@@ -18,6 +20,32 @@ pub struct Critical {
 }
 
 impl Critical {
+    /// Those in what a spec declares and evaluates at a configuration; Φ at ϕ = 0, but where it is Q exp(ϕ), which has a closed form.
+    pub fn declared(spec: &JointSpec, exponential: bool) -> BTreeSet<Self> {
+        let mut found = match exponential {
+            true => BTreeSet::new(),
+            false => Self::in_retract(spec),
+        };
+        let pose = &spec.pose.value;
+        let declared = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
+        let matrices = [&pose.rotation, &pose.translation].into_iter();
+        let matrices = matrices.chain(declared.into_iter().flatten().map(|d| &d.value));
+        matrices
+            .flat_map(Matrix::entries)
+            .for_each(|e| Self::collect(e, &[], &mut found));
+        found
+    }
+
+    /// Those in the declared Φ, at ϕ = 0.
+    pub fn in_retract(spec: &JointSpec) -> BTreeSet<Self> {
+        let freedoms = spec.freedoms.value.iter();
+        let local: Vec<Symbol> = freedoms.map(|freedom| freedom.local.clone()).collect();
+        let mut found = BTreeSet::new();
+        let entries = spec.retract.iter().flat_map(|declared| &declared.value);
+        entries.for_each(|e| Self::collect(e, &local, &mut found));
+        found
+    }
+
     /// Those in the expression, inside arguments too, where `local` are zero.
     pub fn collect(expression: &Expr, local: &[Symbol], found: &mut BTreeSet<Self>) {
         for atom in expression.atoms() {
@@ -86,6 +114,17 @@ impl Domain<'_> {
             (_, [x]) => self.positive_off_loci(x),
             _ => None,
         }
+    }
+
+    /// What must be positive for the functions to be smooth, beside the loci: it changes its sign beyond them.
+    pub fn sides<'c>(&self, functions: impl IntoIterator<Item = &'c Critical>) -> Vec<Expr> {
+        let smooth = functions.into_iter().filter_map(|f| self.smooth(f));
+        let sides = smooth.filter_map(|smooth| match smooth {
+            Smooth::Everywhere => None,
+            Smooth::BesideHome(side) => Some(side),
+        });
+        let distinct: BTreeSet<Expr> = sides.collect();
+        distinct.into_iter().collect()
     }
 
     fn positive_off_loci(&self, x: &Expr) -> Option<Smooth> {

@@ -17,7 +17,7 @@ pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Diagnostic> {
         return Ok(());
     };
     let domain = Domain::new(spec);
-    let found = in_retract(spec);
+    let found = Critical::in_retract(spec);
     let open = found.iter().find(|f| domain.smooth(f).is_none());
     match open {
         // Φ = Q exp(ϕ) is evaluated in closed form, however it is written.
@@ -29,7 +29,7 @@ pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Diagnostic> {
 impl Prover<'_> {
     /// Every quotient, root, logarithm and angle in what is evaluated at Q is smooth there.
     pub(super) fn is_defined(&self) -> Attempt {
-        let (declared, derived) = (self.declared_functions(), self.derived_functions());
+        let (declared, derived) = (Critical::declared(self.spec, self.x.exponential), self.derived_functions());
         let count = declared.union(&derived).count();
         if count == 0 {
             return Ok(None);
@@ -42,29 +42,20 @@ impl Prover<'_> {
         if let Some(open) = open {
             return Err(Box::new(refusal(open, &self.spec.pose.span)));
         }
+        let mut statement = self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q");
+        let sides = self.domain.sides(&declared);
+        if !sides.is_empty() {
+            let sides: Vec<String> = sides.iter().map(|side| format!("{side} > 0")).collect();
+            statement += &format!(", on the side of home alone: where {}", sides.join(" and "));
+        }
         Ok(Some(certified(
             "defined",
-            &self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q"),
+            &statement,
             &format!("quotients, roots, logarithms and angles in them: {count}; all are smooth at their arguments"),
         )))
     }
 
-    /// Functions with a singular argument in what the spec declares.
-    fn declared_functions(&self) -> BTreeSet<Critical> {
-        let spec = self.spec;
-        let mut found = match self.x.exponential {
-            true => BTreeSet::new(),
-            false => in_retract(spec),
-        };
-        let pose = &spec.pose.value;
-        let declared = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
-        let matrices = [&pose.rotation, &pose.translation].into_iter();
-        let matrices = matrices.chain(declared.into_iter().flatten().map(|d| &d.value));
-        collect(matrices, &mut found);
-        found
-    }
-
-    /// Those in what is derived and evaluated at a configuration.
+    /// Functions with a singular argument in what is derived and evaluated at a configuration.
     fn derived_functions(&self) -> BTreeSet<Critical> {
         let x = self.x;
         let mut found = BTreeSet::new();
@@ -100,16 +91,6 @@ impl Prover<'_> {
 fn collect<'m>(matrices: impl Iterator<Item = &'m Matrix>, found: &mut BTreeSet<Critical>) {
     let entries = matrices.flat_map(Matrix::entries);
     entries.for_each(|e| Critical::collect(e, &[], found));
-}
-
-/// Functions with a singular argument in the declared Φ, at ϕ = 0.
-fn in_retract(spec: &JointSpec) -> BTreeSet<Critical> {
-    let freedoms = spec.freedoms.value.iter();
-    let local: Vec<_> = freedoms.map(|freedom| freedom.local.clone()).collect();
-    let mut found = BTreeSet::new();
-    let entries = spec.retract.iter().flat_map(|declared| &declared.value);
-    entries.for_each(|e| Critical::collect(e, &local, &mut found));
-    found
 }
 
 fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
