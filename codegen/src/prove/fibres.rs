@@ -1,12 +1,13 @@
 //! The fibres of H: whether one pose has one Q.
 
 use crate::derived::{Claim, Proof};
+use crate::domain::Domain;
 use crate::expr::{Atom, Expr, Function, Role, Symbol};
 use crate::model::JointSpec;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is known of the configurations that share a pose; `None` where it was not decided.
-pub fn claim(spec: &JointSpec) -> Option<Claim> {
+pub fn claim(spec: &JointSpec, domain: &Domain<'_>) -> Option<Claim> {
     let ideal = spec.manifold.value.ideal();
     let pose = &spec.pose.value;
     let entries: Vec<Expr> = pose
@@ -17,7 +18,7 @@ pub fn claim(spec: &JointSpec) -> Option<Claim> {
         .map(|e| ideal.normal_form(e))
         .collect();
     let coordinates = spec.manifold.value.coordinates();
-    let read = recovered(spec, &entries, &coordinates);
+    let read = recovered(domain, &entries, &coordinates);
     let rest: Vec<&Symbol> = coordinates
         .iter()
         .filter(|symbol| !read.contains(*symbol))
@@ -55,8 +56,8 @@ pub fn claim(spec: &JointSpec) -> Option<Claim> {
 }
 
 /// Scalars that are linear in some entry of H, the other terms of which hold only scalars that are known already.
-fn recovered(spec: &JointSpec, entries: &[Expr], coordinates: &[Symbol]) -> BTreeSet<Symbol> {
-    let ideal = spec.manifold.value.ideal();
+fn recovered(domain: &Domain<'_>, entries: &[Expr], coordinates: &[Symbol]) -> BTreeSet<Symbol> {
+    let ideal = domain.ideal();
     let mut known: BTreeSet<Symbol> = BTreeSet::new();
     loop {
         let before = known.len();
@@ -64,7 +65,7 @@ fn recovered(spec: &JointSpec, entries: &[Expr], coordinates: &[Symbol]) -> BTre
             let normal = ideal.normal_form(&Expr::symbol(symbol));
             let reduces = normal.as_symbol() != Some(symbol);
             let determined = reduces && normal.symbols().iter().all(|s| known.contains(s));
-            if determined || entries.iter().any(|entry| gives(entry, symbol, &known)) {
+            if determined || entries.iter().any(|entry| gives(entry, symbol, &known, domain)) {
                 known.insert(symbol.clone());
             }
         }
@@ -74,13 +75,13 @@ fn recovered(spec: &JointSpec, entries: &[Expr], coordinates: &[Symbol]) -> BTre
     }
 }
 
-fn gives(entry: &Expr, symbol: &Symbol, known: &BTreeSet<Symbol>) -> bool {
+fn gives(entry: &Expr, symbol: &Symbol, known: &BTreeSet<Symbol>, domain: &Domain<'_>) -> bool {
     let slope = entry.derivative(symbol);
     let others = entry
         .symbols()
         .into_iter()
         .filter(|s| s.role == Role::Coordinate && s != symbol);
-    crate::domain::is_unit(&slope) && others.into_iter().all(|s| known.contains(&s))
+    domain.is_unit(&slope) && others.into_iter().all(|s| known.contains(&s))
 }
 
 fn is_even(entries: &[Expr], rest: &[&Symbol], spec: &JointSpec) -> bool {

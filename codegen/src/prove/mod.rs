@@ -11,6 +11,8 @@ mod numeric;
 mod retract;
 mod twist;
 
+pub use defined::retract_is_smooth;
+
 use crate::derived::{Claim, Proof};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
@@ -54,7 +56,7 @@ pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
             Err(error) => errors.push(*error),
         }
     }
-    claims.extend(fibres::claim(spec));
+    claims.extend(fibres::claim(spec, &prover.domain));
     if errors.is_empty() {
         Ok(claims)
     } else {
