@@ -65,7 +65,11 @@ fn recovered(domain: &Domain<'_>, entries: &[Expr], coordinates: &[Symbol]) -> B
             let normal = ideal.normal_form(&Expr::symbol(symbol));
             let reduces = normal.as_symbol() != Some(symbol);
             let determined = reduces && normal.symbols().iter().all(|s| known.contains(s));
-            if determined || entries.iter().any(|entry| gives(entry, symbol, &known, domain)) {
+            if determined
+                || entries
+                    .iter()
+                    .any(|entry| gives(entry, symbol, &known, domain))
+            {
                 known.insert(symbol.clone());
             }
         }
