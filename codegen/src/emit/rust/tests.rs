@@ -156,6 +156,24 @@ fn a_projection_begins_at_the_value_of_its_formulas() {
     );
 }
 
+/// Of the 12 entries, 6 relations leave the pose of a rigid body; those of the cosets leave 2 freedoms, or 4.
+#[test]
+fn a_projection_solves_as_many_relations_as_the_coset_has() {
+    for (basis, rank) in [
+        (
+            "turn = 1/3 * e1 + 2/3 * e2 + 2/3 * e3 + 1/30 * e4 + 2/30 * e5 + 2/30 * e6",
+            10,
+        ),
+        ("turn = e3 + 1/10 * e6, x = e4, y = e5", 8),
+        ("turn = e3, x = e4, y = e5", 9),
+    ] {
+        let text = emitted(&derived(&format!(
+            "hamel = 1; joint some {{ config Q: SE3; basis {basis} of se3; velocity in child; H = Q; }}"
+        )));
+        assert_contains(&text, &[&format!("{rank}, |q| self.relations(q),")]);
+    }
+}
+
 #[test]
 fn pages_and_the_index_take_kernels_without_formulas() {
     let ball = numeric_ball();
