@@ -54,7 +54,7 @@ pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
             Err(error) => errors.push(*error),
         }
     }
-    claims.extend(fibres::claim(spec));
+    claims.extend(fibres::claim(spec, &prover.domain));
     if errors.is_empty() {
         Ok(claims)
     } else {
