@@ -42,11 +42,11 @@ pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, M
     let names = joints.iter().map(|joint| &joint.spec.name.value);
     let tokens = quote! {
         #head
-        #(pub use #modules::#types;)*
+        #(pub use self::#modules::#types;)*
         #entries
-        pub const ENTRIES: &[::hamel::registry::JointEntry] = &[#(#modules::ENTRY),*];
+        pub const ENTRIES: &[::hamel::registry::JointEntry] = &[#(self::#modules::ENTRY),*];
         #specs
-        pub const SPECS: &[(&str, &str)] = &[#((#names, #modules::SPEC)),*];
+        pub const SPECS: &[(&str, &str)] = &[#((#names, self::#modules::SPEC)),*];
         #macros
     };
     text("the index of all joints", &header(label), tokens)

@@ -42,38 +42,35 @@ fn decimal(value: &Rational) -> String {
         .map_or(value.to_string(), |value| value.to_string())
 }
 
-/// The checks of `build`, in which each parameter is a variable of its name.
-pub fn checks(derived: &Derived) -> TokenStream {
-    let requirements = requirements(derived);
-    let divisors = derived
-        .spec
-        .parameters
-        .iter()
-        .filter(|parameter| includes_zero(&parameter.range))
-        .filter(|parameter| divides(derived, &parameter.symbol))
-        .map(|parameter| nonzero(derived, parameter));
-    quote! { #requirements #(#divisors)* }
+/// The checks of `build`, in which each parameter is a variable.
+pub fn checks(derived: &Derived, names: &Names) -> TokenStream {
+    let requirements = requirements(derived, names);
+    // Without a range, everything was proved for every number but zero.
+    let parameters = derived.spec.parameters.iter();
+    let nonzero = parameters
+        .filter(|parameter| parameter.range == Interval::default())
+        .map(|parameter| nonzero(derived, parameter, names));
+    quote! { #requirements #(#nonzero)* }
 }
 
 /// Each requirement as a check of its margin, a polynomial in the parameters.
-fn requirements(derived: &Derived) -> TokenStream {
+fn requirements(derived: &Derived, names: &Names) -> TokenStream {
     let joint = &derived.spec.name.value;
     let requirements = &derived.spec.requirements;
     if requirements.is_empty() {
         return TokenStream::new();
     }
-    let names = Names::of_fields(derived);
     let nothing = Program {
         bindings: vec![],
         outputs: vec![],
     };
-    let writer = Writer::new(&names, &nothing);
+    let writer = Writer::new(names, &nothing);
     let checks: Vec<TokenStream> = requirements
         .iter()
         .map(|requirement| {
             let text = &requirement.value.text;
             let margin = writer.formula(&factored(&requirement.value.value).polished());
-            quote! { check_requirement(#joint, #text, #margin, &PARAMETERS, values)?; }
+            quote! { ::hamel::registry::check_requirement(#joint, #text, #margin, &PARAMETERS, values)?; }
         })
         .collect();
     let constants = writer.constants();
@@ -82,11 +79,11 @@ fn requirements(derived: &Derived) -> TokenStream {
     quote! { #scalar #constants #(#checks)* }
 }
 
-fn nonzero(derived: &Derived, parameter: &Parameter) -> TokenStream {
+fn nonzero(derived: &Derived, parameter: &Parameter, names: &Names) -> TokenStream {
     let joint = &derived.spec.name.value;
     let (text, field) = (
         parameter.symbol.name.as_ref(),
-        ident(&parameter.symbol.name),
+        ident(names.get(&parameter.symbol)),
     );
     quote! {
         if #field == 0.0 {

@@ -78,12 +78,9 @@ fn items(derived: &Derived) -> TokenStream {
     }
 }
 
-/// Imports of the names that occur.
-fn uses(tokens: &TokenStream) -> TokenStream {
-    let mut found = BTreeSet::new();
-    collect_identifiers(tokens.clone(), &mut found);
-    let groups: [(TokenStream, &[&str]); 6] = [
-        (quote! { ::hamel::erased }, &["erase"]),
+/// What an emitted file may import, by module. Functions that `build` calls are not among them: a parameter may have their names.
+fn imports() -> [(TokenStream, &'static [&'static str]); 5] {
+    [
         (
             quote! { ::hamel::joint },
             &[
@@ -98,19 +95,18 @@ fn uses(tokens: &TokenStream) -> TokenStream {
         (quote! { ::hamel::nalgebra }, &["SMatrix", "SVector"]),
         (
             quote! { ::hamel::registry },
-            &[
-                "JointEntry",
-                "Limit",
-                "ParameterError",
-                "ParameterInfo",
-                "check_parameters",
-                "check_requirement",
-            ],
+            &["JointEntry", "Limit", "ParameterError", "ParameterInfo"],
         ),
         (quote! { ::hamel::scalar }, &["Scalar"]),
         (quote! { ::hamel::spatial }, &["Pose", "nearest_rotation"]),
-    ];
-    let lines = groups.iter().filter_map(|(path, names)| {
+    ]
+}
+
+/// Imports of the names that occur.
+fn uses(tokens: &TokenStream) -> TokenStream {
+    let mut found = BTreeSet::new();
+    collect_identifiers(tokens.clone(), &mut found);
+    let lines = imports().into_iter().filter_map(|(path, names)| {
         let used: Vec<_> = names
             .iter()
             .filter(|name| found.contains(**name))
