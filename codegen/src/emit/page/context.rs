@@ -131,14 +131,10 @@ fn tables(context: &mut Context, report: &Report, medium: Medium) {
 fn parameters(report: &Report) -> Vec<Row> {
     let rows = report.parameters.iter();
     rows.map(|p| {
-        let range = match p.range.as_str() {
-            "" => "any",
-            range => range,
-        };
         row([
             ("name", &p.name),
             ("unit", &p.unit),
-            ("range", range),
+            ("range", &p.range),
             ("description", &p.description),
         ])
     })

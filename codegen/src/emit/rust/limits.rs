@@ -1,12 +1,12 @@
-//! What a joint demands of its parameters: ranges, requirements, and divisors that must not vanish.
+//! What a joint demands of its parameters: ranges, requirements, and without a range that they are not zero.
 
 use super::tokens::{Writer, ident, signed_literal};
-use crate::derived::{Derived, Step};
+use crate::derived::Derived;
 use crate::emit::formula::{Program, factored};
 use crate::emit::names::Names;
-use crate::expr::{Atom, Expr, Rational, Symbol};
+use crate::expr::Rational;
 use crate::model::{End, Interval, Parameter};
-use num_traits::{ToPrimitive, Zero};
+use num_traits::ToPrimitive;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -23,8 +23,8 @@ pub fn fields(range: &Interval) -> TokenStream {
     quote! { lower: #lower, upper: #upper }
 }
 
-/// The range in words, `greater than 0 and at most 1`; `None` where nothing is excluded.
-pub fn in_words(range: &Interval) -> Option<String> {
+/// The range in words: `greater than 0 and at most 1`, `other than 0`.
+pub fn in_words(range: &Interval) -> String {
     let words = |end: &Option<End>, included: &str, excluded: &str| {
         let end = end.as_ref()?;
         let word = if end.included { included } else { excluded };
@@ -33,7 +33,10 @@ pub fn in_words(range: &Interval) -> Option<String> {
     let lower = words(&range.lower, "at least", "greater than");
     let upper = words(&range.upper, "at most", "less than");
     let ends: Vec<String> = lower.into_iter().chain(upper).collect();
-    (!ends.is_empty()).then(|| ends.join(" and "))
+    match ends.is_empty() {
+        true => "other than 0".to_owned(),
+        false => ends.join(" and "),
+    }
 }
 
 fn decimal(value: &Rational) -> String {
@@ -91,47 +94,8 @@ fn nonzero(derived: &Derived, parameter: &Parameter, names: &Names) -> TokenStre
                 joint: #joint,
                 parameter: #text,
                 value: #field,
-                requirement: "other than zero",
+                requirement: "other than 0",
             });
         }
     }
-}
-
-fn includes_zero(range: &Interval) -> bool {
-    let zero = Rational::zero();
-    let above = |end: &End| end.value < zero || (end.included && end.value == zero);
-    let below = |end: &End| end.value > zero || (end.included && end.value == zero);
-    range.lower.as_ref().is_none_or(above) && range.upper.as_ref().is_none_or(below)
-}
-
-/// Whether some kernel divides by the parameter.
-fn divides(derived: &Derived, parameter: &Symbol) -> bool {
-    let atom = Atom::Symbol(parameter.clone());
-    let entries = derived
-        .kernels
-        .iter()
-        .flat_map(|kernel| &kernel.outputs)
-        .flat_map(|output| output.entries());
-    let steps = derived
-        .kernels
-        .iter()
-        .flat_map(|kernel| &kernel.steps)
-        .filter_map(|step| match step {
-            Step::Let(_, value) => Some(value),
-            Step::Call { .. } => None,
-        });
-    entries.chain(steps).any(|entry| divides_in(entry, &atom))
-}
-
-fn divides_in(expression: &Expr, atom: &Atom) -> bool {
-    expression
-        .terms()
-        .any(|(monomial, _)| monomial.power(atom) < 0)
-        || expression.atoms().iter().any(|inner| match inner {
-            Atom::Apply(application) => application
-                .arguments
-                .iter()
-                .any(|argument| divides_in(argument, atom)),
-            Atom::Symbol(_) => false,
-        })
 }

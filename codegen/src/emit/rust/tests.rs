@@ -236,7 +236,12 @@ fn ranges_and_requirements_are_checked() {
     let mut crank = derived(CRANK);
     assert_contains(
         &emitted(&crank),
-        &["lower: None, upper: None", "if inner == 0.0 {"],
+        &[
+            "lower: None, upper: None",
+            "if outer == 0.0 {",
+            "if inner == 0.0 {",
+            "In m. It is other than 0.",
+        ],
     );
     crank.spec.parameters[1].range = Interval {
         lower: end(0, 1, false),
