@@ -248,7 +248,7 @@ mod tests {
     fn full_turns_need_sine_and_cosine_in_h() {
         let up_to = |names: &str| Some(format!("one pose has one Q up to full turns of {names}"));
         let pose = |h: &str| statement(&format!("config a: R1, b: R1, c: R1; H = {h};"));
-        assert_eq!(pose("rot_z(a) * trans([b, c, gain])"), up_to("a"));
+        assert_eq!(pose("trans([b, c, gain]) * rot_z(a)"), up_to("a"));
         assert_eq!(pose("rot_z(a) * rot_y(b) * trans_z(arm * c)"), None);
         assert_eq!(
             pose("trans([arm * cos(a) + b, sin(a), cos(a)]) * rot_x(c)"),

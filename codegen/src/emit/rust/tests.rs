@@ -303,7 +303,7 @@ fn variables_of_build_keep_clear_of_its_argument_and_of_constants() {
     let text = emitted(&derived(
         "hamel = 1; joint some(values: m, erase: m, two: m, three_halves: m) {\n\
          require 2 * values > 3/2 * erase + two + three_halves;\n\
-         config q: R1; H = trans_x((values + erase + two + three_halves) * q); }",
+         config q: R1; H = rot_z(q) * trans_x(values + erase + two + three_halves); }",
     ));
     assert_contains(
         &text,
