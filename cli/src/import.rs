@@ -1,6 +1,6 @@
 //! `hamel import`: a robot in URDF as a scene file.
 
-use crate::output::{self, Failure, tell};
+use crate::output::{self, Failure, refuse_overwriting, tell};
 use hamel::registry::JointRegistry;
 use hamel_scene::urdf;
 use std::path::PathBuf;
@@ -46,6 +46,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         floating_base: args.floating_base,
         ..urdf::Options::default()
     };
+    refuse_overwriting([&args.robot], args.output.as_deref())?;
     let import = urdf::load(&args.robot, &options)?;
     tell(&import.build(registry)?.notices);
     let text = import.to_toml();

@@ -2,6 +2,7 @@
 
 use hamel_scene::{Diagnostics, Notice};
 use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Why a command failed.
@@ -33,6 +34,43 @@ pub enum Failure {
         /// What the system says.
         error: io::Error,
     },
+}
+
+/// Refuses files to be written that are those to be read, or each other.
+///
+/// # Errors
+/// The first of `written` that is met again, by its name.
+pub fn refuse_overwriting<'a>(
+    read: impl IntoIterator<Item = &'a PathBuf>,
+    written: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Failure> {
+    // A file that is not there yet has no canonical path, but its folder has.
+    let place = |path: &Path| {
+        path.canonicalize().unwrap_or_else(|_| {
+            let parent = path
+                .parent()
+                .filter(|parent| !parent.as_os_str().is_empty());
+            let folder = parent.unwrap_or(Path::new(".")).canonicalize();
+            folder
+                .unwrap_or_default()
+                .join(path.file_name().unwrap_or_default())
+        })
+    };
+    let mut known: Vec<(PathBuf, &str)> = read
+        .into_iter()
+        .map(|path| (place(path), "is read"))
+        .collect();
+    for path in written {
+        let own = place(path);
+        if let Some((_, why)) = known.iter().find(|(other, _)| *other == own) {
+            let shown = path.display();
+            return Err(Failure::Options(format!(
+                "{shown} would be overwritten: it {why} by the same command; name another file for the output"
+            )));
+        }
+        known.push((own, "is written"));
+    }
+    Ok(())
 }
 
 impl Failure {

@@ -139,7 +139,8 @@ pub struct Kernel {
     pub steps: Vec<Step>,
     /// The result: one matrix; for [`KernelKind::Pose`] rotation and translation; for gradients one slice for each ϕ_k;
     /// for [`KernelKind::Residual`] the column of relations, whose Euclidean norm is the kernel's value; for
-    /// [`KernelKind::Singularity`] the column of functions, whose least absolute value is.
+    /// [`KernelKind::Singularity`] the column of functions, whose least absolute value is, and, where there are any, a second one of
+    /// functions that are positive on the side of home, beyond which it is 0.
     pub outputs: Vec<Matrix>,
     /// How the value is found.
     pub method: Method,

@@ -3,6 +3,7 @@
 use crate::expr::{Expr, Rational, Symbol};
 use crate::manifold::Manifold;
 use crate::matrix::Matrix;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A value together with the bytes of the spec that declare it.
@@ -150,4 +151,14 @@ pub struct JointSpec {
     pub speed_basis: Option<Declared<Matrix>>,
     /// Names of the speeds, where declared.
     pub speed_names: Option<Declared<Vec<String>>>,
+}
+
+impl JointSpec {
+    /// Each stored scalar at home: as declared, else at the identity of each factor.
+    pub(crate) fn home_values(&self) -> BTreeMap<Symbol, Expr> {
+        let manifold = &self.manifold.value;
+        let declared = self.home.as_ref().map(|home| home.value.clone());
+        let home = declared.unwrap_or_else(|| manifold.home());
+        manifold.coordinates().into_iter().zip(home).collect()
+    }
 }

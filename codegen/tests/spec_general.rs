@@ -260,3 +260,18 @@ fn inverse_functions_have_their_values() {
         assert!((value(expression) - expected).abs() < 1e-15, "{expression}");
     }
 }
+
+/// A screw whose lead may be 0 is then a hinge, of which one pose has many angles.
+#[test]
+fn no_scalar_is_read_off_the_pose_by_a_parameter_that_may_vanish() {
+    let fibres = |range: &str| {
+        let source = format!(
+            "hamel = 1; joint screw(lead: m/rad {range}) {{ config q: R1; H = rot_z(q) * trans_z(lead * q); }}"
+        );
+        let joint = hamel_codegen::derive(&source, "screw.joint").expect("a valid spec");
+        let claim = joint.claims.iter().find(|claim| claim.name == "fibres");
+        claim.map(|claim| claim.statement.clone())
+    };
+    assert_eq!(fibres("> 0").as_deref(), Some("one pose has one Q"));
+    assert_eq!(fibres(">= 0"), None);
+}

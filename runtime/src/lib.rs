@@ -2,7 +2,7 @@
 //!
 //! A joint type implements [`joint::Joint`]; the generator `hamel-codegen` writes such implementations from `.joint`
 //! files. A [`mechanism::Mechanism`] is a tree of bodies on such joints; [`dynamics`] evaluates its equations of motion in
-//! Lagrangian and port-Hamiltonian form; [`integrate`] advances the state on the joints' manifolds.
+//! Lagrangian and port-Hamiltonian form; [`integrate`] advances the state on the joints' manifolds; [`control`] closes loops around them.
 //!
 //! Without default features the crate is `no_std`; mechanisms and what is built on them need the feature `alloc`, joints and
 //! their kernels do not.
@@ -16,6 +16,8 @@ pub use nalgebra;
 
 #[cfg(feature = "alloc")]
 pub mod chart;
+#[cfg(feature = "alloc")]
+pub mod control;
 #[cfg(feature = "alloc")]
 pub mod dynamics;
 #[cfg(feature = "alloc")]

@@ -5,7 +5,8 @@ use hamel::integrate::{
     Form, IntegrateError, Method, Options, Solution, State, integrate, no_inputs, no_observer,
 };
 use hamel::mechanism::Kinematics;
-use hamel_scene::Scene;
+use hamel_scene::{Scene, SceneDescription};
+use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,6 +46,7 @@ pub fn all() -> Vec<Scene> {
         mechanism.elements().is_empty()
             && mechanism.drives().is_empty()
             && mechanism.constraints().is_empty()
+            && scene.control.is_none()
     });
     scenes
 }
@@ -89,4 +91,41 @@ pub fn kinematics(scene: &Scene, state: &State) -> Result<Kinematics, DynamicsEr
     Ok(scene
         .mechanism
         .kinematics(&state.configuration, &state.speeds)?)
+}
+
+/// All that a description says, without where in its text it stands.
+pub fn said(scene: &SceneDescription) -> String {
+    let SceneDescription {
+        name,
+        description,
+        gravity,
+        bodies,
+        frames,
+        springs,
+        wrenches,
+        constraints,
+        shapes,
+        controller,
+        settings,
+        ..
+    } = scene;
+    let parts: [&dyn Debug; 11] = [
+        name,
+        description,
+        gravity,
+        bodies,
+        frames,
+        springs,
+        wrenches,
+        constraints,
+        shapes,
+        controller,
+        settings,
+    ];
+    let all = format!("{parts:#?}");
+    let lines = all.lines();
+    let said: Vec<&str> = lines
+        .filter(|line| !line.trim_start().starts_with("span: "))
+        .collect();
+    said.join("\n")
 }

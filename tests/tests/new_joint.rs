@@ -108,7 +108,14 @@ fn a_new_spec_is_picked_up_checked_and_removed() {
     assert!(copy.path("generated/src/joints/pin_slot.rs").exists());
     assert!(copy.path("generated/pages/pin_slot.md").exists());
     assert_eq!(copy.check(), Ok(()));
-    copy.succeeds(&["test", "--package", "hamel-tests", "--test", "laws"]);
+    copy.succeeds(&[
+        "test",
+        "--package",
+        "hamel-tests",
+        "--test",
+        "kernels",
+        "laws",
+    ]);
     copy.succeeds(&[
         "run",
         "--package",

@@ -22,6 +22,10 @@ Examples:
       the state at three times, as JSON on stdout
   hamel simulate anymal.urdf --floating-base --t-end 0.5
       a robot in URDF, from its home position at rest; `hamel import` makes a scene of it that can be edited
+  hamel simulate scenes/panda7_tracking.toml
+      with the controller that the scene has; the summary says how well it did
+  hamel simulate panda7.urdf --controller hold.toml --t-end 2
+      with the `[controller]` of a file of its own; scenes/README.md describes the kinds
 
 The CSV file has one row a sample: `t_s`, `energy_J`, and for each body NAME
   NAME.x_m, .y_m, .z_m                       position of the centre of mass, world axes
@@ -50,6 +54,10 @@ pub struct Args {
     #[arg(long)]
     pub floating_base: bool,
 
+    /// Take the [controller] of FILE, instead of the scene's own if it has one
+    #[arg(long, value_name = "FILE")]
+    pub controller: Option<PathBuf>,
+
     /// Form of the equations of motion
     #[arg(long, value_enum)]
     pub form: Option<FormName>,
@@ -67,7 +75,7 @@ pub struct Args {
     )]
     pub tol: Option<f64>,
 
-    /// Step of rk4, s; implies rk4
+    /// Step of rk4, s, shorter where samples are closer; implies rk4
     #[arg(
         long,
         value_name = "SECONDS",
@@ -80,7 +88,7 @@ pub struct Args {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub t_end: Option<f64>,
 
-    /// Time between two samples of the trajectory, s
+    /// Time between two samples of the trajectory, s; every method steps onto each of them
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub sample_step: Option<f64>,
 

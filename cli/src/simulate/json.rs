@@ -1,5 +1,6 @@
 //! The samples as JSON. Names and meaning of all keys are stable.
 
+use super::control::Outcome;
 use super::sample::Sample;
 use crate::output::Failure;
 use serde::Serialize;
@@ -18,6 +19,9 @@ pub struct Report<'a> {
     pub method: &'a str,
     /// The states asked for.
     pub samples: &'a [Sample<'a>],
+    /// What the controller did, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub control: Option<&'a Outcome>,
     /// What the simulation took.
     pub statistics: Statistics,
 }
@@ -81,6 +85,7 @@ mod tests {
             form: "lagrangian",
             method: "rk4",
             samples: &samples,
+            control: None,
             statistics,
         };
         let mut bytes = Vec::new();

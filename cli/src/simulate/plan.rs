@@ -2,10 +2,10 @@
 
 use super::args::Args;
 use super::{settings, times};
-use crate::output::{Failure, tell};
+use crate::output::{Failure, refuse_overwriting, tell};
 use hamel::integrate::{Method, Options};
 use hamel::registry::JointRegistry;
-use hamel_scene::{Scene, Settings, urdf};
+use hamel_scene::{Control, Scene, Settings, urdf};
 use std::path::{Path, PathBuf};
 
 /// A run, decided in every respect.
@@ -15,6 +15,8 @@ pub struct Plan {
     pub scene: Scene,
     /// Its settings under the options given; `t_end` is the end of the simulation.
     pub settings: Settings,
+    /// What controls the mechanism, if anything does.
+    pub control: Option<Control>,
     /// Sample times, s.
     pub times: Vec<f64>,
     /// Where the trajectory goes as CSV, if anywhere.
@@ -32,6 +34,10 @@ impl Plan {
     /// Mistakes in the scene; options out of range.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
         let scene = load(args, registry)?;
+        let control = match &args.controller {
+            Some(path) => Some(Control::load(path, &scene)?),
+            None => scene.control.clone(),
+        };
         if !args.quiet {
             tell(&scene.notices);
         }
@@ -44,14 +50,24 @@ impl Plan {
             settings.t_end = t_end;
             times
         };
-        Ok(Self {
+        let plan = Self {
             scene,
             settings,
+            control,
             times,
             csv: csv_path(args),
             parquet: args.parquet.clone(),
             html: args.html.clone(),
-        })
+        };
+        let read = [Some(&args.scene), args.controller.as_ref()];
+        refuse_overwriting(read.into_iter().flatten(), plan.files())?;
+        Ok(plan)
+    }
+
+    /// Whether anything but gravity can change the energy.
+    pub fn does_work(&self) -> bool {
+        let mechanism = &self.scene.mechanism;
+        self.control.is_some() || !mechanism.elements().is_empty() || !mechanism.drives().is_empty()
     }
 
     /// The files of the trajectory.
@@ -63,7 +79,15 @@ impl Plan {
     /// The method of integration and its accuracy, in words.
     pub fn method(&self) -> String {
         match self.settings.method {
-            Method::Rk4 { dt } => format!("rk4 with steps of {dt:?} s"),
+            Method::Rk4 { dt } => {
+                let shorter = self.times.windows(2).any(|pair| pair[1] - pair[0] < dt);
+                let note = if shorter {
+                    ", shorter where samples are closer"
+                } else {
+                    ""
+                };
+                format!("rk4 with steps of {dt:?} s{note}")
+            }
             Method::Controlled { pair, control } => {
                 format!("{} to {:e}", pair.name(), control.tolerance)
             }

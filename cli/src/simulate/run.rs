@@ -1,6 +1,7 @@
 //! The run itself: integrate, write the trajectory on the way, tell the result.
 
 use super::args::Args;
+use super::control::{Loop, Outcome};
 use super::csv::Trajectory;
 use super::json::{self, Report, Statistics};
 use super::page::Page;
@@ -11,7 +12,9 @@ use super::sample::Sample;
 use super::table::Summary;
 use crate::output::Failure;
 use hamel::dynamics::Recursive;
-use hamel::integrate::{IntegrateError, Solution, State, Step, integrate, no_inputs};
+use hamel::integrate::{
+    IntegrateError, Observer, Solution, State, Step, integrate, integrate_held, no_inputs,
+};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::io::Write;
@@ -25,41 +28,77 @@ use std::time::Instant;
 /// Mistakes in the scene or the options; a simulation that stops early; output that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let plan = Plan::new(args, registry)?;
-    let (solution, statistics) = simulate(&plan, args.quiet)?;
+    let run = simulate(&plan, args.quiet)?;
     if args.json {
-        return print_json(&plan, &solution, statistics);
+        return print_json(&plan, &run);
     }
     if args.quiet {
         return Ok(());
     }
-    print_summary(&plan, &solution, statistics)
+    print_summary(&plan, &run)
 }
 
-fn simulate(plan: &Plan, quiet: bool) -> Result<(Solution, Statistics), Failure> {
-    let mechanism = &plan.scene.mechanism;
+/// What a simulation came to.
+struct Run {
+    solution: Solution,
+    statistics: Statistics,
+    outcome: Option<Outcome>,
+}
+
+fn simulate(plan: &Plan, quiet: bool) -> Result<Run, Failure> {
+    let control = Loop::new(plan)?;
     let mut recorder = Recorder::new(plan, quiet)?;
-    let mut dynamics = Recursive::new(Arc::clone(mechanism));
     let start = Instant::now();
-    let result = integrate(
-        &mut dynamics,
-        &initial(plan),
-        &plan.options(),
-        &mut no_inputs,
-        &mut |step| recorder.see(step),
-    );
+    let result = move_on(plan, control.as_ref(), &mut |step| {
+        if let Some(control) = &control {
+            control.see(step);
+        }
+        recorder.see(step)
+    });
     let run_time_s = start.elapsed().as_secs_f64();
     recorder.finish()?;
-    let solution = result.map_err(|error| stopped(plan, &error))?;
+    let failure = control.as_ref().and_then(Loop::failure);
+    let solution = result.map_err(|error| match failure {
+        Some(cause) => stopped(plan, &cause),
+        None => stopped(plan, &error),
+    })?;
     let statistics = Statistics {
         steps: solution.statistics.steps,
         rejected: solution.statistics.rejected,
         evaluations: solution.statistics.evaluations,
         run_time_s,
     };
-    Ok((solution, statistics))
+    Ok(Run {
+        solution,
+        statistics,
+        outcome: control.map(Loop::finish),
+    })
 }
 
-fn stopped(plan: &Plan, error: &IntegrateError) -> Failure {
+/// Integrates, with feedback where there is a controller: at every instant, or held over its period.
+fn move_on(
+    plan: &Plan,
+    control: Option<&Loop>,
+    observer: &mut Observer<'_>,
+) -> Result<Solution, IntegrateError> {
+    let mut dynamics = Recursive::new(Arc::clone(&plan.scene.mechanism));
+    let (initial, options) = (initial(plan), plan.options());
+    let Some(control) = control else {
+        return integrate(&mut dynamics, &initial, &options, &mut no_inputs, observer);
+    };
+    let mut inputs = |time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]| {
+        control.fill(time, q, speeds, efforts);
+    };
+    match control.period() {
+        None => integrate(&mut dynamics, &initial, &options, &mut inputs, observer),
+        Some(period) => {
+            let (dynamics, inputs) = (&mut dynamics, &mut inputs);
+            integrate_held(dynamics, &initial, &options, period, inputs, observer)
+        }
+    }
+}
+
+fn stopped(plan: &Plan, error: &dyn std::fmt::Display) -> Failure {
     let files: Vec<String> = plan
         .files()
         .map(|path| path.display().to_string())
@@ -159,8 +198,8 @@ impl<'a> Recorder<'a> {
     }
 }
 
-fn print_json(plan: &Plan, solution: &Solution, statistics: Statistics) -> Result<(), Failure> {
-    let samples = solution.samples.iter();
+fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
+    let samples = run.solution.samples.iter();
     let samples: Vec<Sample<'_>> = samples
         .map(|state| sample(&plan.scene.mechanism, state))
         .collect::<Result<_, _>>()?;
@@ -169,22 +208,32 @@ fn print_json(plan: &Plan, solution: &Solution, statistics: Statistics) -> Resul
         form: plan.settings.form_name(),
         method: plan.settings.method.name(),
         samples: &samples,
-        statistics,
+        control: run.outcome.as_ref(),
+        statistics: run.statistics,
     })
 }
 
-fn print_summary(plan: &Plan, solution: &Solution, statistics: Statistics) -> Result<(), Failure> {
+fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
+    let solution = &run.solution;
     let mechanism = &plan.scene.mechanism;
     let (first, last) = (initial(plan), &solution.state);
-    let kinematics = mechanism.kinematics(&first.configuration, &first.speeds);
-    let kinematics = kinematics.map_err(|error| Failure::Simulation(error.to_string()))?;
+    let kinetic = |state: &State| {
+        let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
+        kinematics.map(|kinematics| kinematics.kinetic_energy())
+    };
+    let states = solution.samples.iter().chain([&first, last]);
+    let most = states
+        .map(kinetic)
+        .try_fold(0.0, |most: f64, energy| energy.map(|e| most.max(e)));
+    let most_kinetic_energy = most.map_err(|error| Failure::Simulation(error.to_string()))?;
     let summary = Summary {
         plan,
         first: &sample(mechanism, &first)?,
         last: &sample(mechanism, last)?,
-        first_kinetic_energy: kinematics.kinetic_energy(),
+        most_kinetic_energy,
         samples: solution.samples.len(),
-        statistics,
+        outcome: run.outcome.as_ref(),
+        statistics: run.statistics,
         approaches: &solution.approaches,
     };
     write!(std::io::stdout().lock(), "{summary}").map_err(Failure::stdout)

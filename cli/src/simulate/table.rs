@@ -1,5 +1,6 @@
 //! The summary for people: final state, energy, and what the simulation took.
 
+use super::control::Outcome;
 use super::json::Statistics;
 use super::plan::Plan;
 use super::sample::{BodySample, Sample};
@@ -20,9 +21,11 @@ pub struct Summary<'a> {
     /// State at the end.
     pub last: &'a Sample<'a>,
     /// Kinetic energy at time 0, J.
-    pub first_kinetic_energy: f64,
+    pub most_kinetic_energy: f64,
     /// Samples of the trajectory.
     pub samples: usize,
+    /// What the controller did, where there is one.
+    pub outcome: Option<&'a Outcome>,
     /// What the simulation took.
     pub statistics: Statistics,
     /// How near joints came to singular sets.
@@ -34,6 +37,9 @@ impl fmt::Display for Summary<'_> {
         self.scene(f)?;
         writeln!(f, "{}", bodies(self.last).trim_fmt())?;
         self.energy(f)?;
+        if let Some(outcome) = self.outcome {
+            write!(f, "{outcome}")?;
+        }
         let Statistics {
             steps,
             rejected,
@@ -80,15 +86,24 @@ impl Summary<'_> {
 
     fn energy(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (start, end) = (self.first.energy, self.last.energy);
-        let scale = start.abs().max(self.first_kinetic_energy);
-        let drift = end - start;
-        let relative = if scale > 0.0 { drift / scale } else { 0.0 };
-        writeln!(
+        let scale = start.abs().max(self.most_kinetic_energy);
+        let change = end - start;
+        // With nothing at work it is the integrator's alone.
+        let word = if self.plan.does_work() {
+            "change"
+        } else {
+            "drift"
+        };
+        write!(
             f,
-            "energy      {} J at the start, {} J at the end: drift {drift:.2e} J, relative {relative:.2e}",
+            "energy      {} J at the start, {} J at the end: {word} {change:.2e} J",
             decimal(start),
             decimal(end)
-        )
+        )?;
+        match scale > 0.0 {
+            true => writeln!(f, ", relative {:.2e}", change / scale),
+            false => writeln!(f),
+        }
     }
 }
 

@@ -4,8 +4,10 @@
 //! parameters, away from the loci that the spec excepts. Random points never show that. A certificate does: a constant, a sum of
 //! positive terms, or 1 as a combination of the functions and the relations.
 
+mod critical;
 mod sign;
 
+pub use self::critical::{Critical, Smooth};
 pub use self::sign::positive_parameters;
 
 use self::sign::Signs;
@@ -13,7 +15,7 @@ use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget
 use crate::manifold::Ideal;
 use crate::model::JointSpec;
 use num_traits::One;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most term operations that one search for a certificate may take.
 const CERTIFICATE_LIMIT: u64 = 60_000;
@@ -26,6 +28,8 @@ pub struct Domain<'a> {
     signs: Signs,
     /// Parameters of which the range holds 0.
     vanishing: BTreeSet<Symbol>,
+    /// The stored scalars at home.
+    home: BTreeMap<Symbol, Expr>,
 }
 
 /// Why some functions have no common zero.
@@ -85,6 +89,7 @@ impl<'a> Domain<'a> {
                 .filter(|parameter| parameter.may_vanish())
                 .map(|parameter| parameter.symbol.clone())
                 .collect(),
+            home: spec.home_values(),
         }
     }
 
@@ -116,6 +121,18 @@ impl<'a> Domain<'a> {
         self.signs.is_positive(expression) || self.signs.is_positive(&normal)
     }
 
+    /// Whether the expression is negative nowhere.
+    pub fn is_not_negative(&self, expression: &Expr) -> bool {
+        let normal = self.ideal.normal_form(expression);
+        self.signs.is_not_negative(expression) || self.signs.is_not_negative(&normal)
+    }
+
+    /// Whether no parameter that may be 0 is a factor of the only term.
+    fn has_unit_factor(&self, expression: &Expr) -> bool {
+        let mut units = expression.terms().flat_map(|(monomial, _)| monomial.units());
+        units.all(|(atom, _)| !matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s)))
+    }
+
     fn search(&self, expressions: &[Expr]) -> Option<Certificate> {
         let normal = |e: &Expr| self.ideal.normal_form(e);
         let all: Vec<Expr> = expressions
@@ -132,6 +149,7 @@ impl<'a> Domain<'a> {
         }
         let functions = all.len();
         let mut generators = all.clone();
+        let under_root = |e: &Expr| under_root(e).filter(|_| self.has_unit_factor(e));
         let under_roots: Vec<Expr> = expressions.iter().filter_map(under_root).collect();
         generators.extend(under_roots.iter().cloned());
         // A sum of terms that are never negative vanishes only where each of them does.
@@ -139,11 +157,11 @@ impl<'a> Domain<'a> {
             generators.extend(self.signs.zero_terms(e).into_iter().flatten());
         }
         let found = |except| Some(Certificate::NoCommonZero { functions, except });
-        if functions > 0 && self.ideal.has_no_zero_with(&generators) {
+        if functions > 0 && self.ideal.has_no_zero_with(&generators, &self.vanishing) {
             return found(false);
         }
         generators.extend(self.loci.iter().enumerate().map(away_from));
-        match !self.loci.is_empty() && self.ideal.has_no_zero_with(&generators) {
+        match !self.loci.is_empty() && self.ideal.has_no_zero_with(&generators, &self.vanishing) {
             true => found(true),
             false => None,
         }

@@ -82,8 +82,18 @@ impl Signs {
     /// Whether the expression is positive wherever it is defined: a sum of terms that are not negative, one of them positive, or of which
     /// the constant ones outweigh the bounds of all that may be negative.
     pub fn is_positive(&self, expression: &Expr) -> bool {
+        self.exceeds(expression, false)
+    }
+
+    /// Whether the expression is negative nowhere, by the same means.
+    pub fn is_not_negative(&self, expression: &Expr) -> bool {
+        self.exceeds(expression, true)
+    }
+
+    /// Whether the expression is positive, or, where that is `enough`, not negative.
+    fn exceeds(&self, expression: &Expr, enough: bool) -> bool {
         let mut constant = Expr::zero();
-        let mut strict = false;
+        let mut strict = enough;
         for (monomial, coefficient) in expression.terms() {
             if monomial.is_unit() {
                 constant += &Expr::term(coefficient.clone(), monomial.clone());
@@ -249,6 +259,12 @@ impl Signs {
                 let Some(units) = of_condition.recip().map(|m| monomial.times(&m)) else {
                     return false;
                 };
+                let vanishes = |(atom, power): &(Atom, i32)| {
+                    *power < 0 && matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s))
+                };
+                if units.units().iter().any(vanishes) {
+                    return false;
+                }
                 let sign = self.sign(&units);
                 let rest = rest - &condition.scaled(&(coefficient / c), &units);
                 sign != Sign::Unknown

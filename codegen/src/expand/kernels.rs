@@ -3,6 +3,7 @@
 use super::{Expansion, finite, general, hamel};
 use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
+use crate::domain::{Critical, Domain};
 use crate::expr::{Role, Symbol};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
@@ -179,12 +180,13 @@ impl Maker<'_> {
             true => Structure::Constant,
             false => Structure::General,
         };
-        let singular = with(
+        let mut singular = with(
             KernelKind::Singularity,
             vec![],
             singular_functions(spec),
             singular,
         );
+        singular.outputs.extend(side_of_home(spec, self.x.exponential));
         let Some((values, gradient)) = relations else {
             return vec![rate, project, residual, singular];
         };
@@ -281,6 +283,16 @@ impl Maker<'_> {
 fn singular_functions(spec: &JointSpec) -> Matrix {
     let functions = spec.loci.iter().map(|locus| locus.value.function.clone());
     Matrix::column_vector(functions.collect())
+}
+
+/// What is positive on the side of home of the loci, where functions of the joint have no value on the other.
+fn side_of_home(spec: &JointSpec, exponential: bool) -> Option<Matrix> {
+    if spec.loci.is_empty() {
+        return None;
+    }
+    let functions = Critical::declared(spec, exponential);
+    let sides = Domain::new(spec).sides(&functions);
+    (!sides.is_empty()).then(|| Matrix::column_vector(sides))
 }
 
 /// A kernel without intermediate lines.

@@ -155,7 +155,8 @@ fn relation_of_atom(atom: &Atom) -> Option<Expr> {
             Some(&(&cos.square() + &sin.square()) - &Expr::one())
         }
         (Function::Sqrt, [x]) => Some(&itself.square() - x),
-        (Function::Recip, [x]) => Some(&(&itself * x) - &Expr::one()),
+        // Nothing times 0 is 1: the reciprocal of 0 would make every expression 0.
+        (Function::Recip, [x]) if !x.is_zero() => Some(&(&itself * x) - &Expr::one()),
         _ => None,
     }
 }

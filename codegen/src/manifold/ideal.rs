@@ -2,7 +2,7 @@
 
 use super::angles;
 use super::reduction::Reduction;
-use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
 use crate::matrix::Matrix;
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
@@ -204,8 +204,9 @@ impl Ideal {
         matrix.map(|entry| self.simplest(entry))
     }
 
-    /// Whether the expressions have no common zero on the manifold, shown by 1 being among the combinations of their numerators.
-    pub fn has_no_zero_with(&self, expressions: &[Expr]) -> bool {
+    /// Whether the expressions have no common zero on the manifold, shown by 1 being among the combinations of their numerators. Nothing is
+    /// divided by the `vanishing` parameters, so that this holds where they are 0, too.
+    pub fn has_no_zero_with(&self, expressions: &[Expr], vanishing: &BTreeSet<Symbol>) -> bool {
         let numerators: Vec<Expr> = expressions.iter().map(|e| self.numerator(e)).collect();
         let numerators = angles::unified_all(&numerators);
         let functions: BTreeSet<Atom> = numerators
@@ -213,9 +214,22 @@ impl Ideal {
             .flat_map(Expr::related_functions)
             .collect();
         let relations = relations_of(&functions, |function| function != Function::Recip);
-        self.own
-            .with(&[relations, numerators].concat())
-            .is_trivial()
+        let all = [relations, numerators].concat();
+        let own = self.own.relations();
+        if own.iter().chain(&all).all(|e| e.symbols().is_disjoint(vanishing)) {
+            return self.own.with(&all).is_trivial();
+        }
+        let undivided = own.into_iter().chain(all).filter(|e| !divides(e, vanishing));
+        let polynomials: Vec<Expr> = undivided.map(|e| indeterminate(&e, vanishing)).collect();
+        Reduction::new(&polynomials).is_trivial()
+    }
+
+    /// Whether its basis holds where those parameters are 0, too: whether it follows from the relations without division by them.
+    pub fn follows_undivided(&self, relations: &[Expr], vanishing: &BTreeSet<Symbol>) -> bool {
+        let free = |e: &Expr| indeterminate(e, vanishing);
+        let undivided = Self::new(&relations.iter().map(free).collect::<Vec<_>>());
+        let mut basis = self.own.relations().into_iter();
+        basis.all(|e| !divides(&e, vanishing) && undivided.vanishes(&free(&e)))
     }
 
     /// Sines and roots complete the basis; quotients only rewrite, since their completion grows.
@@ -233,6 +247,22 @@ impl Ideal {
         }
         reduction
     }
+}
+
+/// The expression with the parameters as indeterminates, which may be 0.
+fn indeterminate(expression: &Expr, parameters: &BTreeSet<Symbol>) -> Expr {
+    let stand_in = |symbol: &Symbol| {
+        let name = format!("{}_or_zero", symbol.name);
+        Expr::symbol(&Symbol::new(Role::Constant, symbol.index.into(), &name))
+    };
+    let values = parameters.iter().map(|p| (p.clone(), stand_in(p)));
+    expression.substitute(&values.collect())
+}
+
+/// Whether a term of the polynomial is divided by one of the parameters.
+fn divides(expression: &Expr, parameters: &BTreeSet<Symbol>) -> bool {
+    let mut factors = expression.terms().flat_map(|(monomial, _)| monomial.units());
+    factors.any(|(atom, power)| matches!(atom, Atom::Symbol(s) if *power < 0 && parameters.contains(s)))
 }
 
 /// The relations of those functions that are wanted, each once.

@@ -77,6 +77,12 @@ impl Reduction {
         &self.basis
     }
 
+    /// The elements of the basis, in the parameters themselves.
+    pub fn relations(&self) -> Vec<Expr> {
+        let relations = self.basis.iter().map(|e| self.bound(e));
+        relations.filter(|e| !e.is_zero()).collect()
+    }
+
     /// The normal form of an expression.
     pub fn normal_form(&self, expression: &Expr) -> Expr {
         let all: Vec<&Expr> = self.basis.iter().chain(&self.rules).collect();

@@ -1,116 +1,136 @@
-//! The claim that everything is defined: no quotient divides by zero, no root or logarithm leaves the positive numbers.
+//! The claim that everything is defined: no quotient divides by zero, no root or logarithm leaves the positive numbers, no angle jumps.
 
 use super::{Attempt, Prover, certified, refuted};
-use crate::expr::{Atom, Expr, Function, Role};
+use crate::diagnostic::Diagnostic;
+use crate::domain::{Critical, Domain};
+use crate::expand;
+use crate::expr::{Expr, Function};
 use crate::matrix::Matrix;
+use crate::model::JointSpec;
 use crate::spec::code;
 use std::collections::BTreeSet;
+use std::ops::Range;
 
-impl Prover<'_> {
-    /// Every quotient, root and logarithm in what is evaluated at Q is regular there.
-    pub(super) fn is_defined(&self) -> Attempt {
-        let critical = self.critical();
-        if critical.is_empty() {
-            return Ok(None);
-        }
-        let open: Vec<&(Function, Expr)> = critical
-            .iter()
-            .filter(|(function, argument)| !self.is_regular(*function, argument))
-            .collect();
-        let Some((function, argument)) = open.first() else {
-            let count = critical.len();
-            return Ok(Some(certified(
-                "defined",
-                &self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q"),
-                &format!(
-                    "quotients, roots and logarithms in them: {count}; none of their arguments vanishes"
-                ),
-            )));
-        };
-        let message = match function {
-            Function::Recip => format!("a quotient by {argument}, which may be 0"),
-            Function::Ln => {
-                format!("the logarithm of {argument}, which is not shown to be positive")
-            }
-            _ => format!("the root of {argument}, which is not smooth where that is 0"),
-        };
-        Err(Box::new(
-            refuted(code::NOT_DEFINED, &self.spec.pose.span, &message, "the joint needs it")
-                .help(format!("if the joint ends there, declare it: `except {argument} = 0;`; ranges of parameters and `require` help to show that it does not vanish")),
-        ))
-    }
-
-    fn is_regular(&self, function: Function, argument: &Expr) -> bool {
-        let nonzero = || self.domain.nonzero(argument).is_some();
-        match function {
-            Function::Recip => nonzero(),
-            // Where it is not 0 it keeps its sign on the component of home.
-            _ => {
-                self.domain.is_positive(argument)
-                    || (nonzero() && self.domain.is_positive(&self.at_home(argument)))
-            }
-        }
-    }
-
-    fn at_home(&self, argument: &Expr) -> Expr {
-        let manifold = &self.spec.manifold.value;
-        let home = self.spec.home.as_ref().map(|home| home.value.clone());
-        let home = home.unwrap_or_else(|| manifold.home());
-        argument.substitute(&manifold.coordinates().into_iter().zip(home).collect())
-    }
-
-    /// Functions with a singular argument, with that argument, in all that is evaluated at a configuration.
-    fn critical(&self) -> BTreeSet<(Function, Expr)> {
-        let spec = self.spec;
-        let mut found = BTreeSet::new();
-        let pose = &spec.pose.value;
-        let declared = [&spec.twist_map, &spec.constraint, &spec.speed_basis]
-            .into_iter()
-            .flatten();
-        let matrices: Vec<&Matrix> = [&pose.rotation, &pose.translation]
-            .into_iter()
-            .chain(declared.map(|d| &d.value))
-            .chain([&self.x.velocity_map.base, &self.x.velocity_map_inverse])
-            .chain(&self.x.velocity_map.slopes)
-            .chain([
-                &self.x.nonholonomic.constraint,
-                &self.x.nonholonomic.speed_basis,
-            ])
-            .collect();
-        matrices
-            .iter()
-            .flat_map(|m| m.entries())
-            .for_each(|e| collect(e, &mut found));
-        let moved = spec.retract.as_ref().filter(|_| !self.x.exponential);
-        let at_base = moved.map(|d| d.value.iter().map(|e| e.at_zero(&self.x.arguments.local)));
-        at_base
-            .into_iter()
-            .flatten()
-            .for_each(|e| collect(&e, &mut found));
-        found
+/// Φ has derivatives at ϕ = 0. They are taken before anything is proved, and mean nothing where it has none.
+pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Diagnostic> {
+    let Some(declared) = &spec.retract else {
+        return Ok(());
+    };
+    let domain = Domain::new(spec);
+    let found = Critical::in_retract(spec);
+    let open = found.iter().find(|f| domain.smooth(f).is_none());
+    match open {
+        // Φ = Q exp(ϕ) is evaluated in closed form, however it is written.
+        Some(critical) if !expand::is_exponential(spec) => Err(refusal(critical, &declared.span)),
+        _ => Ok(()),
     }
 }
 
-fn collect(expression: &Expr, found: &mut BTreeSet<(Function, Expr)>) {
-    for atom in expression.atoms() {
-        let Atom::Apply(application) = &atom else {
-            continue;
-        };
-        application
-            .arguments
-            .iter()
-            .for_each(|argument| collect(argument, found));
-        let singular = matches!(
-            application.function,
-            Function::Recip | Function::Sqrt | Function::Ln
-        );
-        if let (true, [argument]) = (singular, application.arguments.as_slice())
-            && argument
-                .symbols()
-                .iter()
-                .any(|symbol| matches!(symbol.role, Role::Coordinate | Role::Parameter))
-        {
-            found.insert((application.function, argument.clone()));
+impl Prover<'_> {
+    /// Every quotient, root, logarithm and angle in what is evaluated at Q is smooth there.
+    pub(super) fn is_defined(&self) -> Attempt {
+        let (declared, derived) = (Critical::declared(self.spec, self.x.exponential), self.derived_functions());
+        let count = declared.union(&derived).count();
+        if count == 0 {
+            return Ok(None);
         }
+        let is_open = |f: &&Critical| self.domain.smooth(f).is_none();
+        let open = declared.iter().find(is_open).or_else(|| {
+            let mut derived = derived.iter().filter(is_open);
+            derived.find(|f| !self.follows(f, &declared))
+        });
+        if let Some(open) = open {
+            return Err(Box::new(refusal(open, &self.spec.pose.span)));
+        }
+        let mut statement = self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q");
+        let sides = self.domain.sides(&declared);
+        if !sides.is_empty() {
+            let sides: Vec<String> = sides.iter().map(|side| format!("{side} > 0")).collect();
+            statement += &format!(", on the side of home alone: where {}", sides.join(" and "));
+        }
+        Ok(Some(certified(
+            "defined",
+            &statement,
+            &format!("quotients, roots, logarithms and angles in them: {count}; all are smooth at their arguments"),
+        )))
     }
+
+    /// Functions with a singular argument in what is derived and evaluated at a configuration.
+    fn derived_functions(&self) -> BTreeSet<Critical> {
+        let x = self.x;
+        let mut found = BTreeSet::new();
+        let matrices = [&x.twist_map, &x.twist_map_child]
+            .into_iter()
+            .chain([&x.jacobian.base, &x.jacobian.child])
+            .chain([&x.velocity_map.base, &x.velocity_map_inverse])
+            .chain(&x.velocity_map.slopes)
+            .chain([&x.nonholonomic.constraint, &x.nonholonomic.speed_basis]);
+        collect(matrices, &mut found);
+        found
+    }
+
+    /// Whether a function is smooth because declared ones are, whose arguments it holds in another form.
+    fn follows(&self, critical: &Critical, declared: &BTreeSet<Critical>) -> bool {
+        let [argument] = critical.arguments.as_slice() else {
+            return false;
+        };
+        let of_quotient = critical.function == Function::Recip;
+        let mut known = declared.iter().flat_map(|other| {
+            match (other.function, other.arguments.as_slice()) {
+                (Function::Recip, [x]) if of_quotient => vec![x.clone()],
+                (Function::Sqrt | Function::Ln, [x]) if of_quotient => vec![x.clone(), x.sqrt()],
+                (Function::Sqrt | Function::Ln, [x]) => vec![x.clone()],
+                (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
+                _ => vec![],
+            }
+        });
+        known.any(|x| self.ideal.vanishes(&(&x - argument)))
+    }
+}
+
+fn collect<'m>(matrices: impl Iterator<Item = &'m Matrix>, found: &mut BTreeSet<Critical>) {
+    let entries = matrices.flat_map(Matrix::entries);
+    entries.for_each(|e| Critical::collect(e, &[], found));
+}
+
+fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
+    let [argument, rest @ ..] = critical.arguments.as_slice() else {
+        return refuted(code::NOT_DEFINED, span, "a function without arguments", "here");
+    };
+    let moves = critical.arguments != critical.written;
+    let vanishes = critical.arguments.iter().all(Expr::is_zero);
+    if moves && vanishes {
+        return at_base(critical, span);
+    }
+    let message = match (critical.function, rest) {
+        (Function::Recip, _) => format!("a quotient by {argument}, which may be 0"),
+        (Function::Ln, _) => {
+            format!("the logarithm of {argument}, which is not shown to be positive")
+        }
+        (Function::Atan2, [x, ..]) => format!(
+            "the angle of the point ({x}, {argument}), which is not shown to keep off the origin and off the negative axis, where it jumps"
+        ),
+        _ => format!("the root of {argument}, which is not smooth where that is 0"),
+    };
+    let locus = match critical.function {
+        Function::Atan2 => "…".to_owned(),
+        _ => argument.to_string(),
+    };
+    refuted(code::NOT_DEFINED, span, &message, "the joint needs it").help(format!(
+        "if the joint ends there, declare it: `except {locus} = 0;`; ranges of parameters and `require` help to show that it does not vanish"
+    ))
+}
+
+/// The function is singular at ϕ = 0 itself.
+fn at_base(critical: &Critical, span: &Range<usize>) -> Diagnostic {
+    let written: Vec<String> = critical.written.iter().map(Expr::to_string).collect();
+    let written = written.join(", ");
+    let message = match critical.function {
+        Function::Recip => format!("Φ divides by {written}, which is 0 at ϕ = 0"),
+        Function::Ln => format!("Φ takes the logarithm of {written}, which is 0 at ϕ = 0"),
+        Function::Atan2 => format!("Φ takes atan2({written}), and both are 0 at ϕ = 0"),
+        _ => format!("Φ takes the root of {written}, which is 0 at ϕ = 0"),
+    };
+    refuted(code::NOT_DEFINED, span, &message, "has no derivatives at ϕ = 0")
+        .help("write Φ by functions that are smooth there: exp(phi), or a sum divided by its norm")
 }

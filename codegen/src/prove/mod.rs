@@ -14,6 +14,8 @@ mod numeric;
 mod retract;
 mod twist;
 
+pub use defined::retract_is_smooth;
+
 use crate::derived::{Claim, Proof};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;

@@ -9,11 +9,11 @@ use crate::matrix::Matrix;
 use crate::precise::Sampler;
 
 /// Bits of the numbers.
-const BITS: usize = 256;
+pub(super) const BITS: usize = 256;
 /// Random points of each claim.
 const POINTS: usize = 1000;
 /// Largest residual relative to the largest term: 200 bits agree. Rounding of some thousand operations takes less than 20 of the 256.
-const TOLERANCE: f64 = 6.2e-61;
+pub(super) const TOLERANCE: f64 = 6.2e-61;
 /// Most terms that are evaluated at each point: some 0.1 s for all points.
 const MOST_TERMS: usize = 100;
 /// What one point costs, and one term there, in term operations.

@@ -1,13 +1,25 @@
 //! Claims about Φ: it starts at Q, stays on the manifold, and is what the generator can invert.
 
+use super::numeric::{BITS, TOLERANCE};
 use super::{Attempt, Prover, certified, refuted, symbolic};
 use crate::derived::Proof;
 use crate::diagnostic::Diagnostic;
 use crate::expand::{Confinement, Motion, dimension, exponential};
-use crate::expr::Expr;
+use crate::expr::{Expr, Symbol, budget};
 use crate::matrix::Matrix;
+use crate::precise::Sampler;
 use crate::spec::code;
+use std::collections::BTreeMap;
 use std::ops::Range;
+
+/// Most term operations for the normal forms of the relations at Φ(Q, ϕ).
+const FINITE_LIMIT: u64 = 60_000;
+/// Random points at which a Φ that leaves the manifold is looked for: an expression that is not 0 hardly ever vanishes at one.
+const POINTS: usize = 8;
+/// Their |ϕ_k| are below 2⁻⁶: inside the domain of most Φ, and a term of order 12 is still 2⁻⁷², far above the tolerance.
+const REACH_BITS: i32 = 6;
+/// What one point costs, in term operations.
+const POINT_COST: u64 = 500;
 
 impl Prover<'_> {
     /// Φ as it is used: declared, else Q exp(ϕ).
@@ -56,8 +68,9 @@ impl Prover<'_> {
             (0..k).flat_map(move |i| (0..=i).map(move |j| motion.along_both(g, i, j)))
         });
         let residual = Matrix::column_vector(first.chain(second).collect());
+        let moved = declared.as_ref().map(|(moved, _)| moved.clone());
         let span = declared.map_or(self.spec.freedoms.span.clone(), |(_, span)| span);
-        self.identity(
+        let attempt = self.identity(
             "retract_on_manifold",
             "Φ(Q, ϕ) stays on the manifold to second order in ϕ",
             &residual,
@@ -80,7 +93,64 @@ impl Prover<'_> {
                     Matrix::column_vector(left)
                 ))
             },
-        )
+        );
+        match (attempt, moved.filter(|_| !self.x.exponential)) {
+            (Ok(Some(claim)), Some(moved)) => {
+                if let Some(value) = self.leaves_manifold(&moved) {
+                    return Err(Box::new(leaves_at_finite(&span, value)));
+                }
+                match self.stays_at_finite(&moved) {
+                    true => Ok(Some(symbolic(
+                        "retract_on_manifold",
+                        "Φ(Q, ϕ) stays on the manifold",
+                        Proof::NormalForm,
+                        "the relations at Φ(Q, ϕ) have normal form 0",
+                    ))),
+                    false => Ok(Some(claim)),
+                }
+            }
+            (attempt, _) => attempt,
+        }
+    }
+
+    /// Whether the relations are shown to hold at Φ(Q, ϕ) for every ϕ.
+    fn stays_at_finite(&self, moved: &[Expr]) -> bool {
+        let manifold = &self.spec.manifold.value;
+        let coordinates = manifold.coordinates().into_iter();
+        let values: BTreeMap<Symbol, Expr> = coordinates.zip(moved.iter().cloned()).collect();
+        let shown = budget::scope(FINITE_LIMIT, || {
+            let mut relations = manifold.relations().into_iter();
+            relations.all(|g| self.ideal.vanishes(&g.substitute(&values)))
+        });
+        shown.unwrap_or(false)
+    }
+
+    /// The value of a relation at some Φ(Q, ϕ) where it does not hold, if there is one among a few random points.
+    fn leaves_manifold(&self, moved: &[Expr]) -> Option<f64> {
+        let manifold = &self.spec.manifold.value;
+        let relations = manifold.relations();
+        if relations.is_empty() {
+            return None;
+        }
+        let mut sampler = Sampler::new(self.spec, BITS);
+        for _ in 0..POINTS {
+            let mut point = sampler.point().filter(|_| budget::spend(POINT_COST))?;
+            for local in &self.x.arguments.local {
+                let small = point.value(local).halved(REACH_BITS);
+                point.bind(local, small);
+            }
+            let values: Vec<_> = moved.iter().map(|entry| point.evaluate(entry)).collect();
+            for (coordinate, value) in manifold.coordinates().iter().zip(values) {
+                point.bind(coordinate, value);
+            }
+            let residuals = relations.iter().map(|g| point.evaluate_with_scale(g));
+            let mut sizes = residuals.map(|(value, scale)| (value.to_f64().abs(), scale));
+            // Where Φ is not defined the value is no number, and says nothing.
+            if let Some((value, _)) = sizes.find(|(value, scale)| *value > TOLERANCE * scale) {
+                return Some(value);
+            }
+        }
+        None
     }
 
     /// How the finite maps of Φ are evaluated.
@@ -139,4 +209,17 @@ impl Prover<'_> {
                 .help("if the joint ends there, declare it: `except … = 0;`"),
         }
     }
+}
+
+fn leaves_at_finite(span: &Range<usize>, value: f64) -> Diagnostic {
+    refuted(
+        code::LEAVES_MANIFOLD,
+        span,
+        "Φ leaves the manifold",
+        "meets the manifold's relations to second order in ϕ, but not beyond",
+    )
+    .note(format!(
+        "at a random Q and a random ϕ of some 0.01 a relation is {value:.3e}"
+    ))
+    .help("divide by the norm, or use exp or a Cayley map")
 }

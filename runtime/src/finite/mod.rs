@@ -37,6 +37,19 @@ pub fn least_absolute<T: Scalar, const R: usize>(numbers: [T; R]) -> T {
         .fold(least, |least, number| least + number * T::zero())
 }
 
+/// [`least_absolute`] where all of `positive` are positive, 0 where one of them is not or is NaN.
+///
+/// Beyond such a set a root or logarithm of the joint may have no value: there is no configuration on that side.
+pub fn least_absolute_beside<T: Scalar, const R: usize, const P: usize>(
+    numbers: [T; R],
+    positive: [T; P],
+) -> T {
+    let least = least_absolute(numbers);
+    positive.into_iter().fold(least, |value, number| {
+        T::select(T::zero().less(number), value, T::zero())
+    })
+}
+
 /// Euclidean norm, free of overflow and underflow: ϕ and residuals go down to 1e-300.
 fn norm<T: Scalar, const D: usize>(vector: &SVector<T, D>) -> T {
     let zero = T::zero();

@@ -1,7 +1,7 @@
 //! Finite maps against closed forms: Cayley's map on SO(3), the sphere with normalisation, an ellipsoid, redundant relations.
 
 use super::{
-    differential, differential_inverse, inverse, least_absolute, least_squares, local, project,
+    differential, differential_inverse, inverse, least_absolute, least_absolute_beside, least_squares, local, project,
 };
 use crate::scalar::{Dual, Scalar};
 use crate::spatial::{hat, so3};
@@ -359,6 +359,10 @@ fn the_distance_to_a_locus_is_the_least() {
     assert_eq!(least_absolute([3.0, -0.5, 2.0]), 0.5);
     assert!(least_absolute([3.0, f64::NAN, 2.0]).is_nan());
     assert!(least_absolute([f64::INFINITY, 1.0]).is_nan());
+    assert_eq!(least_absolute_beside([-2.0, 3.0], [1.0, 4.0]), 2.0);
+    assert_eq!(least_absolute_beside([2.0], [1.0, -1e-300]), 0.0);
+    assert_eq!(least_absolute_beside([f64::NAN], [-1.0]), 0.0);
+    assert_eq!(least_absolute_beside([2.0], [f64::NAN]), 0.0);
     assert_eq!(
         least_absolute([Dual::constant(2.0), Dual::new(-1.0, 4.0)]),
         Dual::new(1.0, -4.0)

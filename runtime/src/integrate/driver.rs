@@ -21,11 +21,35 @@ const FIXED_STRETCH: f64 = 1.0 + 1e-9;
 /// A remainder that exceeds a controlled step by less than this is taken at once: it saves a sliver of a step.
 const CONTROLLED_STRETCH: f64 = 1.01;
 
+/// An instant for new inputs that is nearer to a sample than this part of the period falls on it: the rest is rounding.
+const SAME_INSTANT: f64 = 1e-9;
+
+/// When inputs that are held are taken anew.
+struct Hold {
+    start: f64,
+    period: f64,
+    /// How many times they have been.
+    count: u64,
+}
+
+impl Hold {
+    /// The next instant.
+    fn next(&self) -> f64 {
+        self.start + self.period * self.count as f64
+    }
+
+    /// Whether the next instant is `time`, but for rounding.
+    fn falls_on(&self, time: f64) -> bool {
+        (self.next() - time).abs() <= SAME_INSTANT * self.period
+    }
+}
+
 /// An integration under way.
 pub(super) struct Driver<'a> {
     flow: Flow<'a>,
     stepper: Stepper,
     options: &'a Options,
+    hold: Option<Hold>,
     clock: Clock,
     start: f64,
     statistics: Statistics,
@@ -45,11 +69,15 @@ impl<'a> Driver<'a> {
         dynamics: &'a mut dyn Dynamics,
         initial: &State,
         options: &'a Options,
+        period: Option<f64>,
         inputs: &'a mut Inputs<'a>,
     ) -> Result<Self, IntegrateError> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
         let watch = Watch::new(&flow.mechanism);
         let (time, tableau) = (initial.time, options.method.tableau());
+        if period.is_some() {
+            flow.hold(time, &initial.configuration, &initial.speeds);
+        }
         let stepper = Stepper::new(
             tableau,
             &mut flow,
@@ -67,6 +95,11 @@ impl<'a> Driver<'a> {
             flow,
             stepper,
             options,
+            hold: period.map(|period| Hold {
+                start: time,
+                period,
+                count: 1,
+            }),
             clock: Clock::new(time),
             start: time,
             statistics: Statistics::default(),
@@ -119,13 +152,14 @@ impl<'a> Driver<'a> {
         Ok((change / pace).min(0.01 * span))
     }
 
-    /// The next sample time, or the end.
+    /// The next sample time, or the end, or the next instant for new inputs.
     fn target(&self) -> f64 {
-        let samples = &self.options.samples;
-        samples
-            .get(self.samples.len())
-            .copied()
-            .unwrap_or(self.options.t_end)
+        let sample = self.options.samples.get(self.samples.len()).copied();
+        let target = sample.unwrap_or(self.options.t_end);
+        match &self.hold {
+            Some(hold) if !hold.falls_on(target) => target.min(hold.next()),
+            _ => target,
+        }
     }
 
     /// One accepted step.
@@ -170,7 +204,13 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
-        let (error, joint) = self.stepper.error(&mut self.flow, step, tolerance)?;
+        let (error, joint) = match self.stepper.error(&mut self.flow, step, tolerance) {
+            Ok(found) => found,
+            Err(cause) => {
+                pacing.step = step * pacing.controller.reject(None);
+                return Err(cause);
+            }
+        };
         if error.is_nan() || error > 1.0 {
             pacing.step = step * pacing.controller.reject(Some(error));
             return Err(self.inaccurate(joint, error));
@@ -229,7 +269,19 @@ impl<'a> Driver<'a> {
         let accepted = self.stepper.accept(&mut self.flow, time);
         accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
-        Ok(())
+        self.renew_inputs(time)
+            .map_err(|cause| self.at_state(cause))
+    }
+
+    /// Takes new inputs where it is time for them, and the rates that they make.
+    fn renew_inputs(&mut self, time: f64) -> Result<(), StepFailure> {
+        let Some(hold) = self.hold.as_mut().filter(|hold| hold.falls_on(time)) else {
+            return Ok(());
+        };
+        hold.count += 1;
+        let (q, speeds) = (&self.stepper.configuration, self.stepper.speeds());
+        self.flow.hold(time, q, speeds);
+        self.stepper.evaluate_state(&mut self.flow, time)
     }
 
     fn at_state(&self, cause: StepFailure) -> IntegrateError {

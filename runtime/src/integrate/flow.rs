@@ -36,6 +36,8 @@ pub(super) struct Flow<'a> {
     pub(super) evaluations: usize,
     configuration: Vec<f64>,
     efforts: Vec<f64>,
+    /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
+    held: Option<Vec<f64>>,
     velocity: Vec<f64>,
     local_rate: Vec<f64>,
     /// One joint's S̄, S₀ or S₀⁻¹, K×K at most.
@@ -58,11 +60,21 @@ impl<'a> Flow<'a> {
             evaluations: 0,
             configuration: vec![0.0; layout.configuration],
             efforts: vec![0.0; layout.freedoms],
+            held: None,
             velocity: vec![0.0; widest],
             local_rate: vec![0.0; widest],
             matrix: vec![0.0; widest * widest],
             mechanism,
         }
+    }
+
+    /// Inputs at time `time`, `q` and v̄, held from now on.
+    pub(super) fn hold(&mut self, time: f64, q: &[f64], speeds: &[f64]) {
+        let freedoms = self.mechanism.layout().freedoms;
+        let mut held = self.held.take().unwrap_or_else(|| vec![0.0; freedoms]);
+        held.fill(0.0);
+        (self.inputs)(time, q, speeds, &mut held);
+        self.held = Some(held);
     }
 
     /// Room for the rates of one stage.
@@ -156,25 +168,30 @@ impl<'a> Flow<'a> {
             mechanism,
             configuration,
             efforts,
+            held,
             ..
         } = self;
+        let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
+            match held {
+                Some(held) => efforts.copy_from_slice(held),
+                None => {
+                    efforts.fill(0.0);
+                    inputs(time, configuration, speeds, efforts);
+                }
+            }
+            mechanism.set_driven_accelerations(time, efforts);
+        };
         match self.form {
             Form::Lagrangian => {
                 rates.speeds.copy_from_slice(y);
                 dynamics.complete_speeds(configuration, &mut rates.speeds)?;
-                efforts.fill(0.0);
-                inputs(time, configuration, &rates.speeds, efforts);
-                mechanism.set_driven_accelerations(time, efforts);
+                fill(&rates.speeds, efforts);
                 dynamics.accelerations(configuration, &rates.speeds, efforts, &mut rates.y)
             }
             Form::Hamiltonian => dynamics.momentum_rates(
                 configuration,
                 y,
-                &mut |speeds, efforts| {
-                    efforts.fill(0.0);
-                    inputs(time, configuration, speeds, efforts);
-                    mechanism.set_driven_accelerations(time, efforts);
-                },
+                &mut fill,
                 &mut rates.speeds,
                 &mut rates.y,
             ),

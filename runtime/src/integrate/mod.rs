@@ -47,7 +47,8 @@ pub fn no_observer(_step: &Step<'_>) -> ControlFlow<()> {
 
 /// Moves a mechanism from `initial` to [`Options::t_end`].
 ///
-/// Sample times are hit exactly, by shortening steps. The initial state is checked, not projected.
+/// Sample times are hit exactly, by shortening steps. The initial state is checked, not projected; speeds of
+/// joints whose motion is prescribed are those of their laws, whatever it says.
 ///
 /// # Errors
 /// Options out of range; `t_end` before the initial time; an initial state of the wrong size, not finite, or off the
@@ -59,9 +60,43 @@ pub fn integrate(
     inputs: &mut Inputs<'_>,
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
+    start(dynamics, initial, options, None, inputs)?.run(observer)
+}
+
+/// As [`integrate`], with inputs that are taken at the initial time and after each `period` (s), and held in between: what a digital
+/// controller does. Steps end at these instants.
+///
+/// # Errors
+/// As those of [`integrate`]; a period that is not positive and finite.
+pub fn integrate_held(
+    dynamics: &mut dyn Dynamics,
+    initial: &State,
+    options: &Options,
+    period: f64,
+    inputs: &mut Inputs<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Solution, IntegrateError> {
+    if !(period > 0.0 && period.is_finite()) {
+        return Err(IntegrateError::Option {
+            option: "period",
+            value: period,
+            requirement: "positive and finite",
+        });
+    }
+    start(dynamics, initial, options, Some(period), inputs)?.run(observer)
+}
+
+/// An integration that has been checked and stands at its initial state.
+fn start<'a>(
+    dynamics: &'a mut dyn Dynamics,
+    initial: &State,
+    options: &'a Options,
+    period: Option<f64>,
+    inputs: &'a mut Inputs<'a>,
+) -> Result<driver::Driver<'a>, IntegrateError> {
     options.check(initial.time)?;
     let mechanism = dynamics.mechanism();
     mechanism.check_configuration(&initial.configuration)?;
     mechanism.check_speeds("speeds", &initial.speeds)?;
-    driver::Driver::new(dynamics, initial, options, inputs)?.run(observer)
+    driver::Driver::new(dynamics, initial, options, period, inputs)
 }

@@ -43,7 +43,9 @@ impl Stepper {
         configuration: &[f64],
         speeds: &[f64],
     ) -> Result<Self, StepFailure> {
-        let y = flow.initial(configuration, speeds)?;
+        let mut speeds = speeds.to_vec();
+        flow.mechanism.set_driven_speeds(time, &mut speeds);
+        let y = flow.initial(configuration, &speeds)?;
         let freedoms = flow.mechanism.layout().freedoms;
         let mut stepper = Self {
             tableau,
@@ -156,7 +158,14 @@ impl Stepper {
             &mut self.configuration,
         );
         self.recentre(flow)?;
-        if !self.tableau.first_same_as_last {
+        let drives = flow.mechanism.drives();
+        for drive in drives {
+            let own = flow.mechanism.bodies()[drive.body].ranges().speeds.clone();
+            self.residue.y[own].fill(0.0);
+        }
+        // Prescribed speeds are what their laws say, not what steps have made of them.
+        flow.mechanism.set_driven_speeds(time, &mut self.y);
+        if !self.tableau.first_same_as_last || !drives.is_empty() {
             return self.evaluate_state(flow, time);
         }
         // The last stage was taken here; ϕ̇ alone belongs to the old base points.
@@ -196,7 +205,11 @@ impl Stepper {
     }
 
     /// Rates at the state: stage 0 of the next step.
-    fn evaluate_state(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
+    pub(super) fn evaluate_state(
+        &mut self,
+        flow: &mut Flow<'_>,
+        time: f64,
+    ) -> Result<(), StepFailure> {
         let rates = &mut self.stages[0];
         flow.evaluate(time, &self.base, &self.offset, &self.y, rates)?;
         check_finite(&flow.mechanism, &self.stages[0].phi, &self.stages[0].y)

@@ -51,6 +51,15 @@ impl<T: Scalar> SpatialInertia<T> {
         )
     }
 
+    /// Momentum of a body that turns about the frame's origin.
+    #[inline(always)]
+    pub fn apply_angular(&self, angular: &Vector3<T>) -> Vector6<T> {
+        join(
+            &self.inertia.apply(angular),
+            &cross(angular, &self.first_moment),
+        )
+    }
+
     /// The same inertia in a frame of the same origin, of which `rotation` holds this frame's axes as columns.
     #[inline(always)]
     pub fn rotated(&self, rotation: &Matrix3<T>) -> Self {

@@ -93,8 +93,7 @@ impl<T: Scalar> Inertia<T> for SpatialInertia<T> {
     }
     #[inline(always)]
     fn of_angular(&self, angular: &Vector3<T>) -> Vector6<T> {
-        let moment = self.inertia.apply(angular);
-        join(&moment, &cross(angular, &self.first_moment))
+        self.apply_angular(angular)
     }
     #[inline(always)]
     fn of_linear(&self, linear: &Vector3<T>) -> Vector6<T> {

@@ -1,5 +1,6 @@
 //! What a scene file says, checked as far as that goes without knowing the joints.
 
+use crate::control::ControllerDescription;
 use crate::forces::{
     ConstraintDescription, FrameDescription, JointForces, PointSpring, WrenchDescription,
 };
@@ -30,6 +31,8 @@ pub struct SceneDescription {
     pub constraints: Vec<ConstraintDescription>,
     /// What stands for bodies in pictures.
     pub shapes: Vec<ShapeDescription>,
+    /// What controls the mechanism, if anything does.
+    pub controller: Option<ControllerDescription>,
     /// Simulation settings.
     pub settings: Settings,
     pub(crate) source: Source,
@@ -48,6 +51,7 @@ impl SceneDescription {
             wrenches: Vec::new(),
             constraints: Vec::new(),
             shapes: Vec::new(),
+            controller: None,
             settings: Settings::default(),
             source,
         }

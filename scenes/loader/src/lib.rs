@@ -7,6 +7,7 @@
 //! steps together. Errors are [`Diagnostics`]: all mistakes of a file, each with the line it stands on.
 
 mod build;
+mod control;
 mod description;
 mod diagnostics;
 mod forces;
@@ -21,6 +22,10 @@ mod suggest;
 pub mod urdf;
 mod write;
 
+pub use control::{
+    Control, ControllerDescription, GoalDescription, LawDescription, PortDescription,
+    ReferenceDescription, RegulatorDescription,
+};
 pub use description::{
     BodyDescription, InitialDescription, JointDescription, Motion, Position, SceneDescription,
     TwistDescription, TwistFrame,

@@ -1,6 +1,7 @@
 //! A scene ready to simulate, and the ways to one.
 
 use crate::build::{self, State};
+use crate::control::Control;
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::notice::Notice;
@@ -48,6 +49,8 @@ pub struct Scene {
     pub speeds: Vec<f64>,
     /// What stands for bodies in pictures.
     pub shapes: Vec<ShapeDescription>,
+    /// What controls the mechanism, if anything does.
+    pub control: Option<Control>,
     /// Simulation settings.
     pub settings: Settings,
     /// What the scene says and the simulation leaves out.
@@ -164,6 +167,7 @@ fn describe(
             wrenches: draft.elements.wrenches,
             constraints: draft.elements.constraints,
             shapes: draft.elements.shapes,
+            controller: draft.controller,
             settings: draft.settings,
             ..SceneDescription::empty(source)
         }),

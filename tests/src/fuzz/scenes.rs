@@ -3,6 +3,7 @@
 use super::corpus::Corpus;
 use super::target::{Outcome, guarded};
 use crate::refusals::files;
+use crate::scenes::said;
 use hamel::registry::JointRegistry;
 use hamel_scene::urdf::{self, Options};
 use hamel_scene::{Diagnostics, Scene, SceneDescription};
@@ -104,16 +105,9 @@ fn again(text: &str, wanted: &SceneDescription, registry: &JointRegistry) -> Out
     if wanted.build(registry).is_ok() != found.build(registry).is_ok() {
         return Outcome::Broken("what is written builds otherwise".into());
     }
-    let masses = |scene: &SceneDescription| -> Vec<_> {
-        scene
-            .bodies
-            .iter()
-            .map(|body| (body.parent, body.mass))
-            .collect()
-    };
-    match masses(&found) == masses(wanted) {
+    match said(&found) == said(wanted) {
         true => Outcome::Accepted,
-        false => Outcome::Broken("what is written has other bodies".into()),
+        false => Outcome::Broken("what is written says something else".into()),
     }
 }
 

@@ -28,7 +28,15 @@ pub fn tokens(
                 (matrix(writer, rotation, r), vector(writer, translation, p));
             quote! { Pose { rotation: #rotation, translation: #translation } }
         }
-        (Output::Scalar, _) if kernel.kind == KernelKind::Singularity => least(writer, entries),
+        (Output::Scalar, [(_, functions)]) if kernel.kind == KernelKind::Singularity => {
+            least(writer, functions)
+        }
+        (Output::Scalar, [(_, functions), (_, sides)])
+            if kernel.kind == KernelKind::Singularity =>
+        {
+            let (functions, sides) = (list(writer, functions), list(writer, sides));
+            quote! { ::hamel::finite::least_absolute_beside(#functions, #sides) }
+        }
         (Output::Scalar, _) => norm(writer, entries),
         (Output::Vector(_), [(column, own)]) => vector(writer, column, own),
         (Output::Matrix(..), [(only, own)]) => matrix(writer, only, own),
@@ -63,8 +71,13 @@ fn vector(writer: &Writer<'_>, column: &Matrix, entries: &[Node]) -> TokenStream
 
 /// Least absolute value.
 fn least(writer: &Writer<'_>, functions: &[Node]) -> TokenStream {
-    let functions = functions.iter().map(|function| writer.formula(function));
-    quote! { ::hamel::finite::least_absolute([#(#functions),*]) }
+    let functions = list(writer, functions);
+    quote! { ::hamel::finite::least_absolute(#functions) }
+}
+
+fn list(writer: &Writer<'_>, entries: &[Node]) -> TokenStream {
+    let entries = entries.iter().map(|entry| writer.formula(entry));
+    quote! { [#(#entries),*] }
 }
 
 /// Root of the sum of squares.

@@ -1,9 +1,10 @@
 //! Division by parameters whose range says that they may be zero.
 
-use super::super::code;
+use super::super::{code, limits};
 use crate::diagnostic::Diagnostic;
-use crate::expr::{Atom, Expr, Symbol};
+use crate::expr::{Atom, Expr, Symbol, budget};
 use crate::model::{JointSpec, Parameter};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// An error for each statement and each parameter that may be zero and divides in it.
@@ -22,10 +23,33 @@ pub(super) fn errors(spec: &JointSpec, relations: Option<Range<usize>>) -> Vec<D
             .map(|parameter| error(parameter, span))
             .collect::<Vec<_>>()
     };
-    values(spec, &relations)
+    let mut errors: Vec<Diagnostic> = values(spec, &relations)
         .into_iter()
         .flat_map(divided)
-        .collect()
+        .collect();
+    if errors.is_empty() {
+        errors.extend(hidden(spec, &suspects, &relations));
+    }
+    errors
+}
+
+/// Errors for the parameters by which the basis of the relations was divided without a trace: `a x = 0` is not `x = 0` where a is 0.
+fn hidden(spec: &JointSpec, suspects: &[&Parameter], span: &Range<usize>) -> Vec<Diagnostic> {
+    let manifold = &spec.manifold.value;
+    let occurs = |parameter: &&&Parameter| {
+        let mut declared = manifold.declared().iter();
+        declared.any(|relation| relation.symbols().contains(&parameter.symbol))
+    };
+    let named: Vec<&&Parameter> = suspects.iter().filter(occurs).collect();
+    let symbols: BTreeSet<Symbol> = named.iter().map(|p| p.symbol.clone()).collect();
+    let is_undivided = budget::scope(limits::RELATIONS_BUDGET, || {
+        let relations = manifold.relations();
+        named.is_empty() || manifold.ideal().follows_undivided(&relations, &symbols)
+    });
+    match is_undivided {
+        Ok(true) => vec![],
+        _ => named.iter().map(|parameter| error(parameter, span)).collect(),
+    }
 }
 
 /// What each statement declares; of relations, the basis of their ideal.

@@ -1,6 +1,7 @@
 //! Tree to joint: what each statement declares, checked against the others.
 
 mod basis;
+mod conditions;
 mod config;
 mod division;
 mod equation;
@@ -141,6 +142,7 @@ fn declare(
     evaluator
         .errors
         .extend(division::errors(&spec, statements.relations_span()));
+    evaluator.errors.extend(conditions::errors(&spec));
     Some(spec)
 }
 

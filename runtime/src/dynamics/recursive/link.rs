@@ -80,6 +80,18 @@ impl Link {
         }
     }
 
+    /// The body's own inertia in world axes, once it moves, and the wrench that it takes.
+    #[inline(always)]
+    pub(super) fn load(&self, node: &mut Node) {
+        let Motion {
+            placement,
+            twist,
+            rate,
+        } = &node.motion;
+        node.rigid = self.inertia.rotated(&placement.rotation);
+        node.wrench = node.rigid.wrench(twist, rate);
+    }
+
     /// The body's own inertia in world axes, once it has been placed; no wrench.
     #[inline(always)]
     pub(super) fn turn(&self, node: &mut Node) {

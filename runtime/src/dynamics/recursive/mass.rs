@@ -170,8 +170,13 @@ impl Recursive {
         self.weigh(q);
         self.compose();
         // In sweeps of their own, so that none loads what has just been stored.
-        for (link, node) in self.links.iter().zip(&self.nodes) {
+        for ((link, rung), node) in self.links.iter().zip(&self.rungs).zip(&self.nodes) {
             let speeds = link.speeds.clone();
+            if matches!(rung.kind, Kind::TurnsOnce) {
+                let (turn, _) = split(&self.columns[speeds.start]);
+                self.momenta[speeds.start] = node.rigid.apply_angular(&turn);
+                continue;
+            }
             let (columns, momenta) = (&self.columns[speeds.clone()], &mut self.momenta[speeds]);
             link.joint.momenta(&node.rigid, columns, momenta);
         }

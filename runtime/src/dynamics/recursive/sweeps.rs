@@ -37,9 +37,6 @@ impl Recursive {
             let q = &q[link.configuration.clone()];
             let columns = &mut self.columns[link.speeds.clone()];
             link.joint.stand(q, &link.frame, from, to, columns);
-            if let Some(number) = link.slender {
-                self.slender[number].stand(link, q);
-            }
             // The body before: to load what a joint has just stored is to wait for it.
             if let Some(last) = index.checked_sub(1) {
                 self.links[last].turn(&mut self.nodes[last]);
@@ -47,6 +44,19 @@ impl Recursive {
         }
         if let (Some(link), Some(node)) = (self.links.last(), self.nodes.last_mut()) {
             link.turn(node);
+        }
+        if !self.slender.is_empty() {
+            self.stand_slender(q);
+        }
+    }
+
+    /// [`Recursive::weigh`] of the slender bodies. Apart from the others, here and in [`Recursive::advance`]: what they need would
+    /// slow down the sweep over all.
+    fn stand_slender(&mut self, q: &[f64]) {
+        for link in &self.links {
+            if let Some(number) = link.slender {
+                self.slender[number].stand(link, &q[link.configuration.clone()]);
+            }
         }
     }
 
@@ -65,11 +75,31 @@ impl Recursive {
             let motion = &mut own.motion;
             link.joint
                 .advance(state, &link.frame, &parent.motion, motion, columns);
-            own.rigid = link.inertia.rotated(&motion.placement.rotation);
-            own.wrench = own.rigid.wrench(&motion.twist, &motion.rate);
-            if let Some(number) = link.slender {
-                self.slender[number].advance(link, state, &parent.motion, own);
+            // The body before, as in `weigh`.
+            if let Some(last) = index.checked_sub(1) {
+                self.links[last].load(&mut self.nodes[last]);
             }
+        }
+        if let (Some(link), Some(node)) = (self.links.last(), self.nodes.last_mut()) {
+            link.load(node);
+        }
+        if !self.slender.is_empty() {
+            self.advance_slender(q, speeds, accelerations);
+        }
+    }
+
+    /// [`Recursive::advance`] of the slender bodies, once all bodies move.
+    fn advance_slender(&mut self, q: &[f64], speeds: &[f64], accelerations: Option<&[f64]>) {
+        for (index, link) in self.links.iter().enumerate() {
+            let Some(number) = link.slender else { continue };
+            let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
+            let accelerations = accelerations.map_or(&[][..], |all| &all[link.speeds.clone()]);
+            let state = (
+                &q[link.configuration.clone()],
+                &speeds[link.speeds.clone()],
+                accelerations,
+            );
+            self.slender[number].advance(link, state, &parent.motion, own);
         }
     }
 

@@ -1,10 +1,12 @@
 //! From what a scene file says to a mechanism and its state at time 0.
 
+mod control;
 mod equip;
 mod forces;
 mod joint;
 mod state;
 
+pub(crate) use control::control;
 pub(crate) use state::{State, state};
 
 use crate::description::SceneDescription;
@@ -51,6 +53,13 @@ pub(crate) fn scene(
     equip::complete(&mechanism, &configuration, &mut speeds)
         .map_err(|error| sink.push(Diagnostic::without_place(error.to_string())))
         .ok()?;
+    let control = match &description.controller {
+        Some(controller) => {
+            let begin = (configuration.as_slice(), description.settings.t_end);
+            Some(control::control(controller, &mechanism, begin, sink)?)
+        }
+        None => None,
+    };
     Some(Scene {
         name: description.name.clone(),
         description: description.description.clone(),
@@ -58,6 +67,7 @@ pub(crate) fn scene(
         configuration,
         speeds,
         shapes: description.shapes.clone(),
+        control,
         settings: description.settings,
         notices: Vec::new(),
     })

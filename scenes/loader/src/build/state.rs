@@ -64,7 +64,16 @@ pub(super) struct Stand {
 
 impl Stand {
     fn new(description: &JointDescription, joint: Arc<dyn AnyJoint>) -> Result<Self, Diagnostic> {
-        let name = description.name.value.clone();
+        Self::of(&description.name.value, joint, &description.span)
+    }
+
+    /// The joint called `name`, which messages find at `span`.
+    pub(super) fn of(
+        name: &str,
+        joint: Arc<dyn AnyJoint>,
+        span: &Span,
+    ) -> Result<Self, Diagnostic> {
+        let name = String::from(name);
         let body = BodySpec {
             name: name.clone(),
             joint_name: name.clone(),
@@ -76,7 +85,7 @@ impl Stand {
         };
         let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).map_err(|errors| {
             let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
-            Diagnostic::new(description.span.clone(), errors.join("; "))
+            Diagnostic::new(span.clone(), errors.join("; "))
         })?;
         Ok(Self {
             name,

@@ -41,7 +41,7 @@ fn optional<T>(
     }
 }
 
-fn per_freedom(value: &Value<'_>, sink: &mut Sink) -> Option<Located<PerFreedom>> {
+pub(super) fn per_freedom(value: &Value<'_>, sink: &mut Sink) -> Option<Located<PerFreedom>> {
     let numbers = if value.is_list() {
         let items = value.items("entry", "a number or a list of numbers", sink)?;
         let items: Vec<_> = items.iter().map(|item| item.not_negative(sink)).collect();
@@ -116,7 +116,7 @@ fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<Law>>> {
 }
 
 /// One speed: a number, or the table of a swing.
-fn speed(value: &Value<'_>, sink: &mut Sink) -> Option<Law> {
+pub(super) fn speed(value: &Value<'_>, sink: &mut Sink) -> Option<Law> {
     if !value.is_table() {
         let rate = value.number(sink)?.value;
         return Some(Law {

@@ -1,6 +1,7 @@
 //! From the text of a scene file to its parts. Errors are noted and reading goes on, so that one run finds them all.
 
 mod body;
+mod controller;
 mod elements;
 mod forces;
 mod initial;
@@ -16,12 +17,14 @@ mod tree;
 pub(crate) use body::WORLD;
 pub(crate) use tree::{cycles, order};
 
+use crate::control::ControllerDescription;
 use crate::description::{InitialDescription, JointDescription};
 use crate::diagnostics::Diagnostic;
 use crate::forces::JointForces;
 use crate::read::{Fields, Sink};
 use crate::settings::Settings;
 use crate::source::Located;
+use controller::Joints;
 use elements::Elements;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::Vector3;
@@ -40,6 +43,7 @@ pub(crate) struct Draft {
     /// Order in which every body follows its parent, and the parents; `None` if there is no such order.
     pub(crate) tree: Option<Tree>,
     pub(crate) elements: Elements,
+    pub(crate) controller: Option<ControllerDescription>,
     pub(crate) settings: Settings,
 }
 
@@ -82,6 +86,36 @@ pub(crate) fn draft(text: &str, sink: &mut Sink) -> Option<Draft> {
     Some(scene(&mut fields, sink)).inspect(|_| fields.finish(sink))
 }
 
+/// The joints of bodies that could all be read.
+fn joints(bodies: &[BodyDraft]) -> Joints<'_> {
+    let joints = bodies.iter().map(|body| body.joint.as_ref());
+    joints
+        .map(|joint| Some(joint?.name.value.as_str()))
+        .collect()
+}
+
+/// Reads a file that holds a controller and nothing else.
+pub(crate) fn controller(
+    text: &str,
+    joints: &Joints<'_>,
+    sink: &mut Sink,
+) -> Option<ControllerDescription> {
+    let (root, errors) = DeTable::parse_recoverable(text);
+    if !errors.is_empty() {
+        syntax::report(text, &errors, sink);
+        return None;
+    }
+    let mut fields = Fields::new(String::new(), 0..0, root.get_ref());
+    version(&mut fields, sink);
+    let found = controller::controller(&mut fields, joints, sink);
+    if found.is_none() && sink.len() == 0 {
+        let error = Diagnostic::new(0..0, "the file has no controller");
+        sink.push(error.help("a controller is a table that begins with `[controller]`"));
+    }
+    fields.finish(sink);
+    found
+}
+
 fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
     version(fields, sink);
     let name = fields.optional("name").and_then(|name| name.text(sink));
@@ -98,6 +132,7 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
         gravity: gravity.unwrap_or_else(Vector3::zeros),
         tree,
         elements,
+        controller: controller::controller(fields, &joints(&bodies), sink),
         bodies,
         settings: simulation::settings(fields, sink),
     }

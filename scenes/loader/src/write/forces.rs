@@ -50,14 +50,14 @@ fn spring(spring: &JointSpring) -> String {
     table(&entries)
 }
 
-fn per_freedom(numbers: &PerFreedom) -> String {
+pub(super) fn per_freedom(numbers: &PerFreedom) -> String {
     match numbers {
         PerFreedom::All(one) => number(*one),
         PerFreedom::Each(several) => list(several),
     }
 }
 
-fn speed(speed: &Law) -> String {
+pub(super) fn speed(speed: &Law) -> String {
     if speed.amplitude == 0.0 {
         return number(speed.rate);
     }

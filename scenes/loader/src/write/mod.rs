@@ -1,6 +1,7 @@
 //! A scene as the text of a scene file, made to be read by people; it reads back as the same scene.
 
 mod body;
+mod controller;
 mod forces;
 mod pose;
 mod shape;
@@ -32,6 +33,9 @@ impl SceneDescription {
         }
         forces::elements(&mut out, self);
         shape::shapes(&mut out, self);
+        if let Some(found) = &self.controller {
+            controller::controller(&mut out, found);
+        }
         settings(&mut out, &self.settings);
         out
     }

@@ -274,8 +274,24 @@ impl Recursive {
             let mut forces = [0.0; MOST_FREEDOMS];
             let (unit, forces) = (&unit[..link.freedoms.len()], &mut forces[..count]);
             link.joint.reduce_efforts(q, unit, forces);
-            forced[slot] = self.pushed(index, Vector6::zeros(), forces);
+            forced[slot] = match forces {
+                [force] => self.pushed_alone(index, *force),
+                forces => self.pushed(index, Vector6::zeros(), forces),
+            };
         }
+    }
+
+    /// [`Recursive::pushed`] without a wrench, of a joint of one speed.
+    fn pushed_alone(&self, index: usize, force: f64) -> Push {
+        let pivot = &self.pivots[self.links[index].speeds.start];
+        let load = force * pivot.inverse;
+        let mut push = Push {
+            body: index,
+            wrench: pivot.momentum * load,
+            ..Push::none()
+        };
+        push.loads[0] = load;
+        push
     }
 
     /// What is left of a wrench once the joint under it has given way to it under its own forces.

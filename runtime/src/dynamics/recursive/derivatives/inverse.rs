@@ -91,7 +91,7 @@ impl Recursive {
         Ok(())
     }
 
-    /// [`Recursive::inverse_dynamics_derivatives`] of what has been checked.
+    /// What is left of [`Recursive::inverse_dynamics_derivatives`] once the bodies move.
     pub(super) fn differentiate_needed(
         &mut self,
         q: &[f64],

@@ -1,0 +1,142 @@
+//! Functions that are not smooth at every argument, and where they are.
+
+use super::Domain;
+use crate::expr::{Atom, Expr, Function, Symbol};
+use crate::matrix::Matrix;
+use crate::model::JointSpec;
+use std::collections::BTreeSet;
+
+/// A function that is not smooth at every argument, as it stands in an expression.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Critical {
+    /// Quotient, root, logarithm or angle.
+    pub function: Function,
+    /// Its arguments at ϕ = 0.
+    pub arguments: Vec<Expr>,
+    /// Its arguments as they are written.
+    pub written: Vec<Expr>,
+    /// Whether sine and cosine alone are taken of it, which whole turns do not change.
+    periodic: bool,
+}
+
+impl Critical {
+    /// Those in what a spec declares and evaluates at a configuration; Φ at ϕ = 0, but where it is Q exp(ϕ), which has a closed form.
+    pub fn declared(spec: &JointSpec, exponential: bool) -> BTreeSet<Self> {
+        let mut found = match exponential {
+            true => BTreeSet::new(),
+            false => Self::in_retract(spec),
+        };
+        let pose = &spec.pose.value;
+        let declared = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
+        let matrices = [&pose.rotation, &pose.translation].into_iter();
+        let matrices = matrices.chain(declared.into_iter().flatten().map(|d| &d.value));
+        matrices
+            .flat_map(Matrix::entries)
+            .for_each(|e| Self::collect(e, &[], &mut found));
+        found
+    }
+
+    /// Those in the declared Φ, at ϕ = 0.
+    pub fn in_retract(spec: &JointSpec) -> BTreeSet<Self> {
+        let freedoms = spec.freedoms.value.iter();
+        let local: Vec<Symbol> = freedoms.map(|freedom| freedom.local.clone()).collect();
+        let mut found = BTreeSet::new();
+        let entries = spec.retract.iter().flat_map(|declared| &declared.value);
+        entries.for_each(|e| Self::collect(e, &local, &mut found));
+        found
+    }
+
+    /// Those in the expression, inside arguments too, where `local` are zero.
+    pub fn collect(expression: &Expr, local: &[Symbol], found: &mut BTreeSet<Self>) {
+        for atom in expression.atoms() {
+            Self::of_atom(&atom, local, false, found);
+        }
+    }
+
+    fn of_atom(atom: &Atom, local: &[Symbol], periodic: bool, found: &mut BTreeSet<Self>) {
+        let Atom::Apply(application) = atom else {
+            return;
+        };
+        let (function, arguments) = (application.function, &application.arguments);
+        if let (Function::Cos | Function::Sin, [angle]) = (function, arguments.as_slice())
+            && let Some(turned) = whole_multiple(angle)
+        {
+            return Self::of_atom(&turned, local, true, found);
+        }
+        for argument in arguments {
+            Self::collect(argument, local, found);
+        }
+        if matches!(
+            function,
+            Function::Recip | Function::Sqrt | Function::Ln | Function::Atan2
+        ) {
+            found.insert(Self {
+                function,
+                arguments: arguments.iter().map(|e| e.at_zero(local)).collect(),
+                written: arguments.clone(),
+                periodic,
+            });
+        }
+    }
+}
+
+/// The function of which the expression is a whole multiple.
+fn whole_multiple(expression: &Expr) -> Option<Atom> {
+    let (monomial, coefficient) = expression.single_term()?;
+    match (monomial.main(), monomial.units()) {
+        ([(atom @ Atom::Apply(_), 1)], []) if coefficient.is_integer() => Some(atom.clone()),
+        _ => None,
+    }
+}
+
+/// Where a function is smooth.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Smooth {
+    /// On the whole domain.
+    Everywhere,
+    /// Where this is positive, which it is at home and, off the loci, as far as one can go from there.
+    BesideHome(Expr),
+}
+
+impl Domain<'_> {
+    /// Where the function is shown to be smooth; `None` where that is open.
+    pub fn smooth(&self, critical: &Critical) -> Option<Smooth> {
+        match (critical.function, critical.arguments.as_slice()) {
+            (Function::Recip, [x]) => self.nonzero(x).map(|_| Smooth::Everywhere),
+            (Function::Atan2, arguments) if critical.periodic => {
+                self.no_common_zero(arguments).map(|_| Smooth::Everywhere)
+            }
+            // The angle jumps from π to −π where y passes through 0 at a negative x.
+            (Function::Atan2, [y, x]) => match self.nonzero(y) {
+                Some(_) => Some(Smooth::Everywhere),
+                None => self.positive_off_loci(x),
+            },
+            (_, [x]) => self.positive_off_loci(x),
+            _ => None,
+        }
+    }
+
+    /// What must be positive for the functions to be smooth, beside the loci: it changes its sign beyond them.
+    pub fn sides<'c>(&self, functions: impl IntoIterator<Item = &'c Critical>) -> Vec<Expr> {
+        let smooth = functions.into_iter().filter_map(|f| self.smooth(f));
+        let sides = smooth.filter_map(|smooth| match smooth {
+            Smooth::Everywhere => None,
+            Smooth::BesideHome(side) => Some(side),
+        });
+        let distinct: BTreeSet<Expr> = sides.collect();
+        distinct.into_iter().collect()
+    }
+
+    fn positive_off_loci(&self, x: &Expr) -> Option<Smooth> {
+        if self.is_positive(x) {
+            return Some(Smooth::Everywhere);
+        }
+        self.nonzero(x)?;
+        if self.is_not_negative(x) {
+            return Some(Smooth::Everywhere);
+        }
+        // What is not 0 keeps its sign on the component of home.
+        self.is_positive(&x.substitute(&self.home))
+            .then(|| Smooth::BesideHome(x.clone()))
+    }
+}

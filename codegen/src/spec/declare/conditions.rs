@@ -1,0 +1,72 @@
+//! Exceptions and requirements that say nothing, or forbid everything: found by certificates, when the whole joint is known.
+
+use super::super::code;
+use crate::diagnostic::Diagnostic;
+use crate::domain::Domain;
+use crate::model::{Declared, JointSpec, Locus, Requirement};
+
+/// An error for each exception that holds nowhere, or at home for some parameters, and for each requirement that is always or never true.
+pub(super) fn errors(spec: &JointSpec) -> Vec<Diagnostic> {
+    let without_loci = JointSpec {
+        loci: vec![],
+        ..spec.clone()
+    };
+    let loci = spec.loci.iter();
+    let of_loci = loci.filter_map(|locus| wrong_locus(locus, &without_loci));
+    let requirements = spec.requirements.iter().enumerate();
+    let of_requirements = requirements.filter_map(|(n, requirement)| {
+        let before = &spec.requirements[..n];
+        wrong_requirement(requirement, before, &without_loci)
+    });
+    of_loci.chain(of_requirements).collect()
+}
+
+fn wrong_locus(locus: &Declared<Locus>, without_loci: &JointSpec) -> Option<Diagnostic> {
+    let error = |message: &str| Diagnostic::new(code::LOCUS, locus.span.clone(), message);
+    let (domain, function) = (Domain::new(without_loci), &locus.value.function);
+    if let Some(certificate) = domain.nonzero(function) {
+        let error = error("this equation holds nowhere").label("excludes nothing");
+        let note = format!("left minus right is never 0: {certificate}");
+        return Some(error.note(note).help("remove it"));
+    }
+    let at_home = function.substitute(&without_loci.home_values());
+    // Of a number it is known already whether it is 0.
+    if at_home.symbols().is_empty() || domain.nonzero(&at_home).is_some() {
+        return None;
+    }
+    Some(
+        error("this equation may hold at home")
+            .label("excludes, for some parameters, the configuration in which a mechanism starts")
+            .note(format!("left minus right is {at_home} there"))
+            .help("declare another configuration by `home = …;`, or leave those parameters out by their ranges or by `require`"),
+    )
+}
+
+fn wrong_requirement(
+    requirement: &Declared<Requirement>,
+    before: &[Declared<Requirement>],
+    spec: &JointSpec,
+) -> Option<Diagnostic> {
+    let error = |message: &str| {
+        Diagnostic::new(code::REQUIREMENT, requirement.span.clone(), message)
+    };
+    let given = |requirements: &[Declared<Requirement>]| JointSpec {
+        requirements: requirements.to_vec(),
+        ..spec.clone()
+    };
+    let value = &requirement.value.value;
+    if Domain::new(&given(&[])).is_positive(value) {
+        let error = error("this requirement is always true");
+        return Some(
+            error
+                .label("follows from the ranges of the parameters")
+                .help("remove it"),
+        );
+    }
+    let never = Domain::new(&given(before)).is_not_negative(&-value);
+    never.then(|| {
+        error("this requirement is never true")
+            .label("contradicts the ranges of the parameters or the requirements above")
+            .help("no scene could use the joint")
+    })
+}

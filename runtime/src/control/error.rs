@@ -1,0 +1,152 @@
+//! Why a controller cannot be made, or cannot go on.
+
+use crate::dynamics::DynamicsError;
+use crate::elements::ElementError;
+use crate::integrate::StepFailure;
+use crate::mechanism::StateError;
+use alloc::string::String;
+
+/// Why a controller cannot be made, or cannot go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ControlError {
+    /// A number out of range.
+    #[error("{quantity} is {value}: it must be {requirement}")]
+    Value {
+        /// What it is.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        requirement: &'static str,
+    },
+    /// A list of the wrong size.
+    #[error("{quantity} has {found} entries, it must have {expected}")]
+    Size {
+        /// Which list.
+        quantity: &'static str,
+        /// Size it must have.
+        expected: usize,
+        /// Size given.
+        found: usize,
+    },
+    /// A joint that the law is not made for.
+    #[error("joint `{joint}` {reason}")]
+    Joint {
+        /// The joint.
+        joint: String,
+        /// What stands against it.
+        reason: &'static str,
+    },
+    /// A mechanism that the law is not made for.
+    #[error("{0}")]
+    Mechanism(&'static str),
+    /// The goal is not an equilibrium under the efforts that the law has.
+    #[error(
+        "joint `{joint}` does not rest at the goal: its speed `{speed}` feels {force:e} N m or N there, more than {limit:e}, and no input acts on it"
+    )]
+    NotAtRest {
+        /// The joint.
+        joint: String,
+        /// The speed.
+        speed: &'static str,
+        /// The force.
+        force: f64,
+        /// What passes for rounding.
+        limit: f64,
+    },
+    /// An input too weak to hold the goal.
+    #[error(
+        "joint `{joint}` needs the effort {effort:e} N m or N to rest at the goal, and its limit is {limit:e}"
+    )]
+    Weak {
+        /// The joint.
+        joint: String,
+        /// What it needs.
+        effort: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// No feedback of the inputs holds the goal.
+    #[error(
+        "no feedback of these inputs brings the mechanism back to the goal: to first order a motion is beyond their reach, and does not fade by itself"
+    )]
+    NotStabilizable,
+    /// The commanded speeds do not answer to the efforts.
+    #[error("at {time} s: efforts of joint `{joint}` do not determine its accelerations")]
+    Unresponsive {
+        /// The joint.
+        joint: String,
+        /// When, s.
+        time: f64,
+    },
+    /// A path on which the point stands still has no direction.
+    #[error(
+        "at {time} s the path has the speed {speed:e} m/s, and so no direction: it must be at least {limit:e} m/s"
+    )]
+    PathStands {
+        /// When, s.
+        time: f64,
+        /// Its speed, m/s.
+        speed: f64,
+        /// The least speed, m/s.
+        limit: f64,
+    },
+    /// The optimiser gives no inputs.
+    #[error("at {time} s the optimiser ends with `{status}`")]
+    Optimizer {
+        /// When, s.
+        time: f64,
+        /// What it says.
+        status: String,
+    },
+    /// A virtual spring or damper is refused.
+    #[error(transparent)]
+    Element(#[from] ElementError),
+    /// A step that cannot be linearised.
+    #[error(transparent)]
+    Step(#[from] StepFailure),
+    /// A state of the wrong size, or a local coordinate that cannot be found.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The equations of motion cannot be evaluated.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
+}
+
+/// A number that must hold a requirement.
+pub(super) fn require(
+    quantity: &'static str,
+    value: f64,
+    holds: bool,
+    requirement: &'static str,
+) -> Result<(), ControlError> {
+    match holds && value.is_finite() {
+        true => Ok(()),
+        false => Err(ControlError::Value {
+            quantity,
+            value,
+            requirement,
+        }),
+    }
+}
+
+/// A number that must be positive.
+pub(super) fn positive(quantity: &'static str, value: f64) -> Result<(), ControlError> {
+    require(quantity, value, value > 0.0, "positive and finite")
+}
+
+/// A list that must have a size.
+pub(super) fn size(
+    quantity: &'static str,
+    expected: usize,
+    found: usize,
+) -> Result<(), ControlError> {
+    match expected == found {
+        true => Ok(()),
+        false => Err(ControlError::Size {
+            quantity,
+            expected,
+            found,
+        }),
+    }
+}

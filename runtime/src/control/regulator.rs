@@ -1,0 +1,334 @@
+//! LQR: the feedback that holds an equilibrium at the least cost, to first order about it.
+
+use super::error::{require, size};
+use super::riccati::{self, Optimum, Weighting};
+use super::state::{check_free, check_sizes, deviation, largest};
+use super::{ControlError, Controller, DEVIATIONS, Measure};
+use crate::dynamics::{ForwardDerivatives, Recursive};
+use crate::mechanism::{Body, Mechanism};
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// Forces at rest that pass for rounding, as parts of the largest.
+const ROUNDING: f64 = 1e-9;
+
+/// A configuration at which a mechanism rests under constant efforts of some freedoms, and the freedoms that have inputs.
+#[derive(Clone, Debug)]
+pub struct Equilibrium {
+    mechanism: Arc<Mechanism>,
+    goal: Vec<f64>,
+    inputs: Vec<usize>,
+    /// τ of all freedoms at rest; 0 without input.
+    efforts: Vec<f64>,
+}
+
+impl Equilibrium {
+    /// The equilibrium `goal` of `mechanism` with inputs on the freedoms of the joints under the bodies `actuated`.
+    ///
+    /// # Errors
+    /// No joint that has inputs, or a nonholonomic one among them; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
+    /// that gravity or elements would move there and that no input holds.
+    pub fn new(
+        mechanism: Arc<Mechanism>,
+        goal: Vec<f64>,
+        actuated: &[usize],
+    ) -> Result<Self, ControlError> {
+        check_free(&mechanism)?;
+        mechanism.check_configuration(&goal)?;
+        let mut inputs = Vec::new();
+        for &index in actuated {
+            let body = mechanism.body(index)?;
+            if !super::state::is_holonomic(body) {
+                return Err(ControlError::Joint {
+                    joint: body.joint_name().into(),
+                    reason: "is nonholonomic: no smooth feedback of its speeds brings it back to a configuration",
+                });
+            }
+            inputs.extend(body.ranges().freedoms.clone());
+        }
+        inputs.sort_unstable();
+        inputs.dedup();
+        if inputs.is_empty() {
+            return Err(ControlError::Mechanism("no joint has inputs"));
+        }
+        let layout = *mechanism.layout();
+        let mut forces = vec![0.0; layout.speeds];
+        let rest = vec![0.0; layout.speeds];
+        Recursive::new(Arc::clone(&mechanism)).bias_forces(&goal, &rest, &mut forces)?;
+        let efforts = held(&mechanism, &inputs, &forces)?;
+        Ok(Self {
+            mechanism,
+            goal,
+            inputs,
+            efforts,
+        })
+    }
+
+    /// The mechanism.
+    pub const fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.mechanism
+    }
+
+    /// Q of all joints.
+    pub fn goal(&self) -> &[f64] {
+        &self.goal
+    }
+
+    /// The freedoms that have inputs, ascending.
+    pub fn inputs(&self) -> &[usize] {
+        &self.inputs
+    }
+
+    /// τ that holds the mechanism there, one entry a freedom.
+    pub fn efforts(&self) -> &[f64] {
+        &self.efforts
+    }
+
+    /// How many numbers the state has: ϕ from the goal, and v̄.
+    pub(super) fn states(&self) -> usize {
+        self.goal_sizes().0 + self.goal_sizes().1
+    }
+
+    fn goal_sizes(&self) -> (usize, usize) {
+        let layout = self.mechanism.layout();
+        (layout.freedoms, layout.speeds)
+    }
+
+    /// x = (ϕ, v̄) of a state into `x`.
+    pub(super) fn state(
+        &self,
+        q: &[f64],
+        speeds: &[f64],
+        x: &mut [f64],
+    ) -> Result<(), ControlError> {
+        let (phi, rates) = x.split_at_mut(self.goal_sizes().0);
+        deviation(&self.mechanism, &self.goal, q, phi)?;
+        rates.copy_from_slice(speeds);
+        Ok(())
+    }
+
+    /// Deviations of a state, as [`DEVIATIONS`] names them.
+    pub(super) fn measure(
+        &self,
+        q: &[f64],
+        speeds: &[f64],
+        x: &mut [f64],
+        values: &mut [f64],
+    ) -> Result<(), ControlError> {
+        check_sizes(&self.mechanism, q, speeds, &self.efforts)?;
+        self.state(q, speeds, x)?;
+        let (phi, rates) = x.split_at(self.goal_sizes().0);
+        values.copy_from_slice(&[largest(phi), largest(rates)]);
+        Ok(())
+    }
+
+    /// `A` and `B` of `ẋ = A x + B u` about the goal: `ϕ̇ = S₀⁻¹ S̄ v̄`, and v̄̇ by the derivatives of forward dynamics.
+    ///
+    /// # Errors
+    /// A singular mass matrix; elements that derivatives do not cover.
+    pub fn linearized(&self) -> Result<(DMatrix<f64>, DMatrix<f64>), ControlError> {
+        let (freedoms, speeds) = self.goal_sizes();
+        let mut derivatives = ForwardDerivatives::new(&self.mechanism);
+        let rest = vec![0.0; speeds];
+        Recursive::new(Arc::clone(&self.mechanism)).forward_dynamics_derivatives(
+            &self.goal,
+            &rest,
+            &self.efforts,
+            &mut derivatives,
+        )?;
+        let mut a = DMatrix::zeros(freedoms + speeds, freedoms + speeds);
+        for body in self.mechanism.bodies() {
+            let (own, rates) = (body.ranges().freedoms.start, body.ranges().speeds.start);
+            let map = self.kinematics(body);
+            let (rows, columns) = map.shape();
+            a.view_mut((own, freedoms + rates), (rows, columns))
+                .copy_from(&map);
+        }
+        a.view_mut((freedoms, 0), (speeds, freedoms))
+            .copy_from(&derivatives.by_local().matrix());
+        a.view_mut((freedoms, freedoms), (speeds, speeds))
+            .copy_from(&derivatives.by_speeds().matrix());
+        let mut b = DMatrix::zeros(freedoms + speeds, self.inputs.len());
+        let by_efforts = derivatives.by_efforts();
+        for (column, &freedom) in self.inputs.iter().enumerate() {
+            for row in 0..speeds {
+                b[(freedoms + row, column)] = by_efforts.entry(row, freedom);
+            }
+        }
+        Ok((a, b))
+    }
+
+    /// `S₀⁻¹ S̄` of one joint at the goal.
+    fn kinematics(&self, body: &Body) -> DMatrix<f64> {
+        let ranges = body.ranges();
+        let (freedoms, speeds) = (ranges.freedoms.len(), ranges.speeds.len());
+        let q = body.configuration(&self.goal);
+        let (mut inverse, mut basis) = (
+            DMatrix::zeros(freedoms, freedoms),
+            DMatrix::zeros(freedoms, speeds),
+        );
+        body.joint().velocity_map_inverse(q, inverse.as_mut_slice());
+        body.joint().speed_basis(q, basis.as_mut_slice());
+        inverse * basis
+    }
+}
+
+/// The efforts at rest of the freedoms that have inputs; every other speed must be at rest by itself.
+fn held(mechanism: &Mechanism, inputs: &[usize], forces: &[f64]) -> Result<Vec<f64>, ControlError> {
+    let mut efforts = vec![0.0; mechanism.layout().freedoms];
+    let limit = ROUNDING * largest(forces).max(1.0);
+    for body in mechanism.bodies() {
+        let ranges = body.ranges();
+        // Joints with inputs are holonomic: each freedom has its speed.
+        let has_inputs = inputs.contains(&ranges.freedoms.start);
+        for (place, speed) in ranges.speeds.clone().enumerate() {
+            let force = forces[speed];
+            if has_inputs {
+                efforts[ranges.freedoms.start + place] = force;
+            } else if force.is_nan() || force.abs() > limit {
+                return Err(ControlError::NotAtRest {
+                    joint: body.joint_name().into(),
+                    speed: body.joint().speeds()[place],
+                    force,
+                    limit,
+                });
+            }
+        }
+    }
+    Ok(efforts)
+}
+
+/// What deviations and inputs cost: the diagonals of Q and R.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weights {
+    /// One entry a freedom, 1/rad² or 1/m²; not negative.
+    pub position: Vec<f64>,
+    /// One entry a speed; not negative.
+    pub speed: Vec<f64>,
+    /// One entry an input; positive.
+    pub effort: Vec<f64>,
+}
+
+impl Weights {
+    /// The same weights for all.
+    pub fn uniform(equilibrium: &Equilibrium, [position, speed, effort]: [f64; 3]) -> Self {
+        let layout = equilibrium.mechanism.layout();
+        Self {
+            position: vec![position; layout.freedoms],
+            speed: vec![speed; layout.speeds],
+            effort: vec![effort; equilibrium.inputs.len()],
+        }
+    }
+
+    /// Q and R.
+    pub(super) fn matrices(
+        &self,
+        equilibrium: &Equilibrium,
+    ) -> Result<(DMatrix<f64>, DMatrix<f64>), ControlError> {
+        let layout = equilibrium.mechanism.layout();
+        size("position weights", layout.freedoms, self.position.len())?;
+        size("speed weights", layout.speeds, self.speed.len())?;
+        size(
+            "effort weights",
+            equilibrium.inputs.len(),
+            self.effort.len(),
+        )?;
+        for (quantity, weights) in [
+            ("a position weight", &self.position),
+            ("a speed weight", &self.speed),
+        ] {
+            for &weight in weights {
+                require(quantity, weight, weight >= 0.0, "at least 0 and finite")?;
+            }
+        }
+        for &weight in &self.effort {
+            require(
+                "an effort weight",
+                weight,
+                weight > 0.0,
+                "above 0 and finite",
+            )?;
+        }
+        let state: Vec<f64> = self.position.iter().chain(&self.speed).copied().collect();
+        let state = DMatrix::from_diagonal(&DVector::from_vec(state));
+        let input = DMatrix::from_diagonal(&DVector::from_column_slice(&self.effort));
+        Ok((state, input))
+    }
+}
+
+/// `u = u* − K x` with x = (ϕ, v̄) read about the goal, and K the gain of the least `∫ ½ xᵀQx + ½ (u − u*)ᵀR(u − u*)`.
+///
+/// ϕ comes from each joint's inverse Φ: on a ball joint it is the rotation vector from the goal, so that all attitudes at one angle are alike, and none is
+/// singular before half a turn.
+#[derive(Clone, Debug)]
+pub struct Regulator {
+    equilibrium: Equilibrium,
+    optimum: Optimum,
+    x: Vec<f64>,
+}
+
+impl Regulator {
+    /// The optimal feedback about an equilibrium.
+    ///
+    /// # Errors
+    /// Weights of the wrong size, or out of range; what [`Equilibrium::linearized`] refuses; motions that the inputs cannot bring back.
+    pub fn new(equilibrium: Equilibrium, weights: &Weights) -> Result<Self, ControlError> {
+        let (state, input) = weights.matrices(&equilibrium)?;
+        let (a, b) = equilibrium.linearized()?;
+        let weighting = Weighting {
+            state: &state,
+            input: &input,
+        };
+        Ok(Self {
+            optimum: riccati::continuous(&a, &b, weighting)?,
+            x: vec![0.0; equilibrium.states()],
+            equilibrium,
+        })
+    }
+
+    /// The equilibrium that it holds.
+    pub const fn equilibrium(&self) -> &Equilibrium {
+        &self.equilibrium
+    }
+
+    /// Its gain, and what the future costs to first order.
+    pub const fn optimum(&self) -> &Optimum {
+        &self.optimum
+    }
+}
+
+impl Controller for Regulator {
+    fn efforts(
+        &mut self,
+        _time: f64,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut [f64],
+    ) -> Result<(), ControlError> {
+        check_sizes(&self.equilibrium.mechanism, q, speeds, efforts)?;
+        self.equilibrium.state(q, speeds, &mut self.x)?;
+        efforts.copy_from_slice(&self.equilibrium.efforts);
+        for (row, &freedom) in self.equilibrium.inputs.iter().enumerate() {
+            let gain = self.optimum.gain.row(row);
+            let terms = gain.iter().zip(&self.x);
+            efforts[freedom] -= terms.map(|(k, x)| k * x).sum::<f64>();
+        }
+        Ok(())
+    }
+
+    fn measures(&self) -> &'static [Measure] {
+        DEVIATIONS
+    }
+
+    fn measure(
+        &mut self,
+        _time: f64,
+        q: &[f64],
+        speeds: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), ControlError> {
+        self.equilibrium.measure(q, speeds, &mut self.x, values)
+    }
+}
