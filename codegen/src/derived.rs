@@ -228,6 +228,8 @@ pub struct Derived {
     pub spec: JointSpec,
     /// Sizes.
     pub shape: Shape,
+    /// Dimension of what the relations that are checked cut out: k, or more where Q moves in an orbit that they do not describe.
+    pub cut_out: usize,
     /// Names of the speeds.
     pub speed_names: Vec<String>,
     /// Symbols of the kernels' arguments.

@@ -75,6 +75,7 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     kernels.iter().for_each(spend_on_formulas);
     Ok(Derived {
         shape: expansion.shape,
+        cut_out: expand::dimension::cut_out(&spec),
         speed_names: expand::speed_names(&spec),
         velocity_map_series: series(&spec, &expansion),
         arguments: expansion.arguments,

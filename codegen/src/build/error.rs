@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostics;
 use crate::emit::files::FileError;
 use crate::emit::report::AccuracyError;
-use crate::emit::rust::Malformed;
+use crate::emit::rust::WriteError;
 use std::fmt::{Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
 
@@ -24,8 +24,8 @@ pub enum BuildError {
     File(FileError),
     /// Committed files are not what the specs say: a line for each, `stale: joints/ball.rs`.
     NotFresh(Vec<String>),
-    /// Emitted code that is no Rust.
-    Malformed(Malformed),
+    /// Code could not be written.
+    Unwritten(WriteError),
     /// A page could not be made.
     Page(tera::Error),
     /// The table of measured errors is none.
@@ -98,7 +98,7 @@ impl Display for BuildError {
                     lines.join("\n")
                 )
             }
-            Self::Malformed(error) => write!(f, "{error}"),
+            Self::Unwritten(error) => write!(f, "{error}"),
             Self::Page(error) => write!(f, "cannot make a page: {error}"),
             Self::Accuracy { path, error } => write!(f, "{}: {error}", path.display()),
             Self::NoOutDir => f.write_str(
@@ -122,9 +122,9 @@ impl From<FileError> for BuildError {
     }
 }
 
-impl From<Malformed> for BuildError {
-    fn from(error: Malformed) -> Self {
-        Self::Malformed(error)
+impl From<WriteError> for BuildError {
+    fn from(error: WriteError) -> Self {
+        Self::Unwritten(error)
     }
 }
 

@@ -168,3 +168,19 @@ fn a_folder_that_does_not_exist_is_named() {
         "{error}"
     );
 }
+
+#[test]
+fn a_library_refuses_a_joint_that_no_parameters_build() {
+    let folder = folder("impossible");
+    let spec = "hamel = 1;\n/// Slides.\njoint slider(a: m > 0, b: m > 0) {\n    require a > 100 * b;\n    require a < 101 * b;\n    config z: R1;\n    H = trans([a, b, z]);\n}\n";
+    write(&folder, "slider.joint", spec);
+    let build = Build::new()
+        .specs(folder.join("joints"))
+        .library(folder.join("modules"), folder.join("pages"));
+    let error = build.generate(false).expect_err("no values are found");
+    assert_eq!(
+        error.to_string(),
+        "no values of the parameters of `slider` were found that meet `a > 100 * b`, `a < 101 * b`: narrow their ranges"
+    );
+    fs::remove_dir_all(folder).expect("can be removed");
+}

@@ -1,5 +1,6 @@
 //! Output: from derived kernels to Rust source, pages and terminal text.
 
+mod combinations;
 pub mod files;
 pub mod formula;
 pub mod names;

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Longest name made from a formula; longer formulas are named after the first symbols in them.
 const LONGEST: usize = 36;
 
-/// Names that every kernel may use: its arguments, the constants, and what is imported.
+/// Names that every kernel and `build` may use: their arguments, the constants, and what is imported.
 const RESERVED: &[&str] = &[
     "q",
     "phi",
@@ -24,6 +24,7 @@ const RESERVED: &[&str] = &[
     "pi",
     "relations",
     "relation",
+    "values",
     "sum",
     "rotation",
     "nearest_rotation",
@@ -46,6 +47,7 @@ const RESERVED_TYPES: &[&str] = &[
     "Joint",
     "JointEntry",
     "Limit",
+    "Patterns",
     "Pose",
     "ParameterError",
     "ParameterInfo",
@@ -128,15 +130,7 @@ pub struct Names {
 impl Names {
     /// Names for the parameters and for the arguments of all kernels.
     pub fn new(derived: &Derived) -> Self {
-        let mut taken = NameSet::default();
-        taken
-            .taken
-            .extend(RESERVED.iter().map(|name| (*name).to_owned()));
-        taken.taken.extend(number_words());
-        let mut names = Self {
-            by_symbol: BTreeMap::new(),
-            taken,
-        };
+        let mut names = Self::reserved();
         let arguments = &derived.arguments;
         names.claim_coordinates(&arguments.configuration);
         let parameters = derived
@@ -158,19 +152,22 @@ impl Names {
         names
     }
 
-    /// Names of the parameters alone, as the fields of the joint's type have them.
-    pub fn of_fields(derived: &Derived) -> Self {
-        let mut names = Self {
-            by_symbol: BTreeMap::new(),
-            taken: NameSet::default(),
-        };
-        names.taken.taken.extend(number_words());
-        for parameter in &derived.spec.parameters {
-            let name = parameter.symbol.name.to_string();
-            names.taken.taken.insert(name.clone());
-            names.by_symbol.insert(parameter.symbol.clone(), name);
-        }
+    /// Names of the parameters in `build`, where nothing else has a name but its argument and the constants.
+    pub fn of_parameters(derived: &Derived) -> Self {
+        let mut names = Self::reserved();
+        let parameters = derived.spec.parameters.iter();
+        parameters.for_each(|parameter| names.claim(&parameter.symbol));
         names
+    }
+
+    fn reserved() -> Self {
+        let mut taken = NameSet::default();
+        let reserved = RESERVED.iter().map(|name| (*name).to_owned());
+        taken.taken.extend(reserved.chain(number_words()));
+        Self {
+            by_symbol: BTreeMap::new(),
+            taken,
+        }
     }
 
     /// A single coordinate called `q` may shadow the argument that it is read from.
@@ -240,6 +237,11 @@ fn number_words() -> impl Iterator<Item = String> {
         .iter()
         .chain(&["half", "third", "quarter"])
         .map(|word| (*word).to_owned())
+}
+
+/// Whether the name is reserved for a number.
+pub fn is_number_word(name: &str) -> bool {
+    number_words().any(|word| word == name)
 }
 
 /// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `ratio_3_7`.

@@ -144,8 +144,8 @@ fn names_that_collide_are_told_apart() {
         "{text}"
     );
     assert!(
-        text.contains("requirement: \"other than zero\""),
-        "h divides, and its check is missing: {text}"
+        text.contains("requirement: \"other than 0\""),
+        "h has no range, and its check is missing: {text}"
     );
 }
 

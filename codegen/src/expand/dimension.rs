@@ -21,8 +21,8 @@ pub enum Confinement {
     Known,
     /// The declared or derived relations cut it out: the certificate in words.
     Relations(String),
-    /// Q moves in an orbit of the basis that the relations may not describe.
-    Orbit,
+    /// Q moves in an orbit of the basis; the relations that are checked cut out something of this dimension around it.
+    Orbit(usize),
 }
 
 /// Adds to the manifold the linear relations of the cosets in which the basis moves.
@@ -39,7 +39,7 @@ pub fn confine(spec: &mut JointSpec) {
     });
     let relations: Vec<Expr> = relations.collect();
     if !relations.is_empty() {
-        spec.manifold.value = spec.manifold.value.clone().constrained(relations);
+        spec.manifold.value = spec.manifold.value.clone().confined(relations);
     }
 }
 
@@ -231,10 +231,34 @@ pub fn confinement(
             Err(_) => {}
         }
     }
-    match exponential {
-        true => Ok(Confinement::Orbit),
+    // Declared relations that do not describe the orbit would be projected onto as if they did.
+    match exponential && (manifold.is_coset() || manifold.declared().is_empty()) {
+        true => Ok(Confinement::Orbit(cut_out(spec))),
         false => Err(last),
     }
+}
+
+/// Dimension of what the relations that are checked cut out: k, or more where they are those of a coset around the orbit in which Q moves.
+///
+/// The relations of a coset are all linear functions that vanish on an algebra of matrices. At any invertible member Q, a
+/// direction `Q b` meets them exactly where b is in that algebra: their derivatives have the same rank everywhere, that at the identity.
+pub fn cut_out(spec: &JointSpec) -> usize {
+    let manifold = &spec.manifold.value;
+    if !manifold.is_coset() && !manifold.declared().is_empty() {
+        return spec.freedoms.value.len();
+    }
+    let home = manifold
+        .coordinates()
+        .into_iter()
+        .zip(manifold.home())
+        .collect();
+    let slopes = relation_slopes(spec);
+    let mut independent = vec![];
+    for i in 0..slopes.rows() {
+        let row = (0..slopes.columns()).map(|j| slopes.at(i, j).substitute(&home));
+        insert(&mut independent, row.collect());
+    }
+    manifold.dimension() - independent.len()
 }
 
 /// Derivatives of the declared relations along the directions of the known manifolds: a row for each relation.

@@ -1,6 +1,6 @@
 //! The paper's step: from what a spec declares to every kernel, in symbols, at ϕ = 0 and beyond.
 //!
-//! Nothing here is trusted: [`crate::prove`] substitutes the results back into their definitions.
+//! What kernels are made of is not trusted: [`crate::prove`] substitutes it back into its definition.
 
 mod complement;
 pub(crate) mod dimension;

@@ -19,6 +19,8 @@ use std::collections::BTreeSet;
 pub struct Manifold {
     factors: Vec<Factor>,
     declared: Vec<Expr>,
+    /// Whether the declared relations are those of a coset, derived from a basis.
+    is_coset: bool,
     ideal: Ideal,
 }
 
@@ -30,6 +32,7 @@ impl Manifold {
         Self {
             factors,
             declared: vec![],
+            is_coset: false,
             ideal: Ideal::of_known(relations),
         }
     }
@@ -41,7 +44,17 @@ impl Manifold {
         Self {
             ideal: Ideal::new(&all),
             declared: [self.declared, declared].concat(),
+            is_coset: false,
             factors: self.factors,
+        }
+    }
+
+    /// The coset of a subgroup in this manifold, which linear relations cut out.
+    #[must_use]
+    pub fn confined(self, relations: Vec<Expr>) -> Self {
+        Self {
+            is_coset: true,
+            ..self.constrained(relations)
         }
     }
 
@@ -52,9 +65,14 @@ impl Manifold {
         self
     }
 
-    /// The relations that the spec declares.
+    /// The relations that join those of the factors: those that the spec declares, or those of a coset.
     pub fn declared(&self) -> &[Expr] {
         &self.declared
+    }
+
+    /// Whether these relations are those of a coset, so that their derivatives have one rank everywhere on it.
+    pub fn is_coset(&self) -> bool {
+        self.is_coset
     }
 
     fn factors_of(factors: &[(String, Kind)], role: Role) -> Vec<Factor> {

@@ -2,119 +2,286 @@
 
 use crate::derived::{Claim, Proof};
 use crate::domain::Domain;
-use crate::expr::{Atom, Expr, Function, Role, Symbol};
+use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol};
+use crate::manifold::{Factor, Kind};
 use crate::model::JointSpec;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is known of the configurations that share a pose; `None` where it was not decided.
 pub fn claim(spec: &JointSpec, domain: &Domain<'_>) -> Option<Claim> {
-    let ideal = spec.manifold.value.ideal();
-    let pose = &spec.pose.value;
-    let entries: Vec<Expr> = pose
-        .rotation
-        .entries()
-        .iter()
-        .chain(pose.translation.entries())
-        .map(|e| ideal.normal_form(e))
-        .collect();
-    let coordinates = spec.manifold.value.coordinates();
-    let read = recovered(domain, &entries, &coordinates);
-    let rest: Vec<&Symbol> = coordinates
-        .iter()
-        .filter(|symbol| !read.contains(*symbol))
-        .collect();
-    let statement = match rest.as_slice() {
-        [] => (
-            "one pose has one Q".to_owned(),
-            "every stored scalar can be read off H",
-        ),
-        _ if is_even(&entries, &rest, spec) => (
-            "Q and −Q have one pose: a double cover".to_owned(),
-            "H is even in them",
-        ),
-        _ if rest.iter().all(|symbol| is_periodic(&entries, symbol)) => {
-            let names: Vec<&str> = rest.iter().map(|symbol| &*symbol.name).collect();
-            (
-                format!(
-                    "one pose has one Q up to full turns of {}",
-                    names.join(", ")
-                ),
-                "they enter H through sine and cosine alone",
-            )
-        }
-        _ => return None,
-    };
+    let (statement, detail) = Fibres::new(spec, domain).statement()?;
     Some(Claim {
         name: "fibres",
-        statement: statement.0,
+        statement,
         proof: Proof::Certificate,
-        detail: statement.1.into(),
+        detail,
         residual: 0.0,
         points: 0,
         bits: 0,
     })
 }
 
-/// Scalars that are linear in some entry of H, the other terms of which hold only scalars that are known already.
-fn recovered(domain: &Domain<'_>, entries: &[Expr], coordinates: &[Symbol]) -> BTreeSet<Symbol> {
-    let ideal = domain.ideal();
-    let mut known: BTreeSet<Symbol> = BTreeSet::new();
-    loop {
-        let before = known.len();
-        for symbol in coordinates {
-            let normal = ideal.normal_form(&Expr::symbol(symbol));
-            let reduces = normal.as_symbol() != Some(symbol);
-            let determined = reduces && normal.symbols().iter().all(|s| known.contains(s));
-            if determined
-                || entries
-                    .iter()
-                    .any(|entry| gives(entry, symbol, &known, domain))
-            {
-                known.insert(symbol.clone());
+/// H, entry by entry in normal form.
+struct Fibres<'a> {
+    spec: &'a JointSpec,
+    domain: &'a Domain<'a>,
+    entries: Vec<Expr>,
+}
+
+impl<'a> Fibres<'a> {
+    fn new(spec: &'a JointSpec, domain: &'a Domain<'a>) -> Self {
+        let pose = &spec.pose.value;
+        let entries = pose.rotation.entries().iter();
+        let entries = entries.chain(pose.translation.entries());
+        Self {
+            spec,
+            domain,
+            entries: entries.map(|e| domain.ideal().normal_form(e)).collect(),
+        }
+    }
+
+    /// Statement and reason.
+    fn statement(&self) -> Option<(String, String)> {
+        let known = self.known();
+        let coordinates = self.spec.manifold.value.coordinates().into_iter();
+        let rest: Vec<Symbol> = coordinates
+            .filter(|symbol| !known.contains(&Atom::Symbol(symbol.clone())))
+            .collect();
+        if rest.is_empty() {
+            let reason = "every stored scalar can be read off H";
+            return Some(("one pose has one Q".into(), reason.into()));
+        }
+        self.double_cover(&rest)
+            .or_else(|| self.full_turns(&rest, &known))
+            .or_else(|| self.negated(&rest))
+    }
+
+    /// Scalars, and sines and cosines of them, that a pose determines: those that are linear in an entry of H of which
+    /// everything else is determined already.
+    fn known(&self) -> BTreeSet<Atom> {
+        let coordinates = self.spec.manifold.value.coordinates();
+        let mut open: BTreeSet<Atom> = coordinates.into_iter().map(Atom::Symbol).collect();
+        let atoms = self.entries.iter().flat_map(Expr::atoms);
+        open.extend(atoms.filter(|atom| turned(atom).is_some()));
+        let mut known = BTreeSet::new();
+        loop {
+            let gives = |entry: &Expr, atom: &Atom| self.gives(entry, atom, &known);
+            let found: BTreeSet<Atom> = open
+                .iter()
+                .filter(|atom| {
+                    self.follows(atom, &known) || self.entries.iter().any(|e| gives(e, atom))
+                })
+                .cloned()
+                .collect();
+            if found.is_empty() {
+                return known;
+            }
+            open.retain(|atom| !found.contains(atom));
+            known.extend(found);
+        }
+    }
+
+    /// Whether the manifold's relations express a scalar by known ones.
+    fn follows(&self, atom: &Atom, known: &BTreeSet<Atom>) -> bool {
+        let normal = self.domain.ideal().normal_form(&Expr::atom(atom.clone()));
+        let mut atoms = normal.atoms().into_iter();
+        atoms.all(|atom| is_known(&atom, known))
+    }
+
+    /// Whether the entry is `u atom + rest` with a u that is never 0 and a known rest.
+    fn gives(&self, entry: &Expr, atom: &Atom, known: &BTreeSet<Atom>) -> bool {
+        let (with, without): (Vec<_>, Vec<_>) = entry
+            .terms()
+            .partition(|(monomial, _)| monomial.power(atom) != 0);
+        let [(monomial, _)] = with.as_slice() else {
+            return false;
+        };
+        let units = Expr::one().scaled(&Rational::from_integer(1.into()), &monomial.split().1);
+        monomial.main() == [(atom.clone(), 1)]
+            && self.domain.is_unit(&units)
+            && without
+                .iter()
+                .flat_map(|(monomial, _)| monomial.main())
+                .all(|(other, _)| is_known(other, known))
+    }
+
+    /// The scalars are those of one unit quaternion, and H determines the product of any two of them, so that only their
+    /// common sign is open.
+    fn double_cover(&self, rest: &[Symbol]) -> Option<(String, String)> {
+        let mut factors = self.spec.manifold.value.factors().iter();
+        let factor =
+            factors.find(|factor| factor.kind == Kind::S3 && factor.coordinates == rest)?;
+        if !self.gives_products(factor) {
+            return None;
+        }
+        let name = &factor.name;
+        let others = match self.spec.manifold.value.factors().len() {
+            1 => "",
+            _ => ", all else being equal,",
+        };
+        Some((
+            format!("{name} and −{name}{others} have one pose: a double cover"),
+            format!("H determines the products of any two entries of {name}"),
+        ))
+    }
+
+    /// Whether the products of two entries of the factor are sums of multiples of 1 and of the entries of H.
+    fn gives_products(&self, factor: &Factor) -> bool {
+        let of_factor =
+            |atom: &Atom| matches!(atom, Atom::Symbol(s) if factor.coordinates.contains(s));
+        let numbers_apart = |entry: &&Expr| {
+            let mut terms = entry.terms();
+            terms.all(|(m, _)| m.units().is_empty() && m.main().iter().all(|(a, _)| of_factor(a)))
+        };
+        let one = Expr::one();
+        let mut span: Vec<Expr> = vec![];
+        for entry in self.entries.iter().filter(numbers_apart).chain([&one]) {
+            let left = reduced(entry, &span);
+            if !left.is_zero() {
+                span.push(left);
             }
         }
-        if known.len() == before {
-            return known;
-        }
+        let q: Vec<Expr> = factor.coordinates.iter().map(Expr::symbol).collect();
+        let product = |i: usize, j: usize| self.domain.ideal().normal_form(&(&q[i] * &q[j]));
+        let mut pairs = (0..q.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        pairs.all(|(i, j)| reduced(&product(i, j), &span).is_zero())
+    }
+
+    /// The scalars enter H through sine and cosine alone, and H determines these.
+    fn full_turns(&self, rest: &[Symbol], known: &BTreeSet<Atom>) -> Option<(String, String)> {
+        let turns: BTreeSet<(Function, &Symbol)> = known.iter().filter_map(turned).collect();
+        let determined = |symbol: &Symbol| {
+            turns.contains(&(Function::Cos, symbol)) && turns.contains(&(Function::Sin, symbol))
+        };
+        let periodic = |symbol: &Symbol| {
+            let mut atoms = self.entries.iter().flat_map(Expr::atoms);
+            atoms.all(|atom| !symbols_of(&atom).contains(symbol) || known.contains(&atom))
+        };
+        let all = rest
+            .iter()
+            .all(|symbol| determined(symbol) && periodic(symbol));
+        all.then(|| {
+            let statement = format!("one pose has one Q up to full turns of {}", names(rest));
+            let reason =
+                "their sines and cosines can be read off H, and nothing else of them enters it";
+            (statement, reason.into())
+        })
+    }
+
+    /// H does not change where the scalars change their signs, and neither do the relations.
+    fn negated(&self, rest: &[Symbol]) -> Option<(String, String)> {
+        let negative = |symbol: &Symbol| (symbol.clone(), -Expr::symbol(symbol));
+        let negative: BTreeMap<Symbol, Expr> = rest.iter().map(negative).collect();
+        let ideal = self.domain.ideal();
+        let relations = self.spec.manifold.value.relations();
+        let stays = relations
+            .iter()
+            .all(|g| ideal.vanishes(&g.substitute(&negative)));
+        let even = |entry: &Expr| ideal.vanishes(&(&entry.substitute(&negative) - entry));
+        (stays && self.entries.iter().all(even)).then(|| {
+            (
+                format!("Q and the one with {} negated share a pose", names(rest)),
+                "H is even in them; whether other Q have that pose was not decided".into(),
+            )
+        })
     }
 }
 
-fn gives(entry: &Expr, symbol: &Symbol, known: &BTreeSet<Symbol>, domain: &Domain<'_>) -> bool {
-    let slope = entry.derivative(symbol);
-    let others = entry
-        .symbols()
-        .into_iter()
-        .filter(|s| s.role == Role::Coordinate && s != symbol);
-    domain.is_unit(&slope) && others.into_iter().all(|s| known.contains(&s))
+/// The function and its argument, where the atom is the sine or cosine of a scalar.
+fn turned(atom: &Atom) -> Option<(Function, &Symbol)> {
+    let Atom::Apply(application) = atom else {
+        return None;
+    };
+    let trigonometric = matches!(application.function, Function::Cos | Function::Sin);
+    let symbol = application.arguments.first()?.as_symbol()?;
+    (trigonometric && symbol.role == Role::Coordinate).then_some((application.function, symbol))
 }
 
-fn is_even(entries: &[Expr], rest: &[&Symbol], spec: &JointSpec) -> bool {
-    let negated: BTreeMap<Symbol, Expr> = rest
-        .iter()
-        .map(|&symbol| (symbol.clone(), -Expr::symbol(symbol)))
-        .collect();
-    let ideal = spec.manifold.value.ideal();
-    entries
-        .iter()
-        .all(|entry| ideal.vanishes(&(&entry.substitute(&negated) - entry)))
+fn symbols_of(atom: &Atom) -> BTreeSet<Symbol> {
+    Expr::atom(atom.clone()).symbols()
 }
 
-/// Whether the symbol stands in the entries as the whole argument of sines and cosines, and nowhere else.
-fn is_periodic(entries: &[Expr], symbol: &Symbol) -> bool {
-    entries
-        .iter()
-        .flat_map(Expr::atoms)
-        .all(|atom| match &atom {
-            Atom::Symbol(other) => other != symbol,
-            Atom::Apply(application) => {
-                let trigonometric = matches!(application.function, Function::Cos | Function::Sin);
-                let itself =
-                    application.arguments.first().and_then(Expr::as_symbol) == Some(symbol);
-                let absent = application
-                    .arguments
-                    .iter()
-                    .all(|argument| !argument.symbols().contains(symbol));
-                absent || (trigonometric && itself)
-            }
-        })
+/// Whether the atom, or every scalar in it, is among the known ones.
+fn is_known(atom: &Atom, known: &BTreeSet<Atom>) -> bool {
+    let is_coordinate = |symbol: &Symbol| symbol.role == Role::Coordinate;
+    let mut scalars = symbols_of(atom).into_iter().filter(is_coordinate);
+    known.contains(atom) || scalars.all(|symbol| known.contains(&Atom::Symbol(symbol)))
+}
+
+/// The expression less multiples of the members of a span, which have different leading monomials: 0 where it lies in the span.
+fn reduced(expression: &Expr, span: &[Expr]) -> Expr {
+    let mut left = expression.clone();
+    while let Some((monomial, coefficient)) = left.leading() {
+        let member = span
+            .iter()
+            .filter_map(|e| Some((e, e.leading()?)))
+            .find(|(_, (leading, _))| *leading == monomial);
+        let Some((member, (_, of_member))) = member else {
+            return left;
+        };
+        let factor = coefficient / of_member;
+        left = &left - &member.scaled(&factor, &Monomial::one());
+    }
+    left
+}
+
+fn names(symbols: &[Symbol]) -> String {
+    let names: Vec<&str> = symbols.iter().map(|symbol| &*symbol.name).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::claim;
+    use crate::domain::Domain;
+    use crate::spec;
+
+    fn statement(declared: &str) -> Option<String> {
+        let source = format!(
+            "hamel = 1;\njoint test(gain: m >= 0, arm: m > 0) {{ require arm > gain; {declared} }}"
+        );
+        let joint = spec::parse(&source, "test.joint").expect("a valid spec");
+        claim(&joint, &Domain::new(&joint)).map(|claim| claim.statement)
+    }
+
+    #[test]
+    fn full_turns_need_sine_and_cosine_in_h() {
+        let up_to = |names: &str| Some(format!("one pose has one Q up to full turns of {names}"));
+        let pose = |h: &str| statement(&format!("config a: R1, b: R1, c: R1; H = {h};"));
+        assert_eq!(pose("trans([b, c, gain]) * rot_z(a)"), up_to("a"));
+        assert_eq!(pose("rot_z(a) * rot_y(b) * trans_z(arm * c)"), None);
+        assert_eq!(
+            pose("trans([arm * cos(a) + b, sin(a), cos(a)]) * rot_x(c)"),
+            up_to("a, c")
+        );
+        // (a, b, c) and (a + π, π − b, c + π) have one pose.
+        assert_eq!(pose("rot_z(a) * rot_y(b) * rot_x(c)"), None);
+        // π/2 and 3π/2 have one pose.
+        assert_eq!(pose("trans([cos(a), sin(a) * cos(a), b]) * rot_z(c)"), None);
+        assert_eq!(
+            pose("trans([gain * cos(a), gain * sin(a), b]) * rot_z(c)"),
+            None
+        );
+    }
+
+    #[test]
+    fn a_double_cover_is_that_of_one_quaternion() {
+        let r = "pose(rot(q), [arm, 0, gain])";
+        assert_eq!(
+            statement(&format!(
+                "config q: S3; basis x, y, z of so3; velocity in child; H = {r};"
+            )),
+            Some("q and −q have one pose: a double cover".into())
+        );
+    }
+
+    #[test]
+    fn even_functions_share_poses_and_no_more_is_said() {
+        let pose = |h: &str| statement(&format!("config a: R1; H = {h};"));
+        let negated = Some("Q and the one with a negated share a pose".to_owned());
+        assert_eq!(pose("rot_z(a * a * a * a)"), negated);
+        assert_eq!(pose("trans_x(arm * a)"), Some("one pose has one Q".into()));
+        assert_eq!(pose("trans_x(gain * a)"), None);
+        assert_eq!(pose("rot_z(a + a * a)"), None);
+    }
 }

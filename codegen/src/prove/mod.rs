@@ -1,4 +1,7 @@
-//! The claims of a spec, proved: everything declared or derived is substituted back into what defines it.
+//! The claims of a spec, proved: H, Φ to second order, X, X^c, S to first order, S₀⁻¹, A and S̄ are substituted back into what defines them.
+//!
+//! The kernels that follow from these by products and derivatives (∂S̄/∂ϕ, γ, J22, c and its slopes, the finite maps, N_X) are not
+//! proved again: the law suite measures them on compiled joints.
 //!
 //! Identities hold when their difference has normal form 0 modulo the manifold's relations, or, where functions without such
 //! relations remain, by evaluation in high precision. Ranks and invertibility need a
@@ -44,6 +47,8 @@ pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         prover.twists_agree(),
         prover.slopes_agree(),
         prover.velocity_map_is_invertible(),
+        prover.velocity_map_is_inverted(),
+        prover.child_twist_map_agrees(),
         prover.twist_map_has_full_rank(),
         prover.constraint_is_met(),
         prover.speed_basis_has_full_rank(),

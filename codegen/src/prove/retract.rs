@@ -181,21 +181,32 @@ impl Prover<'_> {
                 &self.where_it_holds("the relations cut out a manifold of k dimensions"),
                 &format!("derivatives of the relations: {certificate}"),
             ))),
-            Ok(Confinement::Orbit) => Ok(Some(certified(
+            Ok(Confinement::Orbit(dimension)) => Ok(Some(certified(
                 "manifold_orbit",
                 "Q moves in the orbit of home under the subgroup of the basis",
-                "the basis closes under the bracket; the relations that are checked may admit more than this orbit",
+                &format!(
+                    "the basis closes under the bracket; the relations that are checked admit {dimension} dimensions around it"
+                ),
             ))),
-            Err(gram) => Err(Box::new(
-                refuted(
-                    code::DIMENSION,
-                    &self.spec.manifold.span,
-                    "the relations are not shown to cut out a manifold of as many dimensions as there are freedoms",
-                    "here",
-                )
+            Err(gram) => Err(Box::new(self.wrong_relations(&gram))),
+        }
+    }
+
+    /// The error that the relations are not shown to cut out a manifold; it may be none where `gram` vanishes.
+    fn wrong_relations(&self, gram: &Expr) -> Diagnostic {
+        let error = refuted(
+            code::DIMENSION,
+            &self.spec.manifold.span,
+            "the relations are not shown to cut out a manifold of as many dimensions as there are freedoms",
+            "here",
+        );
+        match gram.is_zero() {
+            true => error
+                .note("their derivatives are dependent wherever they hold")
+                .help("add the relations that are missing; one whose derivatives vanish with it, such as a square, says nothing here"),
+            false => error
                 .note(format!("their derivatives become dependent where {gram} = 0"))
                 .help("if the joint ends there, declare it: `except … = 0;`"),
-            )),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Claims about X and S: they span the velocities of H, to first order in ϕ, at every configuration.
 
 use super::{Attempt, Prover, certified, refuted};
-use crate::expand::{rank, twist_map_in_frame};
+use crate::diagnostic::Diagnostic;
+use crate::expand::{adjoint_inverse, rank, twist_map_in_frame};
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
@@ -92,6 +93,38 @@ impl Prover<'_> {
                 )
             },
         )
+    }
+
+    /// X^c is found from H where X is J₀, not from X: ranks and the kernels of the child frame rest on it.
+    pub(super) fn child_twist_map_agrees(&self) -> Attempt {
+        let moved = adjoint_inverse(&self.spec.pose.value).times(&self.x.twist_map);
+        self.identity(
+            "twist_map_child",
+            "X^c = Ad_{H⁻¹} X",
+            &moved.minus(&self.x.twist_map_child),
+            |_| self.fault(code::TWIST_MAP, "X^c is not X in the child frame"),
+        )
+    }
+
+    pub(super) fn velocity_map_is_inverted(&self) -> Attempt {
+        let product = self.x.velocity_map.base.times(&self.x.velocity_map_inverse);
+        self.identity(
+            "velocity_map_inverse",
+            "S₀ S₀⁻¹ = I",
+            &product.minus(&Matrix::identity(product.rows())),
+            |_| {
+                self.fault(
+                    code::VELOCITY_MAP_LOCUS,
+                    "what was derived as S₀⁻¹ is not the inverse of S₀",
+                )
+            },
+        )
+    }
+
+    /// The error of a step of the derivation that does not meet its definition.
+    fn fault(&self, code: &'static str, message: &str) -> Diagnostic {
+        refuted(code, &self.twist_map_span(), message, "derived from this")
+            .note("a fault of the generator: please report this spec")
     }
 
     pub(super) fn velocity_map_is_invertible(&self) -> Attempt {

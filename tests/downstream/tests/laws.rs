@@ -2,7 +2,7 @@
 
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, Catenary, CatenaryLength, DirectionSensor, ENTRIES, PlanarTurns,
-    PowerGuide, RollingBallCayley, Scara, SkateHeading, SpherePoint,
+    PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SpherePoint,
 };
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -35,6 +35,7 @@ law_tests! {
     rolling_ball_cayley: RollingBallCayley::new(0.7), HalfTurn;
     scara: Scara, HalfTurn;
     skate_heading: SkateHeading, Entries(1.0);
+    skew_screw: SkewScrew, HalfTurn;
     sphere_point: SpherePoint::new(0.7), Entries(1.0);
 }
 

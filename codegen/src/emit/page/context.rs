@@ -131,14 +131,10 @@ fn tables(context: &mut Context, report: &Report, medium: Medium) {
 fn parameters(report: &Report) -> Vec<Row> {
     let rows = report.parameters.iter();
     rows.map(|p| {
-        let range = match p.range.as_str() {
-            "" => "any",
-            range => range,
-        };
         row([
             ("name", &p.name),
             ("unit", &p.unit),
-            ("range", range),
+            ("range", &p.range),
             ("description", &p.description),
         ])
     })
@@ -147,13 +143,19 @@ fn parameters(report: &Report) -> Vec<Row> {
 
 fn freedoms(report: &Report) -> Vec<Row> {
     let rows = report.freedoms.iter().map(|f| {
-        let unit = if f.unit.is_empty() { "–" } else { &f.unit };
+        let known = |unit: &String| {
+            if unit.is_empty() {
+                "–".to_owned()
+            } else {
+                unit.clone()
+            }
+        };
         row([
             ("name", &f.name),
             ("local", &f.local),
             ("velocity", &f.velocity),
-            ("unit", unit),
-            ("rate_unit", &f.rate_unit),
+            ("unit", &known(&f.unit)),
+            ("rate_unit", &known(&f.rate_unit)),
         ])
     });
     rows.collect()

@@ -2,12 +2,12 @@
 
 use crate::model::{End, Interval};
 
-/// `lead > 0`, `0 ≤ tilt < 1`, or nothing where every value is allowed.
+/// `lead > 0`, `0 ≤ tilt < 1`, or `lead ≠ 0` where the spec has no range.
 pub fn in_words(name: &str, range: &Interval) -> String {
     let below = |end: &End| if end.included { "≤" } else { "<" };
     let above = |end: &End| if end.included { "≥" } else { ">" };
     match (&range.lower, &range.upper) {
-        (None, None) => String::new(),
+        (None, None) => format!("{name} ≠ 0"),
         (Some(lower), None) => format!("{name} {} {}", above(lower), lower.value),
         (None, Some(upper)) => format!("{name} {} {}", below(upper), upper.value),
         (Some(lower), Some(upper)) => format!(
@@ -33,7 +33,7 @@ mod tests {
             Some(End { value, included })
         };
         let words = |lower, upper| in_words("a", &Interval { lower, upper });
-        assert_eq!(words(None, None), "");
+        assert_eq!(words(None, None), "a ≠ 0");
         assert_eq!(words(end(0, false), None), "a > 0");
         assert_eq!(words(end(0, true), None), "a ≥ 0");
         assert_eq!(words(None, end(2, false)), "a < 2");

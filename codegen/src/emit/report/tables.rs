@@ -35,7 +35,7 @@ pub struct FreedomRow {
     pub velocity: String,
     /// Unit of the local coordinate, empty where the spec does not determine it.
     pub unit: String,
-    /// Unit of ϕ̇.
+    /// Unit of the velocity, empty where the spec does not determine it.
     pub rate_unit: String,
 }
 
@@ -93,7 +93,9 @@ pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
 }
 
 pub(super) fn freedoms(derived: &Derived, notation: &Notation) -> Vec<FreedomRow> {
-    let units = units::of_freedoms(derived);
+    let units = units::of_freedoms(derived)
+        .into_iter()
+        .zip(units::of_velocities(derived));
     let symbols = derived
         .arguments
         .local
@@ -101,13 +103,15 @@ pub(super) fn freedoms(derived: &Derived, notation: &Notation) -> Vec<FreedomRow
         .zip(&derived.arguments.velocity);
     let freedoms = derived.spec.freedoms.value.iter().zip(symbols).zip(units);
     freedoms
-        .map(|((freedom, (local, velocity)), unit)| FreedomRow {
-            name: freedom.name.clone(),
-            local: notation.symbol(local),
-            velocity: notation.symbol(velocity),
-            unit: unit.to_owned(),
-            rate_unit: units::per_second(unit),
-        })
+        .map(
+            |((freedom, (local, velocity)), (unit, rate_unit))| FreedomRow {
+                name: freedom.name.clone(),
+                local: notation.symbol(local),
+                velocity: notation.symbol(velocity),
+                unit: unit.to_owned(),
+                rate_unit,
+            },
+        )
         .collect()
 }
 

@@ -3,9 +3,9 @@
 use crate::derived::{Derived, KernelKind};
 use crate::expr::Expr;
 use crate::manifold::Kind;
-use crate::model::Freedom;
+use crate::model::{Freedom, VelocityFrame};
 
-/// The unit of each local coordinate: `rad`, `m`, or that of the coordinate where it is neither for certain.
+/// The unit of each local coordinate: `rad` or `m`; empty where it is neither for certain.
 pub fn of_freedoms(derived: &Derived) -> Vec<&'static str> {
     let freedoms = derived.spec.freedoms.value.iter().enumerate();
     freedoms
@@ -13,12 +13,38 @@ pub fn of_freedoms(derived: &Derived) -> Vec<&'static str> {
         .collect()
 }
 
-/// The unit of a rate.
+/// The unit of each v: that of ϕ̇, or, where a declared X makes it something else, that of a unit twist; empty where neither tells.
+pub fn of_velocities(derived: &Derived) -> Vec<String> {
+    let spec = &derived.spec;
+    let is_declared = spec.twist_map.is_some() && spec.velocity.value == VelocityFrame::Rates;
+    let of_freedoms = of_freedoms(derived).into_iter().enumerate();
+    of_freedoms
+        .map(|(k, unit)| match is_declared && !is_rate(derived, k) {
+            true => per_second(of_twist(derived, KernelKind::TwistMapChild, k)),
+            false => per_second(unit),
+        })
+        .collect()
+}
+
+/// The unit of a rate; empty where that of what changes is.
 pub fn per_second(unit: &str) -> String {
     match unit {
-        "" => "1/s".to_owned(),
+        "" => String::new(),
         unit => format!("{unit}/s"),
     }
+}
+
+/// Whether v_k is the rate of ϕ_k: row k of S₀ is that of the identity.
+fn is_rate(derived: &Derived, k: usize) -> bool {
+    let velocity_map = derived.kernel(KernelKind::VelocityMap);
+    let Some(s) = velocity_map.and_then(|kernel| kernel.outputs.first()) else {
+        return false;
+    };
+    let mut columns = 0..s.columns();
+    columns.all(|j| match j == k {
+        true => s.at(k, j).is_one(),
+        false => s.at(k, j).is_zero(),
+    })
 }
 
 fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
@@ -34,17 +60,19 @@ fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
     };
     let angle_if = |angle: bool| if angle { "rad" } else { "m" };
     match factor.kind {
+        // A freedom of `local` is what Φ makes of it.
+        _ if freedom.generator.is_empty() => of_twist(derived, KernelKind::LocalTwistMap, k),
         Kind::S1 | Kind::So2 | Kind::So3 | Kind::S3 | Kind::S2 => "rad",
         Kind::Se2 => angle_if(turns(1)),
         Kind::Se3 => angle_if(turns(3)),
-        Kind::Real(_) => of_path(derived, k),
+        Kind::Real(_) => of_twist(derived, KernelKind::LocalTwistMap, k),
     }
 }
 
-/// A path coordinate is an angle or a length where its twist is a unit rotation or a unit translation.
-fn of_path(derived: &Derived, k: usize) -> &'static str {
+/// A coordinate is an angle or a length, and a velocity its rate, where its twist is a unit rotation or a unit translation.
+fn of_twist(derived: &Derived, map: KernelKind, k: usize) -> &'static str {
     let Some(twist_map) = derived
-        .kernel(KernelKind::TwistMapChild)
+        .kernel(map)
         .and_then(|kernel| kernel.outputs.first())
     else {
         return "";
@@ -71,5 +99,51 @@ fn of_path(derived: &Derived, k: usize) -> &'static str {
         (true, _) => "rad",
         (_, true) => "m",
         _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{of_freedoms, of_velocities};
+    use crate::derive;
+
+    fn units(declared: &str) -> (Vec<&'static str>, Vec<String>) {
+        let source = format!("hamel = 1; joint test {{ {declared} }}");
+        let joint = derive(&source, "test").unwrap_or_else(|errors| panic!("{errors}"));
+        (of_freedoms(&joint), of_velocities(&joint))
+    }
+
+    #[test]
+    fn freedoms_of_local_are_what_phi_makes_of_them() {
+        let planar = "config Q: SE2; local a, x, y;\n\
+            let c = Q.c * cos(phi.a) - Q.s * sin(phi.a); let s = Q.s * cos(phi.a) + Q.c * sin(phi.a);\n\
+            Phi = [c, -s, Q.x + phi.x; s, c, Q.y + phi.y];\n\
+            H = pose(rot_z(Q), [Q.x, Q.y, 0]);";
+        assert_eq!(units(planar).0, ["rad", "m", "m"]);
+        assert_eq!(units(planar).1, ["rad/s", "m/s", "m/s"]);
+        let mixed = "config R: S1, d: R1; local turn, slide;\n\
+            Phi = [R.c * cos(phi.turn) - R.s * sin(phi.turn), R.s * cos(phi.turn) + R.c * sin(phi.turn)], d + phi.slide;\n\
+            H = rot_z(R) * trans_z(d);";
+        assert_eq!(units(mixed).0, ["rad", "m"]);
+    }
+
+    #[test]
+    fn velocities_of_a_declared_map_have_the_units_of_their_twists() {
+        // v is the two rates in the other order.
+        let own =
+            "config a: R1, b: R1; H = rot_z(a) * trans_z(b); X = [O(2, 2); 0, 1; O(2, 2); 1, 0];";
+        assert_eq!(units(own).0, ["rad", "m"]);
+        assert_eq!(units(own).1, ["m/s", "rad/s"]);
+        let double = "config a: R1; H = rot_z(a); X = [0; 0; 2; 0; 0; 0];";
+        assert_eq!(units(double).0, ["rad"]);
+        assert_eq!(units(double).1, [""]);
+    }
+
+    #[test]
+    fn a_coordinate_of_neither_kind_has_no_unit() {
+        assert_eq!(
+            units("config a: R1; H = trans_z(a * a * a + a);"),
+            (vec![""], vec![String::new()])
+        );
     }
 }

@@ -156,38 +156,30 @@ fn shape_of(derived: &Derived, kernel: &Kernel) -> String {
 }
 
 fn units_of(derived: &Derived, kind: KernelKind) -> String {
-    let of_freedoms: Vec<String> = units::of_freedoms(derived)
-        .into_iter()
-        .map(|unit| {
-            if unit.is_empty() {
-                "1".into()
-            } else {
-                unit.into()
-            }
-        })
-        .collect();
-    let rates: Vec<String> = of_freedoms
-        .iter()
-        .map(|unit| units::per_second(unit))
-        .collect();
-    let (angles, rates) = (listed(&of_freedoms), listed(&rates));
+    let owned = |unit: &str| unit.to_owned();
+    let of_freedoms = units::of_freedoms(derived);
     match kind {
         KernelKind::TwistMap | KernelKind::TwistMapChild => {
-            format!(
-                "rows rad/s (angular) and m/s (linear), columns by v in {}",
-                rates
-            )
+            let columns = match listed(&units::of_velocities(derived)).as_str() {
+                "" => "columns by v".to_owned(),
+                rates => format!("columns by v in {rates}"),
+            };
+            format!("rows rad/s (angular) and m/s (linear), {columns}")
         }
-        KernelKind::Local => angles,
-        KernelKind::RetractDifferentialInverse => rates,
+        KernelKind::Local => listed(&of_freedoms.into_iter().map(owned).collect::<Vec<_>>()),
+        KernelKind::RetractDifferentialInverse => {
+            let rates = of_freedoms.into_iter().map(units::per_second);
+            listed(&rates.collect::<Vec<_>>())
+        }
         KernelKind::BiasAcceleration => "rad/s² (angular) and m/s² (linear)".into(),
         _ => String::new(),
     }
 }
 
-/// Units in order, or one of them where all are alike.
+/// Units in order, or one of them where all are alike; empty where one is not known.
 fn listed(units: &[String]) -> String {
     match units {
+        units if units.iter().any(String::is_empty) => String::new(),
         [first, rest @ ..] if rest.iter().all(|unit| unit == first) => first.clone(),
         units => units.join(", "),
     }

@@ -5,6 +5,7 @@ use super::limits;
 use super::tokens::ident;
 use super::type_ident;
 use crate::derived::Derived;
+use crate::emit::names::Names;
 use crate::emit::report::summary;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -49,21 +50,22 @@ fn build(derived: &Derived) -> TokenStream {
     if parameters.is_empty() {
         return quote! {
             |values| {
-                check_parameters(#name, &PARAMETERS, values)?;
-                Ok(erase(#type_name))
+                ::hamel::registry::check_parameters(#name, &PARAMETERS, values)?;
+                Ok(::hamel::erased::erase(#type_name))
             }
         };
     }
+    let names = Names::of_parameters(derived);
     let fields: Vec<_> = parameters
         .iter()
-        .map(|parameter| ident(&parameter.symbol.name))
+        .map(|parameter| ident(names.get(&parameter.symbol)))
         .collect();
-    let checks = limits::checks(derived);
+    let checks = limits::checks(derived, &names);
     quote! {
         |values| {
-            let [#(#fields),*] = check_parameters(#name, &PARAMETERS, values)?;
+            let [#(#fields),*] = ::hamel::registry::check_parameters(#name, &PARAMETERS, values)?;
             #checks
-            Ok(erase(#type_name::new(#(#fields),*)))
+            Ok(::hamel::erased::erase(#type_name::new(#(#fields),*)))
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Values of parameters for tests and examples.
 
+use crate::emit::combinations::combinations;
 use crate::expr::evaluate_f64;
 use crate::model::{Interval, JointSpec};
 use num_traits::ToPrimitive;
@@ -8,8 +9,15 @@ use num_traits::ToPrimitive;
 const FIRST: f64 = 0.7;
 const STEP: f64 = 0.15;
 
-/// Values inside the ranges of the parameters, no two alike: in ascending order, or in descending order where the requirements hold only so.
-pub fn parameters(spec: &JointSpec) -> Vec<f64> {
+/// Sizes that are tried for each parameter where neither order of sizes meets the requirements.
+const SIZES: [f64; 9] = [0.7, 1.9, 0.3, 4.5, 0.1, 12.0, 0.02, 40.0, 1.1];
+
+/// Most combinations of sizes that are tried.
+const MOST_TRIED: usize = 60_000;
+
+/// Values inside the ranges of the parameters that meet the requirements, no two alike: in ascending order, in descending order, or in the
+/// first combination that does; `None` where none was found.
+pub fn parameters(spec: &JointSpec) -> Option<Vec<f64>> {
     let count = spec.parameters.len();
     let of_place = |place: usize| {
         // Whole hundredths, so that the text is short.
@@ -22,11 +30,18 @@ pub fn parameters(spec: &JointSpec) -> Vec<f64> {
             .map(|(i, range)| within(range, of_place(place(i))));
         inside.collect()
     };
-    let ascending = values(&|i| i);
-    match is_allowed(spec, &ascending) {
-        true => ascending,
-        false => values(&|i| count - 1 - i),
-    }
+    let ordered = [values(&|i| i), values(&|i| count - 1 - i)];
+    let ranges = spec.parameters.iter().map(|parameter| &parameter.range);
+    let choices: Vec<Vec<f64>> = ranges
+        .map(|range| SIZES.map(|size| within(range, size)).to_vec())
+        .collect();
+    let others = combinations(&choices, MOST_TRIED).filter(|values| differ(values));
+    let mut tried = ordered.into_iter().chain(others);
+    tried.find(|values| is_allowed(spec, values))
+}
+
+fn differ(values: &[f64]) -> bool {
+    (1..values.len()).all(|i| !values[..i].contains(&values[i]))
 }
 
 /// A point of an interval: `size` from the only end, or that part of the way from end to end, a little shortened.
@@ -51,4 +66,48 @@ fn is_allowed(spec: &JointSpec, values: &[f64]) -> bool {
     spec.requirements
         .iter()
         .all(|requirement| holds(&requirement.value.value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_allowed, parameters};
+    use crate::spec;
+
+    fn found(declared: &str, require: &str) -> Option<Vec<f64>> {
+        let source = format!(
+            "hamel = 1;\njoint test({declared}) {{ {require} config q: R1; H = trans_x(q); }}"
+        );
+        let joint = spec::parse(&source, "test.joint").expect("a valid spec");
+        let values = parameters(&joint);
+        assert!(values.iter().all(|values| is_allowed(&joint, values)));
+        values
+    }
+
+    #[test]
+    fn examples_meet_the_requirements() {
+        let three = "a: m > 0, b: m > 0, c: m > 0";
+        assert_eq!(
+            found(three, "require b > a; require c > b;"),
+            Some(vec![0.7, 0.85, 1.0])
+        );
+        assert_eq!(
+            found(three, "require a > b; require b > c;"),
+            Some(vec![1.0, 0.85, 0.7])
+        );
+        for require in [
+            "require a > b + c;",
+            "require c > a + b;",
+            "require b > 10 * a; require b > 10 * c;",
+        ] {
+            assert!(found(three, require).is_some(), "{require}");
+        }
+        assert_eq!(
+            found("a: m > 0, b: m > 0", "require b > a; require a > b;"),
+            None
+        );
+        assert_eq!(
+            found("a: m in 0..=1, b: m > 0", "require a > b;").map(|values| values.len()),
+            Some(2)
+        );
+    }
 }

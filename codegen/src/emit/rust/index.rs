@@ -3,7 +3,7 @@
 use super::example;
 use super::joint::sizes;
 use super::tokens::ident;
-use super::{Malformed, docs, header, nested, text, type_ident};
+use super::{WriteError, docs, header, nested, text, type_ident};
 use crate::derived::Derived;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -20,8 +20,8 @@ pub enum Index {
 /// The index of the joints, in alphabetic order; `label` names the folder of specs.
 ///
 /// # Errors
-/// As [`super::file`].
-pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, Malformed> {
+/// As [`super::file`]; and where no parameters meet the requirements of a joint that `for_each_joint!` is to build.
+pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, WriteError> {
     let mut joints: Vec<&Derived> = joints.iter().collect();
     joints.sort_by(|a, b| a.spec.name.value.cmp(&b.spec.name.value));
     let modules: Vec<Ident> = joints
@@ -36,43 +36,57 @@ pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, M
         }
         Index::Nested => joints.iter().map(|joint| nested(joint)).collect(),
     };
-    let macros = (layout == Index::Files).then(|| for_each_joint(&joints));
+    let macros = match layout {
+        Index::Files => Some(for_each_joint(&joints)?),
+        Index::Nested => None,
+    };
     let entries = docs::outer(&["Registry entries of all joints, in alphabetic order."]);
     let specs = docs::outer(&["Name and text of every spec, in alphabetic order."]);
     let names = joints.iter().map(|joint| &joint.spec.name.value);
     let tokens = quote! {
         #head
-        #(pub use #modules::#types;)*
+        #(pub use self::#modules::#types;)*
         #entries
-        pub const ENTRIES: &[::hamel::registry::JointEntry] = &[#(#modules::ENTRY),*];
+        pub const ENTRIES: &[::hamel::registry::JointEntry] = &[#(self::#modules::ENTRY),*];
         #specs
-        pub const SPECS: &[(&str, &str)] = &[#((#names, #modules::SPEC)),*];
+        pub const SPECS: &[(&str, &str)] = &[#((#names, self::#modules::SPEC)),*];
         #macros
     };
     text("the index of all joints", &header(label), tokens)
 }
 
 /// The macro that hands every joint to another macro.
-fn for_each_joint(joints: &[&Derived]) -> TokenStream {
+fn for_each_joint(joints: &[&Derived]) -> Result<TokenStream, WriteError> {
     let docs = docs::outer(&[
         "Calls the macro `$callback` once for each joint with",
-        "`(module, Type, expression, N, K, S, C)`: the expression builds the joint with parameters of its range, no two alike.",
+        "`(module, Type, expression, N, K, S, C)`: the expression builds the joint with parameters that it allows, no two alike.",
     ]);
     let calls = joints.iter().map(|joint| {
         let (module, name) = (ident(&joint.spec.name.value), type_ident(joint));
         let [n, k, s, c] = sizes(joint);
-        let values = example::parameters(&joint.spec);
+        let values = example::parameters(&joint.spec).ok_or_else(|| no_parameters(joint))?;
         let value = match joint.spec.parameters.is_empty() {
             true => quote! { $crate::joints::#name },
             false => quote! { $crate::joints::#name::new(#(#values),*) },
         };
-        quote! { $callback!(#module, $crate::joints::#name, #value, #n, #k, #s, #c); }
+        Ok(quote! { $callback!(#module, $crate::joints::#name, #value, #n, #k, #s, #c); })
     });
-    quote! {
+    let calls: Vec<TokenStream> = calls.collect::<Result<_, WriteError>>()?;
+    Ok(quote! {
         #docs
         #[macro_export]
         macro_rules! for_each_joint {
             ($callback:path) => { #(#calls)* };
         }
+    })
+}
+
+fn no_parameters(joint: &Derived) -> WriteError {
+    let requirements = joint.spec.requirements.iter();
+    WriteError::NoParameters {
+        joint: joint.spec.name.value.clone(),
+        requirements: requirements
+            .map(|requirement| format!("`{}`", requirement.value.text))
+            .collect(),
     }
 }

@@ -78,10 +78,7 @@ fn definition(derived: &Derived) -> TokenStream {
             ),
             text => format!("{text} In {}.", parameter.unit),
         };
-        let text = match limits::in_words(&parameter.range) {
-            Some(range) => format!("{text} It is {range}."),
-            None => text,
-        };
+        let text = format!("{text} It is {}.", limits::in_words(&parameter.range));
         docs::outer(&text.lines().map(str::trim).collect::<Vec<_>>())
     });
     let constructor = constructor_docs(derived);

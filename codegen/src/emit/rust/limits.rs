@@ -1,12 +1,12 @@
-//! What a joint demands of its parameters: ranges, requirements, and divisors that must not vanish.
+//! What a joint demands of its parameters: ranges, requirements, and without a range that they are not zero.
 
 use super::tokens::{Writer, ident, signed_literal};
-use crate::derived::{Derived, Step};
+use crate::derived::Derived;
 use crate::emit::formula::{Program, factored};
 use crate::emit::names::Names;
-use crate::expr::{Atom, Expr, Rational, Symbol};
+use crate::expr::Rational;
 use crate::model::{End, Interval, Parameter};
-use num_traits::{ToPrimitive, Zero};
+use num_traits::ToPrimitive;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -23,8 +23,8 @@ pub fn fields(range: &Interval) -> TokenStream {
     quote! { lower: #lower, upper: #upper }
 }
 
-/// The range in words, `greater than 0 and at most 1`; `None` where nothing is excluded.
-pub fn in_words(range: &Interval) -> Option<String> {
+/// The range in words: `greater than 0 and at most 1`, `other than 0`.
+pub fn in_words(range: &Interval) -> String {
     let words = |end: &Option<End>, included: &str, excluded: &str| {
         let end = end.as_ref()?;
         let word = if end.included { included } else { excluded };
@@ -33,7 +33,10 @@ pub fn in_words(range: &Interval) -> Option<String> {
     let lower = words(&range.lower, "at least", "greater than");
     let upper = words(&range.upper, "at most", "less than");
     let ends: Vec<String> = lower.into_iter().chain(upper).collect();
-    (!ends.is_empty()).then(|| ends.join(" and "))
+    match ends.is_empty() {
+        true => "other than 0".to_owned(),
+        false => ends.join(" and "),
+    }
 }
 
 fn decimal(value: &Rational) -> String {
@@ -42,38 +45,35 @@ fn decimal(value: &Rational) -> String {
         .map_or(value.to_string(), |value| value.to_string())
 }
 
-/// The checks of `build`, in which each parameter is a variable of its name.
-pub fn checks(derived: &Derived) -> TokenStream {
-    let requirements = requirements(derived);
-    let divisors = derived
-        .spec
-        .parameters
-        .iter()
-        .filter(|parameter| includes_zero(&parameter.range))
-        .filter(|parameter| divides(derived, &parameter.symbol))
-        .map(|parameter| nonzero(derived, parameter));
-    quote! { #requirements #(#divisors)* }
+/// The checks of `build`, in which each parameter is a variable.
+pub fn checks(derived: &Derived, names: &Names) -> TokenStream {
+    let requirements = requirements(derived, names);
+    // Without a range, everything was proved for every number but zero.
+    let parameters = derived.spec.parameters.iter();
+    let nonzero = parameters
+        .filter(|parameter| parameter.range == Interval::default())
+        .map(|parameter| nonzero(derived, parameter, names));
+    quote! { #requirements #(#nonzero)* }
 }
 
 /// Each requirement as a check of its margin, a polynomial in the parameters.
-fn requirements(derived: &Derived) -> TokenStream {
+fn requirements(derived: &Derived, names: &Names) -> TokenStream {
     let joint = &derived.spec.name.value;
     let requirements = &derived.spec.requirements;
     if requirements.is_empty() {
         return TokenStream::new();
     }
-    let names = Names::of_fields(derived);
     let nothing = Program {
         bindings: vec![],
         outputs: vec![],
     };
-    let writer = Writer::new(&names, &nothing);
+    let writer = Writer::new(names, &nothing);
     let checks: Vec<TokenStream> = requirements
         .iter()
         .map(|requirement| {
             let text = &requirement.value.text;
             let margin = writer.formula(&factored(&requirement.value.value).polished());
-            quote! { check_requirement(#joint, #text, #margin, &PARAMETERS, values)?; }
+            quote! { ::hamel::registry::check_requirement(#joint, #text, #margin, &PARAMETERS, values)?; }
         })
         .collect();
     let constants = writer.constants();
@@ -82,11 +82,11 @@ fn requirements(derived: &Derived) -> TokenStream {
     quote! { #scalar #constants #(#checks)* }
 }
 
-fn nonzero(derived: &Derived, parameter: &Parameter) -> TokenStream {
+fn nonzero(derived: &Derived, parameter: &Parameter, names: &Names) -> TokenStream {
     let joint = &derived.spec.name.value;
     let (text, field) = (
         parameter.symbol.name.as_ref(),
-        ident(&parameter.symbol.name),
+        ident(names.get(&parameter.symbol)),
     );
     quote! {
         if #field == 0.0 {
@@ -94,47 +94,8 @@ fn nonzero(derived: &Derived, parameter: &Parameter) -> TokenStream {
                 joint: #joint,
                 parameter: #text,
                 value: #field,
-                requirement: "other than zero",
+                requirement: "other than 0",
             });
         }
     }
-}
-
-fn includes_zero(range: &Interval) -> bool {
-    let zero = Rational::zero();
-    let above = |end: &End| end.value < zero || (end.included && end.value == zero);
-    let below = |end: &End| end.value > zero || (end.included && end.value == zero);
-    range.lower.as_ref().is_none_or(above) && range.upper.as_ref().is_none_or(below)
-}
-
-/// Whether some kernel divides by the parameter.
-fn divides(derived: &Derived, parameter: &Symbol) -> bool {
-    let atom = Atom::Symbol(parameter.clone());
-    let entries = derived
-        .kernels
-        .iter()
-        .flat_map(|kernel| &kernel.outputs)
-        .flat_map(|output| output.entries());
-    let steps = derived
-        .kernels
-        .iter()
-        .flat_map(|kernel| &kernel.steps)
-        .filter_map(|step| match step {
-            Step::Let(_, value) => Some(value),
-            Step::Call { .. } => None,
-        });
-    entries.chain(steps).any(|entry| divides_in(entry, &atom))
-}
-
-fn divides_in(expression: &Expr, atom: &Atom) -> bool {
-    expression
-        .terms()
-        .any(|(monomial, _)| monomial.power(atom) < 0)
-        || expression.atoms().iter().any(|inner| match inner {
-            Atom::Apply(application) => application
-                .arguments
-                .iter()
-                .any(|argument| divides_in(argument, atom)),
-            Atom::Symbol(_) => false,
-        })
 }

@@ -43,7 +43,7 @@ pub fn header(label: &str) -> String {
 ///
 /// # Errors
 /// Tokens that are no Rust: a fault of this crate, reported with the name of the joint.
-pub fn file(derived: &Derived, label: &str) -> Result<String, Malformed> {
+pub fn file(derived: &Derived, label: &str) -> Result<String, WriteError> {
     let items = items(derived);
     text(&derived.spec.name.value, &header(label), items)
 }
@@ -78,12 +78,9 @@ fn items(derived: &Derived) -> TokenStream {
     }
 }
 
-/// Imports of the names that occur.
-fn uses(tokens: &TokenStream) -> TokenStream {
-    let mut found = BTreeSet::new();
-    collect_identifiers(tokens.clone(), &mut found);
-    let groups: [(TokenStream, &[&str]); 6] = [
-        (quote! { ::hamel::erased }, &["erase"]),
+/// What an emitted file may import, by module. Functions that `build` calls are not among them: a parameter may have their names.
+fn imports() -> [(TokenStream, &'static [&'static str]); 5] {
+    [
         (
             quote! { ::hamel::joint },
             &[
@@ -98,19 +95,18 @@ fn uses(tokens: &TokenStream) -> TokenStream {
         (quote! { ::hamel::nalgebra }, &["SMatrix", "SVector"]),
         (
             quote! { ::hamel::registry },
-            &[
-                "JointEntry",
-                "Limit",
-                "ParameterError",
-                "ParameterInfo",
-                "check_parameters",
-                "check_requirement",
-            ],
+            &["JointEntry", "Limit", "ParameterError", "ParameterInfo"],
         ),
         (quote! { ::hamel::scalar }, &["Scalar"]),
         (quote! { ::hamel::spatial }, &["Pose", "nearest_rotation"]),
-    ];
-    let lines = groups.iter().filter_map(|(path, names)| {
+    ]
+}
+
+/// Imports of the names that occur.
+fn uses(tokens: &TokenStream) -> TokenStream {
+    let mut found = BTreeSet::new();
+    collect_identifiers(tokens.clone(), &mut found);
+    let lines = imports().into_iter().filter_map(|(path, names)| {
         let used: Vec<_> = names
             .iter()
             .filter(|name| found.contains(**name))
@@ -138,9 +134,9 @@ fn collect_identifiers(tokens: TokenStream, found: &mut BTreeSet<String>) {
 }
 
 /// Formatted text with its header.
-fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, Malformed> {
+fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, WriteError> {
     let parsed = syn::parse2::<syn::File>(items);
-    let file = parsed.map_err(|error| Malformed {
+    let file = parsed.map_err(|error| WriteError::Malformed {
         joint: joint.to_owned(),
         reason: error.to_string(),
     })?;
@@ -148,26 +144,45 @@ fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, Malform
     Ok(format!("// {header}\n{text}"))
 }
 
-/// Emitted tokens that are no Rust.
+/// Why a file cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Malformed {
-    /// The joint.
-    pub joint: String,
-    /// What the parser says.
-    pub reason: String,
+pub enum WriteError {
+    /// Emitted tokens that are no Rust: a fault of this crate.
+    Malformed {
+        /// The joint.
+        joint: String,
+        /// What the parser says.
+        reason: String,
+    },
+    /// No values of the parameters were found that meet all requirements of a joint, which `for_each_joint!` is to build.
+    NoParameters {
+        /// The joint.
+        joint: String,
+        /// Its requirements, as the spec writes them.
+        requirements: Vec<String>,
+    },
 }
 
-impl std::fmt::Display for Malformed {
+impl std::fmt::Display for WriteError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "the code emitted for `{}` is no Rust ({}): please report this spec",
-            self.joint, self.reason
-        )
+        match self {
+            Self::Malformed { joint, reason } => write!(
+                f,
+                "the code emitted for `{joint}` is no Rust ({reason}): please report this spec"
+            ),
+            Self::NoParameters {
+                joint,
+                requirements,
+            } => write!(
+                f,
+                "no values of the parameters of `{joint}` were found that meet {}: narrow their ranges",
+                requirements.join(", ")
+            ),
+        }
     }
 }
 
-impl std::error::Error for Malformed {}
+impl std::error::Error for WriteError {}
 
 /// The identifier of a joint's type.
 fn type_ident(derived: &Derived) -> Ident {

@@ -54,8 +54,8 @@ pub fn is_beside_the_trait(kind: KernelKind) -> bool {
     )
 }
 
-/// Rank of the derivatives of the relations on the manifold: N − K, without what known factors that no relation names
-/// contribute to it.
+/// Rank of the derivatives of the relations on the manifold: N less the dimension that they cut out, without what known factors
+/// that no relation names contribute to it.
 fn codimension(derived: &Derived) -> usize {
     let relations = derived.kernel(KernelKind::Relations);
     let entries = relations.iter().flat_map(|kernel| &kernel.outputs);
@@ -68,7 +68,7 @@ fn codimension(derived: &Derived) -> usize {
         .filter(|factor| !factor.coordinates.iter().any(|q| named.contains(q)))
         .map(|factor| factor.coordinates.len() - factor.kind.dimension())
         .sum();
-    derived.shape.configuration - derived.shape.freedoms - apart
+    derived.shape.configuration - derived.cut_out - apart
 }
 
 /// How the value is found, in a sentence of a doc comment.

@@ -2,9 +2,10 @@
 //!
 //! The joints are derived from specs with closed forms and patched, so that these tests need no derivation of other maps.
 
-use super::{Index, file, index};
+use super::{Index, file, imports, index};
 use crate::derive;
 use crate::derived::{Derived, Kernel, KernelKind, Method, Structure};
+use crate::emit::names::{Names, type_name};
 use crate::emit::{Accuracy, Report, explain_text, page};
 use crate::expr::{Expr, Rational};
 use crate::matrix::Matrix;
@@ -156,6 +157,24 @@ fn a_projection_begins_at_the_value_of_its_formulas() {
     );
 }
 
+/// Of the 12 entries, 6 relations leave the pose of a rigid body; those of the cosets leave 2 freedoms, or 4.
+#[test]
+fn a_projection_solves_as_many_relations_as_the_coset_has() {
+    for (basis, rank) in [
+        (
+            "turn = 1/3 * e1 + 2/3 * e2 + 2/3 * e3 + 1/30 * e4 + 2/30 * e5 + 2/30 * e6",
+            10,
+        ),
+        ("turn = e3 + 1/10 * e6, x = e4, y = e5", 8),
+        ("turn = e3, x = e4, y = e5", 9),
+    ] {
+        let text = emitted(&derived(&format!(
+            "hamel = 1; joint some {{ config Q: SE3; basis {basis} of se3; velocity in child; H = Q; }}"
+        )));
+        assert_contains(&text, &[&format!("{rank}, |q| self.relations(q),")]);
+    }
+}
+
 #[test]
 fn pages_and_the_index_take_kernels_without_formulas() {
     let ball = numeric_ball();
@@ -217,7 +236,12 @@ fn ranges_and_requirements_are_checked() {
     let mut crank = derived(CRANK);
     assert_contains(
         &emitted(&crank),
-        &["lower: None, upper: None", "if inner == 0.0 {"],
+        &[
+            "lower: None, upper: None",
+            "if outer == 0.0 {",
+            "if inner == 0.0 {",
+            "In m. It is other than 0.",
+        ],
     );
     crank.spec.parameters[1].range = Interval {
         lower: end(0, 1, false),
@@ -242,5 +266,52 @@ fn ranges_and_requirements_are_checked() {
     assert!(
         !text.contains("if inner == 0.0"),
         "its range excludes 0: {text}"
+    );
+}
+
+#[test]
+fn no_type_and_no_variable_is_called_like_an_import() {
+    let is_type = |name: &str| name.starts_with(char::is_uppercase);
+    let imported: Vec<&str> = imports()
+        .iter()
+        .flat_map(|(_, names)| *names)
+        .copied()
+        .collect();
+    assert!(imported.len() > 10, "{imported:?}");
+    for name in imported {
+        if is_type(name) {
+            let words = name.char_indices().flat_map(|(i, c)| {
+                let between = (i > 0 && c.is_uppercase()).then_some('_');
+                between.into_iter().chain(c.to_lowercase())
+            });
+            assert_ne!(type_name(&words.collect::<String>()), name);
+        } else {
+            let joint = derived(&format!(
+                "hamel = 1; joint some({name}: m) {{ config q: R1; H = trans_x({name} * q); }}"
+            ));
+            let parameter = &joint.spec.parameters[0].symbol;
+            assert_eq!(
+                Names::new(&joint).get(parameter),
+                format!("{name}_parameter")
+            );
+        }
+    }
+}
+
+#[test]
+fn variables_of_build_keep_clear_of_its_argument_and_of_constants() {
+    let text = emitted(&derived(
+        "hamel = 1; joint some(values: m, erase: m, two: m, three_halves: m) {\n\
+         require 2 * values > 3/2 * erase + two + three_halves;\n\
+         config q: R1; H = rot_z(q) * trans_x(values + erase + two + three_halves); }",
+    ));
+    assert_contains(
+        &text,
+        &[
+            "let [values_parameter, erase, two_parameter, three_halves] = ::hamel::registry::check_parameters( \"some\", &PARAMETERS, values, )?;",
+            "let two = T::from_f64(2.0);",
+            "let three_halves_2 = T::from_f64(1.5);",
+            "Ok( ::hamel::erased::erase( Some::new( values_parameter, erase, two_parameter, three_halves, ), ), )",
+        ],
     );
 }

@@ -1,7 +1,7 @@
 //! Formulas as Rust tokens, generic in the scalar `T`.
 
 use crate::emit::formula::{Binding, Chain, Node, Program};
-use crate::emit::names::{NameSet, Names, number_name};
+use crate::emit::names::{NameSet, Names, is_number_word, number_name};
 use crate::expr::{Function, Rational, Symbol};
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
@@ -51,12 +51,10 @@ impl<'a> Writer<'a> {
     fn number(&self, value: &Rational) -> Ident {
         let make = || {
             let name = number_name(value);
-            // Words are reserved for numbers; composed names may meet a name of the joint.
-            let composed = name.contains(|c: char| c.is_ascii_digit());
-            ident(&if composed {
-                self.taken.borrow_mut().claim(&name)
-            } else {
-                name
+            // Single words are reserved for numbers; composed names may meet a name of the joint.
+            ident(&match is_number_word(&name) {
+                true => name,
+                false => self.taken.borrow_mut().claim(&name),
             })
         };
         self.numbers

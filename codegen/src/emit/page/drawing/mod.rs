@@ -137,7 +137,10 @@ fn caption(
     let freedom = |k: usize| freedoms.get(k);
     match direction {
         Direction::Velocity(k) => freedom(k)
-            .map(|row| format!("{}: {}, {}", row.name, row.velocity, row.rate_unit))
+            .map(|row| match row.rate_unit.as_str() {
+                "" => format!("{}: {}", row.name, row.velocity),
+                unit => format!("{}: {}, {unit}", row.name, row.velocity),
+            })
             .unwrap_or_default(),
         Direction::Speed(j) => {
             let name = derived.speed_names.get(j).map_or("", String::as_str);

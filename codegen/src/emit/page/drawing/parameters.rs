@@ -2,6 +2,7 @@
 
 use super::sampler::Sampler;
 use crate::derived::Derived;
+use crate::emit::combinations::combinations;
 use crate::model::Interval;
 use num_traits::ToPrimitive;
 
@@ -16,26 +17,12 @@ pub fn sampler(derived: &Derived) -> Option<Sampler<'_>> {
         .iter()
         .map(|parameter| choices(&parameter.range))
         .collect();
-    let count = choices
-        .iter()
-        .fold(1, |count: usize, values| count.saturating_mul(values.len()));
-    let tried =
-        (0..count.min(MOST_TRIED)).map(|n| Sampler::new(derived, &combination(&choices, n)));
+    let tried = combinations(&choices, MOST_TRIED).map(|values| Sampler::new(derived, &values));
     let fits = |sampler: &Sampler<'_>| {
         sampler.meets_requirements() && sampler.pose(&sampler.home()).is_some()
     };
     let mut tried = tried.filter(fits);
     tried.next()
-}
-
-/// The `n`-th combination, the first parameter counting fastest.
-fn combination(choices: &[Vec<f64>], mut n: usize) -> Vec<f64> {
-    let mut digit = |values: &Vec<f64>| {
-        let value = values[n % values.len()];
-        n /= values.len();
-        value
-    };
-    choices.iter().map(&mut digit).collect()
 }
 
 /// Values inside the interval, the best for a drawing first.

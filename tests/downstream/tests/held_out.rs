@@ -1,0 +1,49 @@
+//! The law suite over the joints that the generator's tests hold out.
+
+use hamel_downstream::held_out::*;
+use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
+use hamel_tests::laws::check_within;
+
+/// One test a joint, and the list of those that have one.
+macro_rules! law_tests {
+    ($($name:ident: $joint:expr, $reach:expr;)*) => {
+        const TESTED: &[&str] = &[$(stringify!($name)),*];
+        $(
+            #[test]
+            fn $name() {
+                let reach: Reach = $reach;
+                check_within(&$joint, reach);
+            }
+        )*
+    };
+}
+
+law_tests! {
+    axle_wheel: AxleWheel::new(0.7, 0.85), HalfTurn;
+    bevel_torus: BevelTorus::new(0.85, 0.7, 1.0), HalfTurn;
+    constant_velocity: ConstantVelocity, Entries(0.5);
+    cycloid: Cycloid::new(0.7), Entries(0.5);
+    dual_crank: DualCrank::new(0.7, 0.85), HalfTurn;
+    helicoid: Helicoid::new(0.7), HalfTurn;
+    hyperbolic_cam: HyperbolicCam::new(0.7, 0.85), HalfTurn;
+    mixed4: Mixed4::new(0.7, 0.85, 1.0, 1.15), HalfTurn;
+    moebius: Moebius::new(0.7), HalfTurn;
+    offset_wrist: OffsetWrist::new(0.7), HalfTurn;
+    plane_tilt: PlaneTilt::new(0.7), HalfTurn;
+    profile_roller: ProfileRoller::new(0.7, 0.85, 1.0), HalfTurn;
+    rolling_cone: RollingCone::new(0.7), HalfTurn;
+    screw_plane: ScrewPlane::new(0.7), HalfTurn;
+    so3_about: So3About::new(0.7), HalfTurn;
+    so3_norm: So3Norm::new(0.7), HalfTurn;
+    so3_skew: So3Skew::new(0.7), HalfTurn;
+    so3_turn: So3Turn::new(0.7), HalfTurn;
+    sphere_skate: SphereSkate::new(0.7), HalfTurn;
+    sphere_steer: SphereSteer::new(0.7), Entries(0.5);
+    two_vectors: TwoVectors, HalfTurn;
+}
+
+#[test]
+fn every_joint_has_a_test() {
+    let names: Vec<&str> = ENTRIES.iter().map(|entry| entry.name).collect();
+    assert_eq!(names, TESTED);
+}
