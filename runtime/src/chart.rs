@@ -5,7 +5,7 @@
 //! Φ is differentiated twice on the way; that is left to dual numbers through the joint's own kernels, so that it is exact for every Φ,
 //! those that are inverted by Newton's method included.
 
-use crate::erased::Erased;
+use crate::erased::Sizes;
 use crate::finite::differential;
 use crate::joint::Joint;
 use crate::scalar::Dual;
@@ -41,7 +41,7 @@ pub trait Chart {
 }
 
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Chart
-    for Erased<J, N, K, S, C>
+    for (J, Sizes<N, K, S, C>)
 where
     J: Joint<N, K, S, C>,
 {
@@ -53,7 +53,7 @@ where
         out: &mut ChartDerivatives<'_>,
     ) {
         let field = Field::<J, N, K, S, C> {
-            joint: self.joint(),
+            joint: &self.0,
             base: SVector::from_column_slice(base),
             phi: SVector::from_column_slice(phi),
             speeds: SVector::from_column_slice(speeds),

@@ -2,7 +2,7 @@
 //!
 //! Springs on a manifold differentiate Φ twice, and rotors the kernel of γ: dual numbers through the joint's own kernels do it exactly.
 
-use crate::erased::Erased;
+use crate::erased::Sizes;
 use crate::joint::Joint;
 use crate::scalar::{Dual, Scalar};
 use crate::spatial::vee;
@@ -30,12 +30,12 @@ pub trait ElementKernels {
 }
 
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> ElementKernels
-    for Erased<J, N, K, S, C>
+    for (J, Sizes<N, K, S, C>)
 where
     J: Joint<N, K, S, C>,
 {
     fn spring_slope(&self, q: &[f64], rest: &[f64], stiffness: &[f64], out: &mut [f64]) {
-        let joint = self.joint();
+        let joint = &self.0;
         let rest: SVector<D, N> = lift(rest);
         let stiffness = SMatrix::<f64, K, K>::from_row_slice(stiffness).map(Dual::constant);
         let slope: SMatrix<f64, K, K> = along(joint, q, |q| {
@@ -51,7 +51,7 @@ where
     }
 
     fn turn_slope(&self, q: &[f64], rest: &Matrix3<f64>, stiffness: f64, out: &mut [f64]) {
-        let joint = self.joint();
+        let joint = &self.0;
         let back = rest.transpose().map(Dual::constant);
         let slope: SMatrix<f64, K, K> = along(joint, q, |q| {
             let turn = joint.pose(q).rotation * back;
@@ -70,7 +70,7 @@ where
         by_local: &mut [f64],
         by_velocity: &mut [f64],
     ) {
-        let joint = self.joint();
+        let joint = &self.0;
         let velocity: SVector<D, K> = lift(velocity);
         let inertia: SVector<D, K> = lift(inertia);
         let force =
