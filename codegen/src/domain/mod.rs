@@ -129,7 +129,9 @@ impl<'a> Domain<'a> {
 
     /// Whether no parameter that may be 0 is a factor of the only term.
     fn has_unit_factor(&self, expression: &Expr) -> bool {
-        let mut units = expression.terms().flat_map(|(monomial, _)| monomial.units());
+        let mut units = expression
+            .terms()
+            .flat_map(|(monomial, _)| monomial.units());
         units.all(|(atom, _)| !matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s)))
     }
 

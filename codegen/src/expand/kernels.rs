@@ -186,7 +186,9 @@ impl Maker<'_> {
             singular_functions(spec),
             singular,
         );
-        singular.outputs.extend(side_of_home(spec, self.x.exponential));
+        singular
+            .outputs
+            .extend(side_of_home(spec, self.x.exponential));
         let Some((values, gradient)) = relations else {
             return vec![rate, project, residual, singular];
         };

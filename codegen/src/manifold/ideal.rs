@@ -216,10 +216,17 @@ impl Ideal {
         let relations = relations_of(&functions, |function| function != Function::Recip);
         let all = [relations, numerators].concat();
         let own = self.own.relations();
-        if own.iter().chain(&all).all(|e| e.symbols().is_disjoint(vanishing)) {
+        if own
+            .iter()
+            .chain(&all)
+            .all(|e| e.symbols().is_disjoint(vanishing))
+        {
             return self.own.with(&all).is_trivial();
         }
-        let undivided = own.into_iter().chain(all).filter(|e| !divides(e, vanishing));
+        let undivided = own
+            .into_iter()
+            .chain(all)
+            .filter(|e| !divides(e, vanishing));
         let polynomials: Vec<Expr> = undivided.map(|e| indeterminate(&e, vanishing)).collect();
         Reduction::new(&polynomials).is_trivial()
     }
@@ -261,8 +268,12 @@ fn indeterminate(expression: &Expr, parameters: &BTreeSet<Symbol>) -> Expr {
 
 /// Whether a term of the polynomial is divided by one of the parameters.
 fn divides(expression: &Expr, parameters: &BTreeSet<Symbol>) -> bool {
-    let mut factors = expression.terms().flat_map(|(monomial, _)| monomial.units());
-    factors.any(|(atom, power)| matches!(atom, Atom::Symbol(s) if *power < 0 && parameters.contains(s)))
+    let mut factors = expression
+        .terms()
+        .flat_map(|(monomial, _)| monomial.units());
+    factors.any(
+        |(atom, power)| matches!(atom, Atom::Symbol(s) if *power < 0 && parameters.contains(s)),
+    )
 }
 
 /// The relations of those functions that are wanted, each once.

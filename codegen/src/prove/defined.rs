@@ -29,7 +29,10 @@ pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Diagnostic> {
 impl Prover<'_> {
     /// Every quotient, root, logarithm and angle in what is evaluated at Q is smooth there.
     pub(super) fn is_defined(&self) -> Attempt {
-        let (declared, derived) = (Critical::declared(self.spec, self.x.exponential), self.derived_functions());
+        let (declared, derived) = (
+            Critical::declared(self.spec, self.x.exponential),
+            self.derived_functions(),
+        );
         let count = declared.union(&derived).count();
         if count == 0 {
             return Ok(None);
@@ -51,7 +54,9 @@ impl Prover<'_> {
         Ok(Some(certified(
             "defined",
             &statement,
-            &format!("quotients, roots, logarithms and angles in them: {count}; all are smooth at their arguments"),
+            &format!(
+                "quotients, roots, logarithms and angles in them: {count}; all are smooth at their arguments"
+            ),
         )))
     }
 
@@ -75,15 +80,18 @@ impl Prover<'_> {
             return false;
         };
         let of_quotient = critical.function == Function::Recip;
-        let mut known = declared.iter().flat_map(|other| {
-            match (other.function, other.arguments.as_slice()) {
-                (Function::Recip, [x]) if of_quotient => vec![x.clone()],
-                (Function::Sqrt | Function::Ln, [x]) if of_quotient => vec![x.clone(), x.sqrt()],
-                (Function::Sqrt | Function::Ln, [x]) => vec![x.clone()],
-                (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
-                _ => vec![],
-            }
-        });
+        let mut known =
+            declared
+                .iter()
+                .flat_map(|other| match (other.function, other.arguments.as_slice()) {
+                    (Function::Recip, [x]) if of_quotient => vec![x.clone()],
+                    (Function::Sqrt | Function::Ln, [x]) if of_quotient => {
+                        vec![x.clone(), x.sqrt()]
+                    }
+                    (Function::Sqrt | Function::Ln, [x]) => vec![x.clone()],
+                    (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
+                    _ => vec![],
+                });
         known.any(|x| self.ideal.vanishes(&(&x - argument)))
     }
 }
@@ -95,7 +103,12 @@ fn collect<'m>(matrices: impl Iterator<Item = &'m Matrix>, found: &mut BTreeSet<
 
 fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
     let [argument, rest @ ..] = critical.arguments.as_slice() else {
-        return refuted(code::NOT_DEFINED, span, "a function without arguments", "here");
+        return refuted(
+            code::NOT_DEFINED,
+            span,
+            "a function without arguments",
+            "here",
+        );
     };
     let moves = critical.arguments != critical.written;
     let vanishes = critical.arguments.iter().all(Expr::is_zero);
@@ -131,6 +144,11 @@ fn at_base(critical: &Critical, span: &Range<usize>) -> Diagnostic {
         Function::Atan2 => format!("Φ takes atan2({written}), and both are 0 at ϕ = 0"),
         _ => format!("Φ takes the root of {written}, which is 0 at ϕ = 0"),
     };
-    refuted(code::NOT_DEFINED, span, &message, "has no derivatives at ϕ = 0")
-        .help("write Φ by functions that are smooth there: exp(phi), or a sum divided by its norm")
+    refuted(
+        code::NOT_DEFINED,
+        span,
+        &message,
+        "has no derivatives at ϕ = 0",
+    )
+    .help("write Φ by functions that are smooth there: exp(phi), or a sum divided by its norm")
 }

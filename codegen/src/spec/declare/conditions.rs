@@ -47,9 +47,8 @@ fn wrong_requirement(
     before: &[Declared<Requirement>],
     spec: &JointSpec,
 ) -> Option<Diagnostic> {
-    let error = |message: &str| {
-        Diagnostic::new(code::REQUIREMENT, requirement.span.clone(), message)
-    };
+    let error =
+        |message: &str| Diagnostic::new(code::REQUIREMENT, requirement.span.clone(), message);
     let given = |requirements: &[Declared<Requirement>]| JointSpec {
         requirements: requirements.to_vec(),
         ..spec.clone()

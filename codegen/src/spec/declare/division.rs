@@ -48,7 +48,10 @@ fn hidden(spec: &JointSpec, suspects: &[&Parameter], span: &Range<usize>) -> Vec
     });
     match is_undivided {
         Ok(true) => vec![],
-        _ => named.iter().map(|parameter| error(parameter, span)).collect(),
+        _ => named
+            .iter()
+            .map(|parameter| error(parameter, span))
+            .collect(),
     }
 }
 
