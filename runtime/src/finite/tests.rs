@@ -1,7 +1,8 @@
 //! Finite maps against closed forms: Cayley's map on SO(3), the sphere with normalisation, an ellipsoid, redundant relations.
 
 use super::{
-    differential, differential_inverse, inverse, least_absolute, least_absolute_beside, least_squares, local, project,
+    differential, differential_inverse, inverse, least_absolute, least_absolute_beside,
+    least_squares, local, project,
 };
 use crate::scalar::{Dual, Scalar};
 use crate::spatial::{hat, so3};
