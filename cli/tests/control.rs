@@ -105,11 +105,11 @@ fn the_summary_tells_and_the_files_are_written() {
         &html.to_string_lossy(),
     ]);
     assert!(
-        summary.contains("control     lqr at every instant; largest effort 1"),
+        summary.contains("control     lqr at every instant; largest effort 8.6"),
         "{summary}"
     );
     assert!(
-        summary.contains("position error: 2.20e0 at the start, 2.20e0 at most, "),
+        summary.contains("position error: 2.20e0 at the start, 2.24e0 at most, "),
         "{summary}"
     );
     let rows = std::fs::read_to_string(&csv).expect("written");
@@ -153,8 +153,8 @@ fn a_controller_that_fails_on_the_way_says_why() {
     let output = hamel(&[
         "simulate",
         "scenes/cart_path.toml",
-        "--dt",
-        "0.39269908169872414",
+        "--at",
+        "1,1.5707963267948966,2",
         "--quiet",
         "--csv",
         &file("stands.csv").to_string_lossy(),

@@ -65,7 +65,7 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     expand::confine(&mut spec);
     let positive = crate::domain::positive_parameters(&spec);
     spec.manifold.value = spec.manifold.value.clone().with_positive(positive);
-    prove::retract_is_smooth(&spec).map_err(|error| vec![error])?;
+    prove::retract_is_smooth(&spec).map_err(|error| vec![*error])?;
     let expansion = expand::expand(&spec)?;
     budget::begin(task::PROOF);
     let claims = prove::prove(&spec, &expansion)?;

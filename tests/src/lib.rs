@@ -19,11 +19,6 @@ pub mod specs;
 
 pub use hamel;
 
-/// The code of `docs/control.md`, compiled.
-#[cfg(doctest)]
-#[doc = include_str!("../../docs/control.md")]
-pub struct ControlPage;
-
 use hamel::registry::JointRegistry;
 use hamel_codegen::derived::Derived;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,7 @@
 //! The code on pages of `docs/`, compiled and run as documentation tests.
 
+#[doc = include_str!("../../docs/control.md")]
+mod control {}
+
 #[doc = include_str!("../../docs/library.md")]
 mod library {}

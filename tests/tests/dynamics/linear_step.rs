@@ -2,6 +2,7 @@
 
 use crate::derivatives::Equipment;
 use hamel::dynamics::{Dynamics, Recursive};
+use hamel::elements::{Drive, Law};
 use hamel::integrate::{
     Control, Form, LinearStep, Method, Options, Pair, State, StepFailure, integrate, no_observer,
 };
@@ -271,4 +272,15 @@ fn what_cannot_be_stepped_is_refused() {
     off[0] = f64::NAN;
     let refused = step.linearize(&off, &case.speeds, &case.efforts, DT);
     assert!(matches!(refused, Err(StepFailure::State(_))), "{refused:?}");
+    let drive = Drive {
+        name: "shaker".to_owned(),
+        body: 0,
+        laws: vec![Law::default(); case.speeds.len()],
+    };
+    let driven = (*case.mechanism).clone().with_drives(vec![drive]);
+    let driven = Arc::new(driven.expect("it fits"));
+    let mut step = LinearStep::new(&driven, Form::Lagrangian, &FIXED);
+    let refused = step.linearize(&case.q, &case.speeds, &case.efforts, DT);
+    let message = refused.expect_err("a function of time").to_string();
+    assert!(message.contains("`shaker`"), "{message}");
 }

@@ -21,7 +21,7 @@ mod equations;
 use super::flow::{Rates, retract};
 use super::turns::{Turns, check_finite};
 use super::{Form, Method, StepFailure, Tableau};
-use crate::dynamics::{Dynamics, Recursive, Sensitivity};
+use crate::dynamics::{Dynamics, DynamicsError, Recursive, Sensitivity};
 use crate::mechanism::{Mechanism, WHOLE, check_size};
 use alloc::sync::Arc;
 use alloc::vec;
@@ -133,7 +133,7 @@ impl LinearStep {
     ///
     /// # Errors
     /// A step that is not positive and finite; a state of the wrong size, not finite or off the joints' manifolds; a singular mass matrix; a
-    /// joint that turns by more than π; something that acts on the mechanism and that derivatives do not cover.
+    /// joint that turns by more than π; a joint whose motion is prescribed, and what else derivatives do not cover.
     pub fn linearize(
         &mut self,
         q: &[f64],
@@ -195,6 +195,13 @@ impl LinearStep {
             return Err(StepFailure::Length { step });
         }
         let mechanism = self.dynamics.mechanism();
+        if let Some(drive) = mechanism.drives().first() {
+            // Its acceleration is a function of time, which no step is told here.
+            return Err(StepFailure::Dynamics(DynamicsError::NotDifferentiable {
+                what: "a joint whose motion is prescribed",
+                name: drive.name.clone(),
+            }));
+        }
         mechanism.check_configuration(q)?;
         mechanism.check_speeds(self.equations.y(), y)?;
         let freedoms = mechanism.layout().freedoms;

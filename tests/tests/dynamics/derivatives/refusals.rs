@@ -1,6 +1,8 @@
 //! What derivatives do not cover is refused by name.
 
-use hamel::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, Recursive};
+use hamel::dynamics::{
+    Dynamics, DynamicsError, HamiltonianDerivatives, InverseDerivatives, Recursive,
+};
 use hamel::elements::{Action, Drive, Element, ElementError, Law, PointConstraint, View};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::Vector3;
@@ -34,9 +36,8 @@ fn refusal(case: &Case, mechanism: Mechanism) -> String {
     let mut rates = case.rates.clone();
     let moved = dynamics.accelerations(&case.q, &case.speeds, &case.efforts, &mut rates);
     moved.expect("it moves");
-    let mut out = ForwardDerivatives::new(&mechanism);
-    let refused =
-        dynamics.forward_dynamics_derivatives(&case.q, &case.speeds, &case.efforts, &mut out);
+    let mut out = HamiltonianDerivatives::new(&mechanism);
+    let refused = dynamics.hamiltonian_derivatives(&case.q, &case.speeds, &case.efforts, &mut out);
     let error = refused.expect_err("refused");
     assert!(matches!(error, DynamicsError::NotDifferentiable { .. }));
     error.to_string()

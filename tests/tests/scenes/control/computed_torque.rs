@@ -95,7 +95,7 @@ fn mixed() -> Scene {
 /// Laws of which no two have a period in common.
 fn laws(count: usize) -> Vec<Law> {
     let law = |i: usize| Law {
-        rate: if i % 2 == 0 { 0.4 } else { -0.3 },
+        rate: if i.is_multiple_of(2) { 0.4 } else { -0.3 },
         amplitude: 0.3,
         frequency: 1.0 + 0.13 * i as f64,
         phase: 0.7 * i as f64,

@@ -51,7 +51,9 @@ fn limits_are_kept_and_the_pole_comes_upright() {
     let scene = scene("balance_mpc");
     let (_, readings) = run(&scene, METHOD, scene.settings.t_end);
     let end = readings.last().expect("steps");
-    assert!(readings[0].1[0] >= 0.6);
+    assert!(readings[0].1[0] >= 0.55);
+    // It is caught, not swung round: a falling pole would reach 10 rad/s.
+    assert!(super::largest(&readings, 1) < 5.0);
     assert!(end.1[0] < 2e-3 && end.1[1] < 2e-3, "{end:?}");
 
     let (efforts, state) = held(&scene, &mut *super::controller(&scene), f64::INFINITY);

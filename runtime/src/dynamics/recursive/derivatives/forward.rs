@@ -5,7 +5,7 @@ use super::coriolis::{ArticulatedCoriolis, Coriolis};
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
 use super::sweep::{LANES, Push, Sweep, Tree};
-use super::{Branch, Sensitivity, branches, in_child};
+use super::{Branch, Equations, Sensitivity, branches, in_child};
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::{Dynamics, DynamicsError};
@@ -140,7 +140,8 @@ impl ForwardDerivatives {
 }
 
 impl Recursive {
-    /// v̄̇ at (q, v̄, τ) and its derivatives in ϕ, v̄ and τ into `out`.
+    /// v̄̇ at (q, v̄, τ) and its derivatives in ϕ, v̄ and τ into `out`. The first efforts of a driven joint are its accelerations, here as in
+    /// [`Dynamics::accelerations`].
     ///
     /// # Errors
     /// A singular mass matrix; a wrong size; something that acts on the mechanism and that derivatives do not cover.
@@ -151,10 +152,14 @@ impl Recursive {
         efforts: &[f64],
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
-        self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
+        self.check_differentiable(
+            Equations::Forward,
+            &[&out.by_local, &out.by_speeds, &out.by_efforts],
+        )?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
         self.set_accelerations(q, speeds, &out.rates);
-        if let (true, Some(inverse)) = (self.holonomic, &mut out.inverse) {
+        let yields = self.holonomic && self.mechanism.drives().is_empty();
+        if let (true, Some(inverse)) = (yields, &mut out.inverse) {
             self.differentiate_needed(q, speeds, &out.rates, inverse);
             for index in 0..self.links.len() {
                 self.push_efforts(index, q, &mut out.responses.forced);
@@ -183,9 +188,14 @@ impl Recursive {
         let sweep = &mut responses.sweep;
         respond::<true>(&tree, sweep, &responses.pushes, &mut out.by_local);
         respond::<true>(&tree, sweep, &responses.faster, &mut out.by_speeds);
-        match self.holonomic {
+        match yields {
             true => invert(&tree, sweep, &responses.forced, &mut out.by_efforts),
             false => respond::<false>(&tree, sweep, &responses.forced, &mut out.by_efforts),
+        }
+        for link in self.links.iter().filter(|link| link.driven) {
+            for (speed, effort) in link.speeds.clone().zip(link.freedoms.clone()) {
+                out.by_efforts.set(speed, effort, 1.0);
+            }
         }
         if self.acted_on {
             self.push_units(&mut out.yielding);
@@ -268,6 +278,9 @@ impl Recursive {
     fn push_efforts(&self, index: usize, q: &[f64], forced: &mut [Push]) {
         let link = &self.links[index];
         let (count, q) = (link.speeds.len(), &q[link.configuration.clone()]);
+        if link.driven {
+            return self.push_driven(index, forced);
+        }
         for slot in link.freedoms.clone() {
             let mut unit = [0.0; MOST_FREEDOMS];
             unit[slot - link.freedoms.start] = 1.0;
@@ -292,6 +305,20 @@ impl Recursive {
         };
         push.loads[0] = load;
         push
+    }
+
+    /// What one unit of each acceleration of a driven joint pushes, which are the first of its efforts; a driven joint does not yield.
+    fn push_driven(&self, index: usize, forced: &mut [Push]) {
+        let link = &self.links[index];
+        let inertia = self.articulated(index);
+        forced[link.freedoms.clone()].fill(Push {
+            body: index,
+            ..Push::none()
+        });
+        let columns = &self.columns[link.speeds.clone()];
+        for (push, column) in forced[link.freedoms.clone()].iter_mut().zip(columns) {
+            (push.wrench, push.rate) = (inertia.apply(column), *column);
+        }
     }
 
     /// What is left of a wrench once the joint under it has given way to it under its own forces.

@@ -9,7 +9,7 @@ use super::acting::Acting;
 use super::forward::{Responses, invert, respond};
 use super::product::add_product;
 use super::sweep::{Push, Tree};
-use super::{Sensitivity, in_child};
+use super::{Equations, Sensitivity, in_child};
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::{Dynamics, DynamicsError};
@@ -112,7 +112,10 @@ impl Recursive {
         efforts: &[f64],
         out: &mut HamiltonianDerivatives,
     ) -> Result<(), DynamicsError> {
-        self.check_differentiable(&[&out.rates_by_local, &out.rates_by_speeds])?;
+        self.check_differentiable(
+            Equations::Hamiltonian,
+            &[&out.rates_by_local, &out.rates_by_speeds],
+        )?;
         self.check_efforts(efforts)?;
         self.speeds(q, momenta, &mut out.speeds)?;
         self.advance(q, &out.speeds, None);

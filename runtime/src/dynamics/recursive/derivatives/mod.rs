@@ -27,8 +27,9 @@
 //! its branch and one outward, O(n), eight columns at a time; M̄ is never formed. Mechanisms of few speeds
 //! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them.
 //!
-//! Elements and rotors add what [`acting`] says. Joints whose motion is prescribed, constraints that couple joints, and elements of one's own
-//! without slopes ([`Element::slope`](crate::elements::Element::slope)) are not covered: asking for derivatives of such a mechanism is an error.
+//! Elements and rotors add what [`acting`] says. Elements of one's own without slopes ([`Element::slope`](crate::elements::Element::slope)) are not
+//! covered; nor are constraints that couple joints, but in inverse dynamics, which is that of the tree; nor, in the port-Hamiltonian form, joints
+//! whose motion is prescribed. Asking for derivatives of such a mechanism is an error.
 
 mod acting;
 mod coriolis;
@@ -139,9 +140,24 @@ impl Sensitivity {
     }
 }
 
+/// What is to be differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Equations {
+    /// Inverse dynamics.
+    Inverse,
+    /// Forward dynamics.
+    Forward,
+    /// The port-Hamiltonian form.
+    Hamiltonian,
+}
+
 impl Recursive {
-    /// Whether derivatives cover all that acts on the mechanism, and `results` belong to a mechanism of its size.
-    fn check_differentiable(&self, results: &[&Sensitivity]) -> Result<(), DynamicsError> {
+    /// Whether derivatives of `equations` cover all that acts on the mechanism, and `results` belong to a mechanism of its size.
+    fn check_differentiable(
+        &self,
+        equations: Equations,
+        results: &[&Sensitivity],
+    ) -> Result<(), DynamicsError> {
         let layout = self.mechanism.layout();
         let fits = |result: &&Sensitivity| {
             result.fits(layout.speeds, layout.freedoms) || result.fits(layout.speeds, layout.speeds)
@@ -152,9 +168,16 @@ impl Recursive {
         let mechanism = &self.mechanism;
         let element = mechanism.elements().iter().find(|e| e.slope().is_none());
         let element = element.map(|element| ("an element without slopes", element.name()));
-        let constraint = mechanism.constraints().first();
+        let constraint = match equations {
+            // The tree's own: what constraints exert is no part of it.
+            Equations::Inverse => None,
+            Equations::Forward | Equations::Hamiltonian => mechanism.constraints().first(),
+        };
         let constraint = constraint.map(|c| ("a constraint that couples joints", &c.name[..]));
-        let drive = mechanism.drives().first();
+        let drive = match equations {
+            Equations::Inverse | Equations::Forward => None,
+            Equations::Hamiltonian => mechanism.drives().first(),
+        };
         let drive = drive.map(|drive| ("a joint whose motion is prescribed", &drive.name[..]));
         match element.or(constraint).or(drive) {
             Some((what, name)) => Err(DynamicsError::NotDifferentiable {

@@ -123,8 +123,9 @@ impl Equipment {
         let equipped = mechanism.clone().with_elements(elements.concat());
         let mut equipped = equipped.expect("it fits");
         for (body, owner) in mechanism.bodies().iter().enumerate() {
-            if owner.joint().structures().speed_basis.is_identity() {
-                let own = &self.armature[owner.ranges().speeds.clone()];
+            let holonomic = owner.joint().structures().speed_basis.is_identity();
+            let own = self.armature.get(owner.ranges().speeds.clone());
+            if let Some(own) = own.filter(|_| holonomic) {
                 equipped = equipped.with_armature(body, own).expect("it fits");
             }
         }
