@@ -18,6 +18,7 @@ macro_rules! law_tests {
     };
 }
 
+// Joints with exceptions, half a turn or a radius away, take smaller steps than the others.
 law_tests! {
     axle_wheel: AxleWheel::new(0.7, 0.85), HalfTurn;
     bevel_torus: BevelTorus::new(0.85, 0.7, 1.0), HalfTurn;

@@ -116,8 +116,8 @@ mod tests {
     #[test]
     fn freedoms_of_local_are_what_phi_makes_of_them() {
         let planar = "config Q: SE2; local a, x, y;\n\
-            let c = Q.c * cos(phi.a) - Q.s * sin(phi.a); let s = Q.s * cos(phi.a) + Q.c * sin(phi.a);\n\
-            Phi = [c, -s, Q.x + phi.x; s, c, Q.y + phi.y];\n\
+            Phi = [Q.c * cos(phi.a) - Q.s * sin(phi.a), -Q.s * cos(phi.a) - Q.c * sin(phi.a), Q.x + phi.x;\n\
+                   Q.s * cos(phi.a) + Q.c * sin(phi.a), Q.c * cos(phi.a) - Q.s * sin(phi.a), Q.y + phi.y];\n\
             H = pose(rot_z(Q), [Q.x, Q.y, 0]);";
         assert_eq!(units(planar).0, ["rad", "m", "m"]);
         assert_eq!(units(planar).1, ["rad/s", "m/s", "m/s"]);

@@ -311,7 +311,7 @@ fn variables_of_build_keep_clear_of_its_argument_and_of_constants() {
             "let [values_parameter, erase, two_parameter, three_halves] = ::hamel::registry::check_parameters( \"some\", &PARAMETERS, values, )?;",
             "let two = T::from_f64(2.0);",
             "let three_halves_2 = T::from_f64(1.5);",
-            "Ok( ::hamel::erased::erase( Some::new( values_parameter, erase, two_parameter, three_halves, ), ), )",
+            "SomeJoint::new(values_parameter, erase, two_parameter, three_halves)",
         ],
     );
 }
