@@ -275,3 +275,79 @@ fn no_scalar_is_read_off_the_pose_by_a_parameter_that_may_vanish() {
     assert_eq!(fibres("> 0").as_deref(), Some("one pose has one Q"));
     assert_eq!(fibres(">= 0"), None);
 }
+
+fn code_of(source: &str) -> Option<&'static str> {
+    let errors = hamel_codegen::derive(source, "test.joint").err();
+    errors.map(|errors| errors.errors[0].code)
+}
+
+#[test]
+fn angles_must_not_jump() {
+    let on_circle = |pose: &str| {
+        code_of(&format!(
+            "hamel = 1; joint test {{ config q: S1; basis turn of so2; velocity in child; H = {pose}; }}"
+        ))
+    };
+    let angle = "atan2(q.s, q.c)";
+    // Sine and cosine of whole multiples do not see a whole turn; those of half the angle do.
+    assert_eq!(on_circle(&format!("rot_z(3 * {angle})")), None);
+    assert_eq!(on_circle(&format!("rot_z({angle} / 2)")), Some("E0420"));
+    assert_eq!(
+        on_circle(&format!("rot_z(q) * trans_z({angle})")),
+        Some("E0420")
+    );
+    let on_line = |pose: &str| {
+        code_of(&format!(
+            "hamel = 1; joint test {{ config x: R1; H = {pose}; }}"
+        ))
+    };
+    assert_eq!(on_line("trans([x, atan(x), 0])"), None);
+    assert_eq!(on_line("trans([x, asin(sin(x) / 2), 0])"), None);
+    assert_eq!(on_line("trans([x, acos(sin(x) / 2), 0])"), None);
+    assert_eq!(on_line("trans([x, asin(sin(x)), 0])"), Some("E0420"));
+}
+
+#[test]
+fn what_is_known_of_finite_motion_is_said() {
+    let statement = |phi: &str| {
+        let source = format!(
+            "hamel = 1; joint test {{ config n: S2; local a, b; except n.z = 0; Phi = {phi}; H = trans(n); }}"
+        );
+        let joint = hamel_codegen::derive(&source, "test.joint").map_err(|e| e.errors[0].code)?;
+        let mut claims = joint.claims.iter();
+        let claim = claims.find(|claim| claim.name == "retract_on_manifold");
+        Ok(claim.map(|claim| claim.statement.clone()))
+    };
+    let moved = "n + [phi.a, phi.b, -(n.x * phi.a + n.y * phi.b) / n.z]";
+    let shown = Ok(Some("Φ(Q, ϕ) stays on the manifold".to_owned()));
+    assert_eq!(statement(&format!("({moved}) / norm({moved})")), shown);
+    // The same with 1/√(1 + s) = 1 − s/2 + … cut off: to second order in ϕ, s being the square of what is added.
+    let added = "dot([phi.a, phi.b, -(n.x * phi.a + n.y * phi.b) / n.z], [phi.a, phi.b, -(n.x * phi.a + n.y * phi.b) / n.z])";
+    assert_eq!(
+        statement(&format!("({moved}) * (1 - {added} / 2)")),
+        Err("E0410")
+    );
+}
+
+/// Beyond x = 0 there is no logarithm, while |x| has a value on both sides.
+#[test]
+fn a_joint_that_lives_on_one_side_says_so() {
+    let singularity = |place: &str| {
+        let source = format!(
+            "hamel = 1; joint test {{ config x: R1; home = 1; except x = 0; H = trans([x, {place}, 0]); }}"
+        );
+        let joint = hamel_codegen::derive(&source, "test.joint").expect("a valid spec");
+        let claim = joint.claims.iter().find(|claim| claim.name == "defined");
+        let statement = claim
+            .map(|claim| claim.statement.clone())
+            .unwrap_or_default();
+        let text = hamel_codegen::emit::rust::file(&joint, "test.joint").expect("code");
+        (
+            statement.contains("on the side of home"),
+            text.contains("least_absolute_beside([x], [x])"),
+        )
+    };
+    assert_eq!(singularity("log(x)"), (true, true));
+    assert_eq!(singularity("sqrt(x)"), (true, true));
+    assert_eq!(singularity("sqrt(x * x)"), (false, false));
+}

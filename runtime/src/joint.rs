@@ -321,6 +321,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T;
 
     /// Least absolute value of the functions that [`Joint::SINGULARITIES`] names; +∞ where there are none.
+    /// Where H, X, Φ, A or S̄ have a value on one side of them alone, 0 on the other.
     fn singularity<T: Scalar>(&self, q: &SVector<T, N>) -> T;
 
     /// c(Q, v̄) = Ẋ̄^c v̄ with X̄ = X S̄: velocity product term of the recursive forms, a twist rate in the child frame.

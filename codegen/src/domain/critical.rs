@@ -131,12 +131,16 @@ impl Domain<'_> {
         if self.is_positive(x) {
             return Some(Smooth::Everywhere);
         }
-        self.nonzero(x)?;
+        let certificate = self.nonzero(x)?;
         if self.is_not_negative(x) {
             return Some(Smooth::Everywhere);
         }
         // What is not 0 keeps its sign on the component of home.
-        self.is_positive(&x.substitute(&self.home))
-            .then(|| Smooth::BesideHome(x.clone()))
+        let positive = self.is_positive(&x.substitute(&self.home));
+        let whole = self.connected && certificate.holds_on_loci();
+        positive.then(|| match whole {
+            true => Smooth::Everywhere,
+            false => Smooth::BesideHome(x.clone()),
+        })
     }
 }

@@ -30,6 +30,8 @@ pub struct Domain<'a> {
     vanishing: BTreeSet<Symbol>,
     /// The stored scalars at home.
     home: BTreeMap<Symbol, Expr>,
+    /// Whether the manifold, loci included, is known to be connected.
+    connected: bool,
 }
 
 /// Why some functions have no common zero.
@@ -46,6 +48,13 @@ pub enum Certificate {
         /// Whether the loci were needed.
         except: bool,
     },
+}
+
+impl Certificate {
+    /// Whether it holds on the loci, too.
+    fn holds_on_loci(&self) -> bool {
+        !matches!(self, Self::NoCommonZero { except: true, .. })
+    }
 }
 
 impl std::fmt::Display for Certificate {
@@ -90,6 +99,7 @@ impl<'a> Domain<'a> {
                 .map(|parameter| parameter.symbol.clone())
                 .collect(),
             home: spec.home_values(),
+            connected: spec.manifold.value.declared().is_empty(),
         }
     }
 

@@ -1,7 +1,9 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
 use super::of_monomial;
-use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
+use crate::expr::{
+    Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget, evaluate_f64,
+};
 use crate::manifold::Kind;
 use crate::model::{Interval, JointSpec};
 use num_traits::Zero;
@@ -82,7 +84,7 @@ impl Signs {
     /// Whether the expression is positive wherever it is defined: a sum of terms that are not negative, one of them positive, or of which
     /// the constant ones outweigh the bounds of all that may be negative.
     pub fn is_positive(&self, expression: &Expr) -> bool {
-        self.exceeds(expression, false)
+        self.exceeds(expression, false) || is_positive_number(expression)
     }
 
     /// Whether the expression is negative nowhere, by the same means.
@@ -279,6 +281,11 @@ impl Signs {
     }
 }
 
+/// Whether the expression is a number, such as `pi - 3`, and positive: 1e-9 is far above rounding in sums of a few functions.
+fn is_positive_number(expression: &Expr) -> bool {
+    expression.symbols().is_empty() && evaluate_f64(expression, &|_| f64::NAN) > 1e-9
+}
+
 /// A number below π, and near it.
 fn half_turn() -> Rational {
     Rational::new(3_141_592.into(), 1_000_000.into())
@@ -355,6 +362,8 @@ mod tests {
         assert!(check("", "2 + sin(q)"));
         assert!(!check("", "1 + sin(q)"));
         assert!(!check("", "2 + q"));
+        assert!(check("", "pi - 3"));
+        assert!(!check("", "3 - pi"));
     }
 
     #[test]

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Φ has derivatives at ϕ = 0. They are taken before anything is proved, and mean nothing where it has none.
-pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Box<Diagnostic>> {
+pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Diagnostic> {
     let Some(declared) = &spec.retract else {
         return Ok(());
     };
@@ -21,9 +21,7 @@ pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Box<Diagnostic>> {
     let open = found.iter().find(|f| domain.smooth(f).is_none());
     match open {
         // Φ = Q exp(ϕ) is evaluated in closed form, however it is written.
-        Some(critical) if !expand::is_exponential(spec) => {
-            Err(Box::new(refusal(critical, &declared.span)))
-        }
+        Some(critical) if !expand::is_exponential(spec) => Err(refusal(critical, &declared.span)),
         _ => Ok(()),
     }
 }
@@ -41,8 +39,8 @@ impl Prover<'_> {
         }
         let is_open = |f: &&Critical| self.domain.smooth(f).is_none();
         let open = declared.iter().find(is_open).or_else(|| {
-            let mut derived = derived.iter().filter(is_open);
-            derived.find(|f| !self.follows(f, &declared))
+            let mut derived = derived.difference(&declared);
+            derived.find(|f| !self.follows(f, &declared) && is_open(f))
         });
         if let Some(open) = open {
             return Err(Box::new(refusal(open, &self.spec.pose.span)));
@@ -94,7 +92,7 @@ impl Prover<'_> {
                     (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
                     _ => vec![],
                 });
-        known.any(|x| self.ideal.vanishes(&(&x - argument)))
+        known.any(|x| x == *argument || self.ideal.vanishes(&(&x - argument)))
     }
 }
 

@@ -145,8 +145,10 @@ impl Prover<'_> {
             }
             let residuals = relations.iter().map(|g| point.evaluate_with_scale(g));
             let mut sizes = residuals.map(|(value, scale)| (value.to_f64().abs(), scale));
-            // Where Φ is not defined the value is no number, and says nothing.
-            if let Some((value, _)) = sizes.find(|(value, scale)| *value > TOLERANCE * scale) {
+            // Where Φ is not defined the value is no number, and says nothing. A relation of one term has no other beside which it is small.
+            if let Some((value, _)) =
+                sizes.find(|(value, scale)| *value > TOLERANCE * scale.max(1.0))
+            {
                 return Some(value);
             }
         }

@@ -3,6 +3,7 @@
 use super::{Attempt, Prover, certified, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::expand::{adjoint_inverse, rank, twist_map_in_frame};
+use crate::expr::Expr;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
@@ -143,9 +144,7 @@ impl Prover<'_> {
                     "here",
                 )
                 .note(format!("generic: it is singular where {determinant} = 0"))
-                .help(format!(
-                    "if the joint ends there, declare it: `except {determinant} = 0;`"
-                )),
+                .help(end_there(determinant, &determinant.to_string())),
             )),
         }
     }
@@ -172,8 +171,10 @@ impl Prover<'_> {
                     &format!("{what} is not shown to have full rank at every configuration"),
                     "here",
                 )
-                .note(format!("generic rank: its columns become dependent where {gram} = 0"))
-                .help("if the joint ends there, declare it: `except … = 0;` with a function that vanishes there"),
+                .note(format!(
+                    "generic rank: its columns become dependent where {gram} = 0"
+                ))
+                .help(end_there(&gram, "…")),
             )),
         }
     }
@@ -198,5 +199,17 @@ impl Prover<'_> {
             self.twist_map_span(),
             "X",
         )
+    }
+}
+
+/// What to do about the zeros of a function, of which `written` is a form for `except`.
+fn end_there(function: &Expr, written: &str) -> String {
+    match function.is_constant() && !function.symbols().is_empty() {
+        true => "leave those parameters out by their ranges or by `require`".to_owned(),
+        false if written == "…" => {
+            "if the joint ends there, declare it: `except … = 0;` with a function that vanishes there"
+                .to_owned()
+        }
+        false => format!("if the joint ends there, declare it: `except {written} = 0;`"),
     }
 }

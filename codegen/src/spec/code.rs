@@ -81,7 +81,7 @@ codes! {
     CONSTRAINT_LOCUS "E0417" "A loses rank somewhere."
     WORK "E0418" "The derivation takes more work than the bound allows."
     TWIST_MAP_FRAME "E0419" "X is not the velocity in the declared frame."
-    NOT_DEFINED "E0420" "A quotient, root or logarithm that is not defined everywhere."
+    NOT_DEFINED "E0420" "A quotient, root, logarithm or angle that is not smooth everywhere."
 }
 
 /// What a code means: a title, why that is an error, a wrong and a right spec. `e305` and `305` are other spellings.

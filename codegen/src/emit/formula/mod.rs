@@ -112,6 +112,7 @@ impl Node {
         for factor in factors {
             parts.multiply(factor);
         }
+        parts.cancel();
         let value = match (Self::of_factors(parts.above), parts.below.is_empty()) {
             (above, true) => above,
             (above, false) => {
@@ -283,6 +284,20 @@ impl Parts {
             one if one.is_one() => {}
             other => self.above.push(other),
         }
+    }
+
+    /// Takes out what stands above and below.
+    fn cancel(&mut self) {
+        let Self { above, below, .. } = self;
+        below.retain(
+            |divisor| match above.iter().position(|factor| factor == divisor) {
+                Some(place) => {
+                    above.remove(place);
+                    false
+                }
+                None => true,
+            },
+        );
     }
 
     fn divide(&mut self, divisor: Node) {
