@@ -9,6 +9,7 @@ use crate::spatial::fused::apply_transposed;
 use crate::spatial::{join, split};
 use alloc::sync::Arc;
 use alloc::vec;
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector, Vector6};
 
 /// What the elements of a mechanism amount to at one state.
