@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Φ has derivatives at ϕ = 0. They are taken before anything is proved, and mean nothing where it has none.
-pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Diagnostic> {
+pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Box<Diagnostic>> {
     let Some(declared) = &spec.retract else {
         return Ok(());
     };
@@ -21,7 +21,9 @@ pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Diagnostic> {
     let open = found.iter().find(|f| domain.smooth(f).is_none());
     match open {
         // Φ = Q exp(ϕ) is evaluated in closed form, however it is written.
-        Some(critical) if !expand::is_exponential(spec) => Err(refusal(critical, &declared.span)),
+        Some(critical) if !expand::is_exponential(spec) => {
+            Err(Box::new(refusal(critical, &declared.span)))
+        }
         _ => Ok(()),
     }
 }
