@@ -45,16 +45,17 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `speeds_meet_constraint`: Aᵀ S̄ = 0 (normal form)
 //! - `speed_basis_rank`: rank S̄ = k̄ (certificate)
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
@@ -1278,8 +1279,12 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Ball rolling without slipping on the plane z = 0 of the parent; it may spin about the vertical (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [radius] = check_parameters("ball_on_plane", &PARAMETERS, values)?;
-        Ok(erase(BallOnPlane::new(radius)))
+        let [radius] = ::hamel::registry::check_parameters(
+            "ball_on_plane",
+            &PARAMETERS,
+            values,
+        )?;
+        Ok(::hamel::erased::erase(BallOnPlane::new(radius)))
     },
 };
 

@@ -38,16 +38,17 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `speeds_meet_constraint`: Aᵀ S̄ = 0 (normal form)
 //! - `speed_basis_rank`: rank S̄ = k̄ (certificate)
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -616,8 +617,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Cart: a planar joint that rolls and turns, sideways velocity forbidden (Examples 3 and 6; nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        check_parameters("cart", &PARAMETERS, values)?;
-        Ok(erase(Cart))
+        ::hamel::registry::check_parameters("cart", &PARAMETERS, values)?;
+        Ok(::hamel::erased::erase(Cart))
     },
 };
 

@@ -32,13 +32,14 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -947,8 +948,12 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [a, b] = check_parameters("ellipse", &PARAMETERS, values)?;
-        Ok(erase(Ellipse::new(a, b)))
+        let [a, b] = ::hamel::registry::check_parameters(
+            "ellipse",
+            &PARAMETERS,
+            values,
+        )?;
+        Ok(::hamel::erased::erase(Ellipse::new(a, b)))
     },
 };
 

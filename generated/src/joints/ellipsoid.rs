@@ -57,13 +57,14 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
@@ -4568,8 +4569,12 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [a, b, c] = check_parameters("ellipsoid", &PARAMETERS, values)?;
-        Ok(erase(Ellipsoid::new(a, b, c)))
+        let [a, b, c] = ::hamel::registry::check_parameters(
+            "ellipsoid",
+            &PARAMETERS,
+            values,
+        )?;
+        Ok(::hamel::erased::erase(Ellipsoid::new(a, b, c)))
     },
 };
 

@@ -39,16 +39,17 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible where -r_q33*r_q33 + 1 ≠ 0 (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k where -r_q33*r_q33 + 1 ≠ 0 (certificate)
 //! - `speeds_meet_constraint`: Aᵀ S̄ = 0 (normal form)
 //! - `speed_basis_rank`: rank S̄ = k̄ where -r_q33*r_q33 + 1 ≠ 0 (certificate)
 //! - `constraint_rank`: rank A = k − k̄ where -r_q33*r_q33 + 1 ≠ 0 (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
@@ -3804,8 +3805,12 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Falling disk (rolling coin): a thin disk that rolls without slipping on the plane z = 0 of the parent and may lean (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [radius] = check_parameters("falling_disk", &PARAMETERS, values)?;
-        Ok(erase(FallingDisk::new(radius)))
+        let [radius] = ::hamel::registry::check_parameters(
+            "falling_disk",
+            &PARAMETERS,
+            values,
+        )?;
+        Ok(::hamel::erased::erase(FallingDisk::new(radius)))
     },
 };
 

@@ -31,13 +31,13 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible where cos(pitch) ≠ 0 (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k where cos(pitch) ≠ 0 (certificate)
-//! - `fibres`: one pose has one Q up to full turns of yaw, pitch, roll (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -724,8 +724,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.",
     parameters: &PARAMETERS,
     build: |values| {
-        check_parameters("gimbal", &PARAMETERS, values)?;
-        Ok(erase(Gimbal))
+        ::hamel::registry::check_parameters("gimbal", &PARAMETERS, values)?;
+        Ok(::hamel::erased::erase(Gimbal))
     },
 };
 

@@ -32,16 +32,17 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `speeds_meet_constraint`: Aᵀ S̄ = 0 (normal form)
 //! - `speed_basis_rank`: rank S̄ = k̄ (certificate)
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -526,8 +527,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Knife edge (ice skate) in Euclidean coordinates: turns about its contact point and glides along its x axis (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        check_parameters("knife_edge", &PARAMETERS, values)?;
-        Ok(erase(KnifeEdge))
+        ::hamel::registry::check_parameters("knife_edge", &PARAMETERS, values)?;
+        Ok(::hamel::erased::erase(KnifeEdge))
     },
 };
 

@@ -27,92 +27,92 @@ pub mod translation;
 pub mod universal;
 pub mod upright_wheel;
 
-pub use ball::Ball;
-pub use ball_child::BallChild;
-pub use ball_on_plane::BallOnPlane;
-pub use ball_quaternion::BallQuaternion;
-pub use ball_quaternion_child::BallQuaternionChild;
-pub use cart::Cart;
-pub use cylindrical::Cylindrical;
-pub use ellipse::Ellipse;
-pub use ellipsoid::Ellipsoid;
-pub use falling_disk::FallingDisk;
-pub use free::Free;
-pub use gimbal::Gimbal;
-pub use knife_edge::KnifeEdge;
-pub use offset_sleigh::OffsetSleigh;
-pub use planar::Planar;
-pub use planar_euclidean::PlanarEuclidean;
-pub use pointing::Pointing;
-pub use prismatic::Prismatic;
-pub use revolute::Revolute;
-pub use revolute_circle::RevoluteCircle;
-pub use screw::Screw;
-pub use torus::Torus;
-pub use translation::Translation;
-pub use universal::Universal;
-pub use upright_wheel::UprightWheel;
+pub use self::ball::Ball;
+pub use self::ball_child::BallChild;
+pub use self::ball_on_plane::BallOnPlane;
+pub use self::ball_quaternion::BallQuaternion;
+pub use self::ball_quaternion_child::BallQuaternionChild;
+pub use self::cart::Cart;
+pub use self::cylindrical::Cylindrical;
+pub use self::ellipse::Ellipse;
+pub use self::ellipsoid::Ellipsoid;
+pub use self::falling_disk::FallingDisk;
+pub use self::free::Free;
+pub use self::gimbal::Gimbal;
+pub use self::knife_edge::KnifeEdge;
+pub use self::offset_sleigh::OffsetSleigh;
+pub use self::planar::Planar;
+pub use self::planar_euclidean::PlanarEuclidean;
+pub use self::pointing::Pointing;
+pub use self::prismatic::Prismatic;
+pub use self::revolute::Revolute;
+pub use self::revolute_circle::RevoluteCircle;
+pub use self::screw::Screw;
+pub use self::torus::Torus;
+pub use self::translation::Translation;
+pub use self::universal::Universal;
+pub use self::upright_wheel::UprightWheel;
 
 /// Registry entries of all joints, in alphabetic order.
 pub const ENTRIES: &[::hamel::registry::JointEntry] = &[
-    ball::ENTRY,
-    ball_child::ENTRY,
-    ball_on_plane::ENTRY,
-    ball_quaternion::ENTRY,
-    ball_quaternion_child::ENTRY,
-    cart::ENTRY,
-    cylindrical::ENTRY,
-    ellipse::ENTRY,
-    ellipsoid::ENTRY,
-    falling_disk::ENTRY,
-    free::ENTRY,
-    gimbal::ENTRY,
-    knife_edge::ENTRY,
-    offset_sleigh::ENTRY,
-    planar::ENTRY,
-    planar_euclidean::ENTRY,
-    pointing::ENTRY,
-    prismatic::ENTRY,
-    revolute::ENTRY,
-    revolute_circle::ENTRY,
-    screw::ENTRY,
-    torus::ENTRY,
-    translation::ENTRY,
-    universal::ENTRY,
-    upright_wheel::ENTRY,
+    self::ball::ENTRY,
+    self::ball_child::ENTRY,
+    self::ball_on_plane::ENTRY,
+    self::ball_quaternion::ENTRY,
+    self::ball_quaternion_child::ENTRY,
+    self::cart::ENTRY,
+    self::cylindrical::ENTRY,
+    self::ellipse::ENTRY,
+    self::ellipsoid::ENTRY,
+    self::falling_disk::ENTRY,
+    self::free::ENTRY,
+    self::gimbal::ENTRY,
+    self::knife_edge::ENTRY,
+    self::offset_sleigh::ENTRY,
+    self::planar::ENTRY,
+    self::planar_euclidean::ENTRY,
+    self::pointing::ENTRY,
+    self::prismatic::ENTRY,
+    self::revolute::ENTRY,
+    self::revolute_circle::ENTRY,
+    self::screw::ENTRY,
+    self::torus::ENTRY,
+    self::translation::ENTRY,
+    self::universal::ENTRY,
+    self::upright_wheel::ENTRY,
 ];
 
 /// Name and text of every spec, in alphabetic order.
 pub const SPECS: &[(&str, &str)] = &[
-    ("ball", ball::SPEC),
-    ("ball_child", ball_child::SPEC),
-    ("ball_on_plane", ball_on_plane::SPEC),
-    ("ball_quaternion", ball_quaternion::SPEC),
-    ("ball_quaternion_child", ball_quaternion_child::SPEC),
-    ("cart", cart::SPEC),
-    ("cylindrical", cylindrical::SPEC),
-    ("ellipse", ellipse::SPEC),
-    ("ellipsoid", ellipsoid::SPEC),
-    ("falling_disk", falling_disk::SPEC),
-    ("free", free::SPEC),
-    ("gimbal", gimbal::SPEC),
-    ("knife_edge", knife_edge::SPEC),
-    ("offset_sleigh", offset_sleigh::SPEC),
-    ("planar", planar::SPEC),
-    ("planar_euclidean", planar_euclidean::SPEC),
-    ("pointing", pointing::SPEC),
-    ("prismatic", prismatic::SPEC),
-    ("revolute", revolute::SPEC),
-    ("revolute_circle", revolute_circle::SPEC),
-    ("screw", screw::SPEC),
-    ("torus", torus::SPEC),
-    ("translation", translation::SPEC),
-    ("universal", universal::SPEC),
-    ("upright_wheel", upright_wheel::SPEC),
+    ("ball", self::ball::SPEC),
+    ("ball_child", self::ball_child::SPEC),
+    ("ball_on_plane", self::ball_on_plane::SPEC),
+    ("ball_quaternion", self::ball_quaternion::SPEC),
+    ("ball_quaternion_child", self::ball_quaternion_child::SPEC),
+    ("cart", self::cart::SPEC),
+    ("cylindrical", self::cylindrical::SPEC),
+    ("ellipse", self::ellipse::SPEC),
+    ("ellipsoid", self::ellipsoid::SPEC),
+    ("falling_disk", self::falling_disk::SPEC),
+    ("free", self::free::SPEC),
+    ("gimbal", self::gimbal::SPEC),
+    ("knife_edge", self::knife_edge::SPEC),
+    ("offset_sleigh", self::offset_sleigh::SPEC),
+    ("planar", self::planar::SPEC),
+    ("planar_euclidean", self::planar_euclidean::SPEC),
+    ("pointing", self::pointing::SPEC),
+    ("prismatic", self::prismatic::SPEC),
+    ("revolute", self::revolute::SPEC),
+    ("revolute_circle", self::revolute_circle::SPEC),
+    ("screw", self::screw::SPEC),
+    ("torus", self::torus::SPEC),
+    ("translation", self::translation::SPEC),
+    ("universal", self::universal::SPEC),
+    ("upright_wheel", self::upright_wheel::SPEC),
 ];
 
 /// Calls the macro `$callback` once for each joint with
-/// `(module, Type, expression, N, K, S, C)`: the expression builds the joint with parameters of its range, no two alike.
+/// `(module, Type, expression, N, K, S, C)`: the expression builds the joint with parameters that it allows, no two alike.
 #[macro_export]
 macro_rules! for_each_joint {
     ($callback:path) => {

@@ -36,16 +36,17 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `speeds_meet_constraint`: Aᵀ S̄ = 0 (normal form)
 //! - `speed_basis_rank`: rank S̄ = k̄ (certificate)
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, ParameterError, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -54,7 +55,7 @@ const _: () = ::hamel::joint::assert_kernel_interface(4);
 /// Sleigh with an offset edge (Chaplygin): a planar body whose knife edge is ahead of its origin (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OffsetSleigh {
-    /// From the origin to the edge, along the child's x. In m.
+    /// From the origin to the edge, along the child's x. In m. It is other than 0.
     pub offset: f64,
 }
 
@@ -634,8 +635,20 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Sleigh with an offset edge (Chaplygin): a planar body whose knife edge is ahead of its origin (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [offset] = check_parameters("offset_sleigh", &PARAMETERS, values)?;
-        Ok(erase(OffsetSleigh::new(offset)))
+        let [offset] = ::hamel::registry::check_parameters(
+            "offset_sleigh",
+            &PARAMETERS,
+            values,
+        )?;
+        if offset == 0.0 {
+            return Err(ParameterError::OutOfRange {
+                joint: "offset_sleigh",
+                parameter: "offset",
+                value: offset,
+                requirement: "other than 0",
+            });
+        }
+        Ok(::hamel::erased::erase(OffsetSleigh::new(offset)))
     },
 };
 

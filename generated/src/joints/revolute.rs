@@ -31,13 +31,14 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q up to full turns of q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -464,8 +465,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Revolute joint: one turn about the common z axis of both frames.",
     parameters: &PARAMETERS,
     build: |values| {
-        check_parameters("revolute", &PARAMETERS, values)?;
-        Ok(erase(Revolute))
+        ::hamel::registry::check_parameters("revolute", &PARAMETERS, values)?;
+        Ok(::hamel::erased::erase(Revolute))
     },
 };
 

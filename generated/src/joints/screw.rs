@@ -30,13 +30,14 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, ParameterError, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -45,7 +46,7 @@ const _: () = ::hamel::joint::assert_kernel_interface(4);
 /// Screw joint: a turn about the common z axis of both frames that advances along it, right-handed for a positive lead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screw {
-    /// Advance in one turn. In m.
+    /// Advance in one turn. In m. It is other than 0.
     pub lead: f64,
 }
 
@@ -491,8 +492,16 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Screw joint: a turn about the common z axis of both frames that advances along it, right-handed for a positive lead.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [lead] = check_parameters("screw", &PARAMETERS, values)?;
-        Ok(erase(Screw::new(lead)))
+        let [lead] = ::hamel::registry::check_parameters("screw", &PARAMETERS, values)?;
+        if lead == 0.0 {
+            return Err(ParameterError::OutOfRange {
+                joint: "screw",
+                parameter: "lead",
+                value: lead,
+                requirement: "other than 0",
+            });
+        }
+        Ok(::hamel::erased::erase(Screw::new(lead)))
     },
 };
 

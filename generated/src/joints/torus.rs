@@ -31,15 +31,14 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{
-    JointEntry, Limit, ParameterInfo, check_parameters, check_requirement,
-};
+use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -668,9 +667,19 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [outer, inner] = check_parameters("torus", &PARAMETERS, values)?;
-        check_requirement("torus", "outer > inner", outer - inner, &PARAMETERS, values)?;
-        Ok(erase(Torus::new(outer, inner)))
+        let [outer, inner] = ::hamel::registry::check_parameters(
+            "torus",
+            &PARAMETERS,
+            values,
+        )?;
+        ::hamel::registry::check_requirement(
+            "torus",
+            "outer > inner",
+            outer - inner,
+            &PARAMETERS,
+            values,
+        )?;
+        Ok(::hamel::erased::erase(Torus::new(outer, inner)))
     },
 };
 

@@ -31,13 +31,14 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q up to full turns of first, second (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -580,8 +581,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Universal joint (Cardan, Hooke): a turn about the parent's x axis, then one about the child's y axis.",
     parameters: &PARAMETERS,
     build: |values| {
-        check_parameters("universal", &PARAMETERS, values)?;
-        Ok(erase(Universal))
+        ::hamel::registry::check_parameters("universal", &PARAMETERS, values)?;
+        Ok(::hamel::erased::erase(Universal))
     },
 };
 

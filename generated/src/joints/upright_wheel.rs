@@ -38,16 +38,17 @@
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)
+//! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
+//! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `speeds_meet_constraint`: Aᵀ S̄ = 0 (normal form)
 //! - `speed_basis_rank`: rank S̄ = k̄ (certificate)
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q up to full turns of roll (certificate)
 
-use ::hamel::erased::erase;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo, check_parameters};
+use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
@@ -821,8 +822,12 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Upright wheel (vertical disk): rolls without slipping on the plane z = 0 of the parent and turns about the vertical (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [radius] = check_parameters("upright_wheel", &PARAMETERS, values)?;
-        Ok(erase(UprightWheel::new(radius)))
+        let [radius] = ::hamel::registry::check_parameters(
+            "upright_wheel",
+            &PARAMETERS,
+            values,
+        )?;
+        Ok(::hamel::erased::erase(UprightWheel::new(radius)))
     },
 };
 
