@@ -102,7 +102,10 @@ mod tests {
             assert!(found(three, require).is_some(), "{require}");
         }
         assert_eq!(
-            found("a: m > 0, b: m > 0", "require b > a; require a > b;"),
+            found(
+                "a: m > 0, b: m > 0",
+                "require a > 100 * b; require a < 101 * b;"
+            ),
             None
         );
         assert_eq!(
