@@ -11,6 +11,11 @@ pub mod held_out {
 }
 
 /// Joints whose names and parameters are called like what emitted files use.
+#[allow(
+    clippy::too_many_arguments,
+    unused_imports,
+    reason = "one joint has every name as a parameter, the names of imports among them"
+)]
 pub mod names {
     include!(concat!(env!("OUT_DIR"), "/names/joints.rs"));
 }

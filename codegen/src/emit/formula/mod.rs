@@ -94,6 +94,7 @@ impl Node {
         for term in terms {
             push_term(&mut signed, false, term);
         }
+        cancel(&mut signed);
         let flip = signed.first().is_some_and(|(subtracted, _)| *subtracted);
         for (subtracted, _) in &mut signed {
             *subtracted ^= flip;
@@ -244,6 +245,21 @@ impl Node {
                 Some(Self::Product(factors))
             }
             _ => None,
+        }
+    }
+}
+
+/// Takes out terms that are added and subtracted.
+fn cancel(signed: &mut Vec<(bool, Node)>) {
+    let mut place = 0;
+    while let Some((minus, term)) = signed.get(place) {
+        let opposite = |(other, same): &(bool, Node)| other != minus && same == term;
+        match signed[place + 1..].iter().position(opposite) {
+            Some(after) => {
+                signed.remove(place + 1 + after);
+                signed.remove(place);
+            }
+            None => place += 1,
         }
     }
 }

@@ -13,7 +13,7 @@ fn wrenches(mechanism: &Mechanism) -> impl Iterator<Item = (usize, Vector6<f64>)
     mechanism.constraints().iter().map(|constraint| {
         let fixed = mechanism.bodies()[constraint.body].child_placement();
         let point = fixed.transform_point(&constraint.point);
-        let direction = apply(&fixed.rotation, &constraint.direction);
+        let direction = apply(&fixed.rotation, &constraint.direction.normalize());
         (
             constraint.body,
             join(&cross(&point, &direction), &direction),

@@ -12,7 +12,7 @@ use std::sync::Arc;
 fn all() -> Vec<Equipped> {
     let equipped = |case: Case| {
         let mut equipment = Equipment::default();
-        if case.seed % 2 == 0 {
+        if case.seed.is_multiple_of(2) {
             equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
         }
         let mechanism = equipment.equip(&case.mechanism);
