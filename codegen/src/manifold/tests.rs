@@ -103,10 +103,31 @@ fn polynomials_without_common_zero_are_recognised() {
     let so3 = manifold(Kind::So3);
     let q = so3.factors()[0].matrix();
     // A row of a rotation is never zero; one entry can be.
-    let row = [0, 1, 2].map(|j| q.at(0, j).clone());
+    let row = [q.at(0, 0), q.at(0, 1), q.at(0, 2)].map(Expr::clone);
     let none = BTreeSet::new();
     assert!(so3.ideal().has_no_zero_with(&row, &none));
     assert!(!so3.ideal().has_no_zero_with(&row[..1], &none));
+}
+
+#[test]
+fn nothing_is_divided_by_parameters_that_may_be_zero() {
+    let so3 = manifold(Kind::So3);
+    let q = so3.factors()[0].matrix();
+    let parameter = Symbol::new(Role::Parameter, 0, "a");
+    let a = Expr::symbol(&parameter);
+    let row = [q.at(0, 0), q.at(0, 1), q.at(0, 2)].map(|entry| &a * entry);
+    let vanishing = BTreeSet::from([parameter]);
+    assert!(so3.ideal().has_no_zero_with(&row, &BTreeSet::new()));
+    assert!(!so3.ideal().has_no_zero_with(&row, &vanishing));
+    // a r and 1 + a have no common zero, whatever a is: r is a row, and a = 0 leaves 1.
+    let one_more = [&row[..], &[&Expr::one() + &a]].concat();
+    assert!(so3.ideal().has_no_zero_with(&one_more, &vanishing));
+    // a x = 0 says nothing of x where a is 0; x + a = 0 says as much for every a.
+    let x = Expr::symbol(&Symbol::new(Role::Coordinate, 0, "x"));
+    for (relation, undivided) in [(&a * &x, false), (&x + &a, true)] {
+        let ideal = Ideal::new(std::slice::from_ref(&relation));
+        assert_eq!(ideal.follows_undivided(&[relation], &vanishing), undivided);
+    }
 }
 
 #[test]
