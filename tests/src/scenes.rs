@@ -93,8 +93,38 @@ pub fn kinematics(scene: &Scene, state: &State) -> Result<Kinematics, DynamicsEr
         .kinematics(&state.configuration, &state.speeds)?)
 }
 
+/// Rounding of a rotation that is written by its rotation vector, in units of the last place of 1.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// The first thing that one description says and the other does not, both ways; numbers to rounding.
+pub fn difference(a: &SceneDescription, b: &SceneDescription) -> Option<String> {
+    let (a, b) = (said(a), said(b));
+    let (mut left, mut right) = (a.lines(), b.lines());
+    loop {
+        match (left.next(), right.next()) {
+            (None, None) => return None,
+            (Some(x), Some(y)) if x == y || is_close(x, y) => {}
+            (x, y) => return Some(format!("{x:?} against {y:?}")),
+        }
+    }
+}
+
+fn is_close(a: &str, b: &str) -> bool {
+    let (key, other) = (a.rsplit_once(": "), b.rsplit_once(": "));
+    let number = |line: &str, pair: Option<(&str, &str)>| {
+        let value = pair.map_or(line, |(_, value)| value);
+        value.trim().trim_end_matches(',').parse::<f64>()
+    };
+    match (number(a, key), number(b, other)) {
+        (Ok(a), Ok(b)) if key.map(|k| k.0) == other.map(|k| k.0) => {
+            (a - b).abs() <= ROUNDING * a.abs().max(1.0)
+        }
+        _ => false,
+    }
+}
+
 /// All that a description says, without where in its text it stands.
-pub fn said(scene: &SceneDescription) -> String {
+fn said(scene: &SceneDescription) -> String {
     let SceneDescription {
         name,
         description,

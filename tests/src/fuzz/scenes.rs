@@ -3,7 +3,7 @@
 use super::corpus::Corpus;
 use super::target::{Outcome, guarded};
 use crate::refusals::files;
-use crate::scenes::said;
+use crate::scenes::difference;
 use hamel::registry::JointRegistry;
 use hamel_scene::urdf::{self, Options};
 use hamel_scene::{Diagnostics, Scene, SceneDescription};
@@ -105,9 +105,9 @@ fn again(text: &str, wanted: &SceneDescription, registry: &JointRegistry) -> Out
     if wanted.build(registry).is_ok() != found.build(registry).is_ok() {
         return Outcome::Broken("what is written builds otherwise".into());
     }
-    match said(&found) == said(wanted) {
-        true => Outcome::Accepted,
-        false => Outcome::Broken("what is written says something else".into()),
+    match difference(&found, wanted) {
+        None => Outcome::Accepted,
+        Some(what) => Outcome::Broken(format!("what is written says something else: {what}")),
     }
 }
 
