@@ -282,28 +282,35 @@ impl Recursive {
             return self.push_driven(index, forced);
         }
         for slot in link.freedoms.clone() {
+            if self.holonomic {
+                forced[slot] = self.pushed_unit(index, slot - link.freedoms.start);
+                continue;
+            }
             let mut unit = [0.0; MOST_FREEDOMS];
             unit[slot - link.freedoms.start] = 1.0;
             let mut forces = [0.0; MOST_FREEDOMS];
             let (unit, forces) = (&unit[..link.freedoms.len()], &mut forces[..count]);
             link.joint.reduce_efforts(q, unit, forces);
-            forced[slot] = match forces {
-                [force] => self.pushed_alone(index, *force),
-                forces => self.pushed(index, Vector6::zeros(), forces),
-            };
+            forced[slot] = self.pushed(index, Vector6::zeros(), forces);
         }
     }
 
-    /// [`Recursive::pushed`] without a wrench, of a joint of one speed.
-    fn pushed_alone(&self, index: usize, force: f64) -> Push {
-        let pivot = &self.pivots[self.links[index].speeds.start];
-        let load = force * pivot.inverse;
+    /// What is left of a unit force on one of a joint's speeds: [`Recursive::pushed`] without a wrench.
+    fn pushed_unit(&self, index: usize, first: usize) -> Push {
+        let speeds = self.links[index].speeds.clone();
+        let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds]);
+        let load = pivots[first].inverse;
         let mut push = Push {
             body: index,
-            wrench: pivot.momentum * load,
+            wrench: pivots[first].momentum * load,
             ..Push::none()
         };
-        push.loads[0] = load;
+        push.loads[first] = load;
+        for (j, (column, pivot)) in columns.iter().zip(pivots).enumerate().skip(first + 1) {
+            let load = -column.dot(&push.wrench) * pivot.inverse;
+            push.loads[j] = load;
+            push.wrench += pivot.momentum * load;
+        }
         push
     }
 

@@ -5,39 +5,36 @@ use crate::scalar::Scalar;
 
 /// `out = −left right` for a symmetric `left`.
 pub(super) fn negative_product(left: &Sensitivity, right: &Sensitivity, out: &mut Sensitivity) {
-    let (size, width) = (left.rows, right.columns);
-    let mut i = 0;
-    while i + 4 <= size {
-        strip::<4>(left, right, out, i, width);
-        i += 4;
-    }
-    while i < size {
-        strip::<1>(left, right, out, i, width);
-        i += 1;
+    match left.rows {
+        0..4 => rows::<1>(left, right, out),
+        _ => rows::<4>(left, right, out),
     }
 }
 
-/// Some rows of the product.
-fn strip<const R: usize>(
+fn rows<const R: usize>(left: &Sensitivity, right: &Sensitivity, out: &mut Sensitivity) {
+    match right.columns {
+        0..4 => tiles::<R, 1>(left, right, out),
+        4..8 => tiles::<R, 4>(left, right, out),
+        _ => tiles::<R, 8>(left, right, out),
+    }
+}
+
+fn tiles<const R: usize, const W: usize>(
     left: &Sensitivity,
     right: &Sensitivity,
     out: &mut Sensitivity,
-    i: usize,
-    width: usize,
 ) {
-    let mut j = 0;
-    while j + 8 <= width {
-        tile::<R, 8>(left, right, out, (i, j));
-        j += 8;
+    for i in starts(left.rows, R) {
+        for j in starts(right.columns, W) {
+            tile::<R, W>(left, right, out, (i, j));
+        }
     }
-    while j + 4 <= width {
-        tile::<R, 4>(left, right, out, (i, j));
-        j += 4;
-    }
-    while j < width {
-        tile::<R, 1>(left, right, out, (i, j));
-        j += 1;
-    }
+}
+
+/// Where blocks of a length begin that cover so many entries. The last one overlaps the one before it: to do some entries twice costs less
+/// than to do them one by one.
+fn starts(entries: usize, block: usize) -> impl Iterator<Item = usize> {
+    (0..entries.div_ceil(block)).map(move |number| (number * block).min(entries - block))
 }
 
 /// R rows and W columns of the product.
