@@ -1,24 +1,10 @@
 //! Controllers as a user runs them: every scene and every file of controllers, what is told of them, and mistakes.
 
+mod common;
+
+use common::{hamel, stdout};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn hamel(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hamel"));
-    command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
-    command
-        .args(arguments)
-        .output()
-        .expect("the program starts")
-}
-
-fn stdout(arguments: &[&str]) -> String {
-    let output = hamel(arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {stderr}");
-    String::from_utf8(output.stdout).expect("text")
-}
 
 /// `control` of `--json` after a short time.
 fn control(arguments: &[&str]) -> Value {

@@ -1,27 +1,9 @@
 //! The program as a user runs it: its machine-readable output, its pages, its errors.
 
+mod common;
+
+use common::{hamel, stdout};
 use serde_json::Value;
-use std::path::Path;
-use std::process::{Command, Output};
-
-fn hamel(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hamel"));
-    command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
-    command
-        .args(arguments)
-        .output()
-        .expect("the program starts")
-}
-
-fn stdout(arguments: &[&str]) -> String {
-    let output = hamel(arguments);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    String::from_utf8(output.stdout).expect("text")
-}
 
 fn keys(value: &Value) -> Vec<&str> {
     let mut keys: Vec<&str> = value

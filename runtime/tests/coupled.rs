@@ -93,18 +93,23 @@ fn theorem_3_in_full_is_the_recursion() {
     }
 }
 
+/// λ of the constraints that couple joints, under the accelerations that the efforts make.
+fn coupling_force(dynamics: &mut Recursive, case: &Case) -> Vec<f64> {
+    let mut rates = vec![0.0; case.speeds.len()];
+    dynamics
+        .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
+        .expect("regular");
+    let mut forces = vec![0.0; case.mechanism.constraints().len()];
+    dynamics
+        .coupling_force(&case.q, &case.speeds, &rates, &case.efforts, &mut forces)
+        .expect("sizes fit");
+    forces
+}
+
 #[test]
 fn constraint_forces_agree() {
     for case in cases() {
-        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
-        let mut rates = vec![0.0; case.speeds.len()];
-        dynamics
-            .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
-            .expect("regular");
-        let mut forces = vec![0.0; case.mechanism.constraints().len()];
-        dynamics
-            .coupling_force(&case.q, &case.speeds, &rates, &case.efforts, &mut forces)
-            .expect("sizes fit");
+        let forces = coupling_force(&mut Recursive::new(Arc::clone(&case.mechanism)), &case);
         let expected = Reference::new(Arc::clone(&case.mechanism))
             .constraint_force(&case.q, &case.speeds, &case.efforts)
             .expect("regular");
@@ -134,14 +139,7 @@ fn reduced(case: &Case, efforts: &[f64]) -> Vec<f64> {
 fn joint_wrenches_leave_out_what_constraints_exert() {
     for case in cases() {
         let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
-        let mut rates = vec![0.0; case.speeds.len()];
-        dynamics
-            .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
-            .expect("regular");
-        let mut forces = vec![0.0; case.mechanism.constraints().len()];
-        dynamics
-            .coupling_force(&case.q, &case.speeds, &rates, &case.efforts, &mut forces)
-            .expect("sizes fit");
+        coupling_force(&mut dynamics, &case);
         let mut carried = vec![0.0; case.efforts.len()];
         dynamics
             .joint_efforts(&case.q, &mut carried)

@@ -125,32 +125,18 @@ fn is_close(a: &str, b: &str) -> bool {
 
 /// All that a description says, without where in its text it stands.
 fn said(scene: &SceneDescription) -> String {
-    let SceneDescription {
-        name,
-        description,
-        gravity,
-        bodies,
-        frames,
-        springs,
-        wrenches,
-        constraints,
-        shapes,
-        controller,
-        settings,
-        ..
-    } = scene;
     let parts: [&dyn Debug; 11] = [
-        name,
-        description,
-        gravity,
-        bodies,
-        frames,
-        springs,
-        wrenches,
-        constraints,
-        shapes,
-        controller,
-        settings,
+        &scene.name,
+        &scene.description,
+        &scene.gravity,
+        &scene.bodies,
+        &scene.frames,
+        &scene.springs,
+        &scene.wrenches,
+        &scene.constraints,
+        &scene.shapes,
+        &scene.controller,
+        &scene.settings,
     ];
     let all = format!("{parts:#?}");
     let lines = all.lines();

@@ -15,7 +15,6 @@ use crate::steps::Variation;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::Vector6;
 
 /// G.
 #[derive(Clone, Debug)]
@@ -147,10 +146,8 @@ impl Recursive {
     pub(super) fn push_units(&self, out: &mut Yielding) {
         for index in 0..self.links.len() {
             let speeds = self.links[index].speeds.clone();
-            for (a, speed) in speeds.clone().enumerate() {
-                let mut unit = [0.0; MOST_FREEDOMS];
-                unit[a] = 1.0;
-                out.units[speed] = self.pushed(index, Vector6::zeros(), &unit[..speeds.len()]);
+            for (a, speed) in speeds.enumerate() {
+                out.units[speed] = self.pushed_unit(index, a);
             }
         }
     }

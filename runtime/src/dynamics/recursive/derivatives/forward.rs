@@ -296,7 +296,7 @@ impl Recursive {
     }
 
     /// What is left of a unit force on one of a joint's speeds: [`Recursive::pushed`] without a wrench.
-    fn pushed_unit(&self, index: usize, first: usize) -> Push {
+    pub(super) fn pushed_unit(&self, index: usize, first: usize) -> Push {
         let speeds = self.links[index].speeds.clone();
         let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds]);
         let load = pivots[first].inverse;

@@ -179,9 +179,7 @@ impl Recursive {
             out.responses.pushes[slot] = push;
         }
         for (a, speed) in link.speeds.clone().enumerate() {
-            let mut unit = [0.0; MOST_FREEDOMS];
-            unit[a] = 1.0;
-            out.by_momenta[speed] = self.pushed(index, Vector6::zeros(), &unit[..count]);
+            out.by_momenta[speed] = self.pushed_unit(index, a);
         }
     }
 
