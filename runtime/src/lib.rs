@@ -32,6 +32,8 @@ pub mod finite;
 pub mod integrate;
 pub mod joint;
 #[cfg(feature = "alloc")]
+mod lu;
+#[cfg(feature = "alloc")]
 pub mod mechanism;
 pub mod registry;
 pub mod scalar;

@@ -1,7 +1,8 @@
 //! The options of `hamel simulate`.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, ValueEnum};
-use hamel::integrate::Pair;
+use hamel::integrate::Scheme;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -62,11 +63,12 @@ pub struct Args {
     #[arg(long, value_enum)]
     pub form: Option<FormName>,
 
-    /// Integration method: rk4 has fixed steps, the others control theirs
-    #[arg(long, value_enum)]
-    pub method: Option<MethodName>,
+    /// Integration method; those with step control take --tol, all take --dt
+    #[arg(long, value_parser = schemes())]
+    pub method: Option<Scheme>,
 
-    /// Tolerance of one step of dopri5, dop853 or verner9, 1e-16 at least: absolute in angle, relative in rates; implies dopri5 where the method is rk4
+    /// Tolerance of one step of a method with step control, between 1e-16 and 0.1: absolute in angle, relative in rates; implies dopri5 where the method
+    /// has fixed steps
     #[arg(
         long,
         value_name = "TOLERANCE",
@@ -75,7 +77,7 @@ pub struct Args {
     )]
     pub tol: Option<f64>,
 
-    /// Step of rk4, s, shorter where samples are closer; implies rk4
+    /// Length of all steps, s, shorter where samples are closer; implies rk4 where the method has step control
     #[arg(
         long,
         value_name = "SECONDS",
@@ -132,27 +134,11 @@ pub enum FormName {
     Hamiltonian,
 }
 
-/// Names of the methods.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MethodName {
-    /// Classical Runge–Kutta of order 4 on the joints' manifolds, fixed step
-    Rk4,
-    /// Dormand–Prince 5(4) on the joints' manifolds, step control
-    Dopri5,
-    /// Dormand–Prince 8(5,3) on the joints' manifolds, step control: for tolerances below 1e-8 or so
-    Dop853,
-    /// Verner 9(8) on the joints' manifolds, step control: for tolerances near rounding
-    Verner9,
-}
-
-impl MethodName {
-    /// The pair of that name; `None` for fixed steps.
-    pub const fn pair(self) -> Option<Pair> {
-        match self {
-            Self::Rk4 => None,
-            Self::Dopri5 => Some(Pair::DormandPrince),
-            Self::Dop853 => Some(Pair::DormandPrince8),
-            Self::Verner9 => Some(Pair::Verner9),
-        }
-    }
+/// Every method by its name.
+fn schemes() -> impl TypedValueParser<Value = Scheme> {
+    let values = Scheme::ALL
+        .iter()
+        .map(|scheme| PossibleValue::new(scheme.name()).help(scheme.summary()));
+    PossibleValuesParser::new(values)
+        .try_map(|name| Scheme::named(&name).ok_or("no method has this name"))
 }

@@ -78,19 +78,18 @@ impl Plan {
 
     /// The method of integration and its accuracy, in words.
     pub fn method(&self) -> String {
+        let name = self.settings.method.scheme().name();
         match self.settings.method {
-            Method::Rk4 { dt } => {
+            Method::Fixed { dt, .. } => {
                 let shorter = self.times.windows(2).any(|pair| pair[1] - pair[0] < dt);
                 let note = if shorter {
                     ", shorter where samples are closer"
                 } else {
                     ""
                 };
-                format!("rk4 with steps of {dt:?} s{note}")
+                format!("{name} with steps of {dt:?} s{note}")
             }
-            Method::Controlled { pair, control } => {
-                format!("{} to {:e}", pair.name(), control.tolerance)
-            }
+            Method::Controlled { control, .. } => format!("{name} to {:e}", control.tolerance),
         }
     }
 

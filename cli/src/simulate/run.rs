@@ -206,7 +206,7 @@ fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
     json::print(&Report {
         scene: &plan.scene.name,
         form: plan.settings.form_name(),
-        method: plan.settings.method.name(),
+        method: plan.settings.method.scheme().name(),
         samples: &samples,
         control: run.outcome.as_ref(),
         statistics: run.statistics,

@@ -1,8 +1,8 @@
 //! The settings of a scene with the options of the command line laid over them.
 
-use super::args::{Args, FormName, MethodName};
+use super::args::{Args, FormName};
 use crate::output::Failure;
-use hamel::integrate::{Control, Form, Method, Pair};
+use hamel::integrate::{Control, Form, Method, Scheme};
 use hamel_scene::Settings;
 
 /// The settings that `args` and the scene's `settings` make together.
@@ -30,43 +30,38 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
 fn method(scene: Method, args: &Args) -> Result<Method, Failure> {
     let dt = positive("--dt", args.dt)?;
     let tol = args.tol.map(tolerance).transpose()?;
-    let named = match (args.method, dt, tol) {
-        (Some(MethodName::Rk4), _, Some(_)) => {
-            return refuse("--tol means nothing to rk4, whose accuracy is --dt".into());
-        }
-        (Some(MethodName::Rk4), _, None) | (None, Some(_), _) => None,
-        (Some(named), Some(_), _) => {
-            let name = named.pair().map_or("", Pair::name);
-            return refuse(format!(
-                "--dt means nothing to {name}, whose accuracy is --tol"
-            ));
-        }
-        (Some(named), None, _) => named.pair(),
-        (None, None, Some(_)) => Some(own_pair(scene)),
-        (None, None, None) => return Ok(scene),
-    };
+    let own = *scene.scheme();
     let (own_dt, own_tol) = accuracy(scene);
-    let tol = tol.or(own_tol).unwrap_or(Settings::DEFAULT_TOL);
-    Ok(match named {
-        None => Method::Rk4 {
-            dt: dt.or(own_dt).unwrap_or(Settings::DEFAULT_DT),
+    let scheme = match (args.method, dt, tol) {
+        (None, None, None) => return Ok(scene),
+        (Some(named), ..) => named,
+        // An accuracy alone leaves the scene its method where the two go together.
+        (None, Some(_), _) if own_dt.is_some() => own,
+        (None, None, Some(_)) if own.has_estimate() => own,
+        (None, Some(_), _) => Scheme::Rk4,
+        (None, None, Some(_)) => Scheme::DormandPrince,
+    };
+    let (dt, tol) = match (dt, tol) {
+        (None, None) if scheme.has_estimate() => (None, own_tol),
+        (None, None) => (own_dt, None),
+        given => given,
+    };
+    let method = Settings::method_of(Some(scheme), dt, tol);
+    let name = scheme.name();
+    method.map_or_else(
+        || {
+            refuse(format!(
+                "--tol means nothing to {name}, whose accuracy is --dt"
+            ))
         },
-        Some(pair) => Method::controlled(pair, tol),
-    })
-}
-
-/// What a tolerance alone asks for: the scene's own method where that controls its step.
-const fn own_pair(scene: Method) -> Pair {
-    match scene {
-        Method::Rk4 { .. } => Pair::DormandPrince,
-        Method::Controlled { pair, .. } => pair,
-    }
+        Ok,
+    )
 }
 
 /// The step or the tolerance that the scene asks for.
 const fn accuracy(scene: Method) -> (Option<f64>, Option<f64>) {
     match scene {
-        Method::Rk4 { dt } => (Some(dt), None),
+        Method::Fixed { dt, .. } => (Some(dt), None),
         Method::Controlled { control, .. } => (None, Some(control.tolerance)),
     }
 }
@@ -98,7 +93,7 @@ fn refuse<T>(message: String) -> Result<T, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Args, Method, Pair, Settings, overridden};
+    use super::{Args, Method, Scheme, Settings, overridden};
     use clap::Parser;
 
     #[derive(Parser)]
@@ -125,14 +120,15 @@ mod tests {
 
     #[test]
     fn an_accuracy_implies_its_method_and_the_scene_fills_the_rest() {
-        let (rk4, dopri5) = (Method::Rk4 { dt: 0.5 }, Method::dormand_prince(1e-5));
-        let dop853 = Method::controlled(Pair::DormandPrince8, 1e-12);
+        let (rk4, dopri5) = (Method::rk4(0.5), Method::dormand_prince(1e-5));
+        let dop853 = Method::controlled(Scheme::DormandPrince8, 1e-12);
+        let gauss = Method::fixed(Scheme::Gauss2, 0.5);
         let default_dt = Settings::DEFAULT_DT;
         for (scene, options, wanted) in [
             (rk4, "", rk4),
             (rk4, "--method rk4", rk4),
-            (dopri5, "--method rk4", Method::Rk4 { dt: default_dt }),
-            (dopri5, "--dt 0.1", Method::Rk4 { dt: 0.1 }),
+            (dopri5, "--method rk4", Method::rk4(default_dt)),
+            (dopri5, "--dt 0.1", Method::rk4(0.1)),
             (rk4, "--tol 1e-6", Method::dormand_prince(1e-6)),
             (
                 rk4,
@@ -143,14 +139,26 @@ mod tests {
             (
                 dopri5,
                 "--method dop853",
-                Method::controlled(Pair::DormandPrince8, 1e-5),
+                Method::controlled(Scheme::DormandPrince8, 1e-5),
             ),
             (
                 dop853,
                 "--tol 1e-15",
-                Method::controlled(Pair::DormandPrince8, 1e-15),
+                Method::controlled(Scheme::DormandPrince8, 1e-15),
             ),
-            (dop853, "--dt 0.1", Method::Rk4 { dt: 0.1 }),
+            (dop853, "--dt 0.1", Method::rk4(0.1)),
+            (gauss, "--dt 0.1", Method::fixed(Scheme::Gauss2, 0.1)),
+            (gauss, "--tol 1e-7", Method::dormand_prince(1e-7)),
+            (
+                rk4,
+                "--method dop853 --dt 0.1",
+                Method::fixed(Scheme::DormandPrince8, 0.1),
+            ),
+            (
+                rk4,
+                "--method radau5 --tol 1e-7",
+                Method::controlled(Scheme::Radau5, 1e-7),
+            ),
             (
                 rk4,
                 "--method dopri5 --tol 1e-7",
@@ -163,11 +171,10 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused() {
-        let scene = Method::Rk4 { dt: 0.5 };
+        let scene = Method::rk4(0.5);
         for options in [
             "--method rk4 --tol 1e-6",
-            "--method dopri5 --dt 0.1",
-            "--method dop853 --dt 0.1",
+            "--method gauss2 --tol 1e-6",
             "--dt 0.1 --tol 1e-6",
             "--dt 0",
             "--dt -1",

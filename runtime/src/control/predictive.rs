@@ -7,7 +7,7 @@ use super::regulator::{Equilibrium, Weights};
 use super::riccati::{self, Optimum, Weighting};
 use super::state::check_sizes;
 use super::{ControlError, Controller, DEVIATIONS, Measure};
-use crate::integrate::{Form, LinearStep, Method};
+use crate::integrate::{Form, LinearStep, Tableau};
 use crate::mechanism::Mechanism;
 use alloc::sync::Arc;
 use core::fmt;
@@ -99,7 +99,7 @@ impl PredictiveRegulator {
             }
         }
         let (state, input) = weights.matrices(&equilibrium)?;
-        let mut step = LinearStep::new(mechanism, Form::Lagrangian, &Method::Rk4 { dt: period });
+        let mut step = LinearStep::new(mechanism, Form::Lagrangian, &Tableau::RK4);
         let still = vec![0.0; mechanism.layout().speeds];
         step.linearize(equilibrium.goal(), &still, equilibrium.efforts(), period)?;
         let (a, b) = (step.by_state().matrix(), columns(&step, &equilibrium));

@@ -4,7 +4,7 @@ use super::ControlError;
 use super::error::{require, size};
 use super::state::{check_free, is_holonomic};
 use crate::elements::Law;
-use crate::integrate::{Pair, Tableau};
+use crate::integrate::Tableau;
 use crate::mechanism::{Body, Mechanism};
 use alloc::sync::Arc;
 use alloc::vec;
@@ -182,7 +182,7 @@ struct Carrier {
 
 impl Carrier {
     fn new(mechanism: &Mechanism) -> Self {
-        let tableau = Pair::Verner9.tableau();
+        let tableau = &Tableau::VERNER_9;
         Self {
             tableau,
             stages: vec![[0.0; 6]; tableau.nodes.len()],

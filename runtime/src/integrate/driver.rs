@@ -5,7 +5,8 @@ use super::clock::Clock;
 use super::control::Controller;
 use super::flow::Flow;
 use super::options::Control;
-use super::stepper::Stepper;
+use super::standing::Standing;
+use super::stepper::{self, Span, Stepper};
 use super::{
     Form, Inputs, IntegrateError, Method, Near, Observer, Options, Solution, State, Statistics,
     Step, StepFailure,
@@ -47,7 +48,8 @@ impl Hold {
 /// An integration under way.
 pub(super) struct Driver<'a> {
     flow: Flow<'a>,
-    stepper: Stepper,
+    standing: Standing,
+    stepper: Box<dyn Stepper>,
     options: &'a Options,
     hold: Option<Hold>,
     clock: Clock,
@@ -74,26 +76,22 @@ impl<'a> Driver<'a> {
     ) -> Result<Self, IntegrateError> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
         let watch = Watch::new(&flow.mechanism);
-        let (time, tableau) = (initial.time, options.method.tableau());
+        let time = initial.time;
         if period.is_some() {
             flow.hold(time, &initial.configuration, &initial.speeds);
         }
-        let stepper = Stepper::new(
-            tableau,
-            &mut flow,
-            time,
-            &initial.configuration,
-            &initial.speeds,
-        )
-        .map_err(|cause| IntegrateError::AtState {
-            time,
-            cause: Box::new(cause),
-            near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
-        })?;
+        let standing = Standing::new(&mut flow, time, &initial.configuration, &initial.speeds)
+            .map_err(|cause| IntegrateError::AtState {
+                time,
+                cause: Box::new(cause),
+                near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
+            })?;
+        let tolerance = options.method.control().map(|control| control.tolerance);
         Ok(Self {
             watch,
+            stepper: stepper::new(options.method.scheme(), tolerance, &flow),
             flow,
-            stepper,
+            standing,
             options,
             hold: period.map(|period| Hold {
                 start: time,
@@ -115,7 +113,11 @@ impl<'a> Driver<'a> {
             self.advance(&mut pacing)?;
             stopped = self.report(observer);
         }
+        let solves = self.stepper.solves();
         self.statistics.evaluations = self.flow.evaluations;
+        self.statistics.iterations = solves.iterations;
+        self.statistics.jacobians = solves.jacobians;
+        self.statistics.factorizations = solves.factorizations;
         Ok(Solution {
             state: self.state(),
             samples: self.samples,
@@ -126,16 +128,15 @@ impl<'a> Driver<'a> {
     }
 
     fn pacing(&mut self) -> Result<Pacing, IntegrateError> {
-        let order = self.options.method.tableau().order;
-        let step = match (self.options.method, self.options.method.control()) {
-            (Method::Rk4 { dt }, _) => dt,
-            (_, Some(control)) => {
+        let order = self.stepper.order();
+        let step = match self.options.method {
+            Method::Fixed { dt, .. } => dt,
+            Method::Controlled { control, .. } => {
                 let first = control
                     .first_step
                     .map_or_else(|| self.first_step(control.tolerance, order), Ok);
                 first?.min(control.max_step)
             }
-            (_, None) => self.options.t_end - self.start,
         };
         Ok(Pacing {
             step,
@@ -147,7 +148,7 @@ impl<'a> Driver<'a> {
     fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
         let span = self.options.t_end - self.start;
         let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
-        let pace = self.stepper.pace(&mut self.flow);
+        let pace = self.standing.pace(&mut self.flow);
         let pace = pace.map_err(|cause| self.at_state(cause))?;
         Ok((change / pace).min(0.01 * span))
     }
@@ -179,8 +180,8 @@ impl<'a> Driver<'a> {
     fn choose_step(&self, step: f64) -> (f64, bool) {
         let remaining = self.clock.until(self.target());
         match self.options.method {
-            Method::Rk4 { .. } if remaining <= step * FIXED_STRETCH => (remaining, true),
-            Method::Rk4 { .. } => (step, false),
+            Method::Fixed { .. } if remaining <= step * FIXED_STRETCH => (remaining, true),
+            Method::Fixed { .. } => (step, false),
             _ if remaining <= step * CONTROLLED_STRETCH => (remaining, true),
             // Two equal steps rather than a full one and a sliver.
             _ if remaining < 2.0 * step => (0.5 * remaining, false),
@@ -189,9 +190,17 @@ impl<'a> Driver<'a> {
     }
 
     fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
-        let outcome = self
-            .stepper
-            .attempt(&mut self.flow, self.clock.time(), step);
+        let span = Span {
+            time: self.clock.time(),
+            step,
+        };
+        let Self {
+            stepper,
+            standing,
+            flow,
+            ..
+        } = self;
+        let outcome = stepper.attempt(standing, flow, span);
         let Some(Control {
             tolerance,
             max_step,
@@ -204,7 +213,7 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
-        let (error, joint) = match self.stepper.error(&mut self.flow, step, tolerance) {
+        let (error, joint) = match stepper.error(standing, flow, span, tolerance) {
             Ok(found) => found,
             Err(cause) => {
                 pacing.step = step * pacing.controller.reject(None);
@@ -238,7 +247,7 @@ impl<'a> Driver<'a> {
     /// Ends the integration where no smaller step can help.
     fn refuse(&self, pacing: &Pacing, step: f64, cause: StepFailure) -> Result<(), IntegrateError> {
         let (time, cause, near) = (self.clock.time(), Box::new(cause), self.near());
-        if matches!(self.options.method, Method::Rk4 { .. }) {
+        if matches!(self.options.method, Method::Fixed { .. }) {
             return Err(IntegrateError::Step {
                 time,
                 step,
@@ -260,13 +269,17 @@ impl<'a> Driver<'a> {
     }
 
     fn accept(&mut self, step: f64, lands: bool) -> Result<(), IntegrateError> {
+        let start = self.clock.time();
         if lands {
             self.clock = Clock::new(self.target());
         } else {
             self.clock.advance(step);
         }
         let time = self.clock.time();
-        let accepted = self.stepper.accept(&mut self.flow, time);
+        let span = Span { time: start, step };
+        let accepted = self
+            .stepper
+            .accept(&mut self.standing, &mut self.flow, time, span);
         accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
         self.renew_inputs(time)
@@ -279,9 +292,9 @@ impl<'a> Driver<'a> {
             return Ok(());
         };
         hold.count += 1;
-        let (q, speeds) = (&self.stepper.configuration, self.stepper.speeds());
+        let (q, speeds) = (&self.standing.configuration, self.standing.speeds());
         self.flow.hold(time, q, speeds);
-        self.stepper.evaluate_state(&mut self.flow, time)
+        self.standing.evaluate(&mut self.flow, time)
     }
 
     fn at_state(&self, cause: StepFailure) -> IntegrateError {
@@ -294,7 +307,7 @@ impl<'a> Driver<'a> {
 
     /// The joint that is nearest to a singular set of its own.
     fn near(&self) -> Near {
-        let q = &self.stepper.configuration;
+        let q = &self.standing.configuration;
         self.watch
             .nearest_at(&self.flow.mechanism, self.clock.time(), q)
     }
@@ -303,7 +316,7 @@ impl<'a> Driver<'a> {
     fn report(&mut self, observer: &mut Observer<'_>) -> bool {
         let time = self.clock.time();
         self.watch
-            .see(&self.flow.mechanism, time, &self.stepper.configuration);
+            .see(&self.flow.mechanism, time, &self.standing.configuration);
         let mut sample = None;
         while self.options.samples.get(self.samples.len()) == Some(&self.clock.time()) {
             sample = Some(self.samples.len());
@@ -312,9 +325,9 @@ impl<'a> Driver<'a> {
         let step = Step {
             time: self.clock.time(),
             number: self.statistics.steps,
-            configuration: &self.stepper.configuration,
-            speeds: self.stepper.speeds(),
-            momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.stepper.y),
+            configuration: &self.standing.configuration,
+            speeds: self.standing.speeds(),
+            momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.standing.y),
             sample,
         };
         observer(&step).is_break()
@@ -323,8 +336,8 @@ impl<'a> Driver<'a> {
     fn state(&self) -> State {
         State {
             time: self.clock.time(),
-            configuration: self.stepper.configuration.clone(),
-            speeds: self.stepper.speeds().to_vec(),
+            configuration: self.standing.configuration.clone(),
+            speeds: self.standing.speeds().to_vec(),
         }
     }
 }

@@ -44,6 +44,24 @@ pub enum StepFailure {
         /// Its rotation.
         angle: f64,
     },
+    /// The equations of an implicit step are not solved.
+    #[error(
+        "the iteration of the implicit step does not converge: joint `{joint}` still changes by {change:e}, each change is {contraction:.2} times the last"
+    )]
+    NoConvergence {
+        /// The joint that changes most.
+        joint: String,
+        /// Its last change, in its own units.
+        change: f64,
+        /// The last change over the one before.
+        contraction: f64,
+    },
+    /// The matrix of the iteration of an implicit step is singular.
+    #[error("the matrix of the implicit step is singular or not finite at joint `{joint}`")]
+    SingularIteration {
+        /// The joint.
+        joint: String,
+    },
     /// NaN or infinity.
     #[error("the motion of joint `{joint}` is not finite")]
     NotFinite {
@@ -70,6 +88,14 @@ pub enum IntegrateError {
         value: f64,
         /// What is allowed.
         requirement: &'static str,
+    },
+    /// Step control for a scheme that cannot tell its error.
+    #[error(
+        "the method `{scheme}` does not estimate its error: give it a step dt instead of a tolerance"
+    )]
+    NoEstimate {
+        /// The scheme.
+        scheme: &'static str,
     },
     /// The end lies before the start.
     #[error("t_end is {} s: it lies before the initial time {} s", Seconds(*.end), Seconds(*.start))]

@@ -155,6 +155,33 @@ impl<'a> Flow<'a> {
         }
     }
 
+    /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::accelerations`] takes them.
+    pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
+        let held = self.held.as_deref();
+        fill(self.inputs, held, time, q, speeds, efforts);
+        self.mechanism.set_driven_accelerations(time, efforts);
+    }
+
+    /// What one unit of each speed adds to y at `q`: 1, or what it adds to its own momentum.
+    pub(super) fn units(&mut self, q: &[f64]) -> Result<Vec<f64>, DynamicsError> {
+        let count = self.mechanism.layout().speeds;
+        let mut units = vec![1.0; count];
+        if self.form == Form::Lagrangian {
+            return Ok(units);
+        }
+        let (mut speeds, mut momenta) = (vec![0.0; count], vec![0.0; count]);
+        for (i, unit) in units.iter_mut().enumerate() {
+            speeds[i] = 1.0;
+            self.dynamics.momenta(q, &speeds, &mut momenta)?;
+            speeds[i] = 0.0;
+            // The momentum of a speed that constraints determine is 0.
+            if momenta[i] > 0.0 {
+                *unit = momenta[i];
+            }
+        }
+        Ok(units)
+    }
+
     /// v̄ and ẏ at the current configuration.
     fn dynamic_rates(
         &mut self,
@@ -172,13 +199,14 @@ impl<'a> Flow<'a> {
             ..
         } = self;
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
-            match held {
-                Some(held) => efforts.copy_from_slice(held),
-                None => {
-                    efforts.fill(0.0);
-                    inputs(time, configuration, speeds, efforts);
-                }
-            }
+            fill(
+                inputs,
+                held.as_deref(),
+                time,
+                configuration,
+                speeds,
+                efforts,
+            );
             mechanism.set_driven_accelerations(time, efforts);
         };
         match self.form {
@@ -228,6 +256,24 @@ impl<'a> Flow<'a> {
         } else {
             let (base, phi) = (body.configuration(base), &phi[freedoms]);
             joint.retract_differential_inverse(base, phi, local_rate, own_rates);
+        }
+    }
+}
+
+/// Inputs as they are held, or else as they follow the state.
+fn fill(
+    inputs: &mut Inputs<'_>,
+    held: Option<&[f64]>,
+    time: f64,
+    q: &[f64],
+    speeds: &[f64],
+    efforts: &mut [f64],
+) {
+    match held {
+        Some(held) => efforts.copy_from_slice(held),
+        None => {
+            efforts.fill(0.0);
+            inputs(time, q, speeds, efforts);
         }
     }
 }

@@ -7,15 +7,20 @@
 
 mod approach;
 mod clock;
+mod collocation;
+mod commutator_free;
 mod control;
 mod dop853;
 mod driver;
 mod error;
+mod explicit;
 mod flow;
+mod jacobian;
 mod linear;
 mod options;
 mod residue;
 mod solution;
+mod standing;
 mod stepper;
 mod tableau;
 mod turns;
@@ -24,7 +29,7 @@ mod verner;
 pub use approach::{Approach, Near};
 pub use error::{IntegrateError, StepFailure};
 pub use linear::LinearStep;
-pub use options::{Control, Form, Method, Options, Pair};
+pub use options::{Control, Form, Method, Options, Scheme};
 pub use solution::{Solution, State, Statistics, Step};
 pub use tableau::{Estimate, Tableau};
 

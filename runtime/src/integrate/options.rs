@@ -1,9 +1,7 @@
 //! What an integration is asked to do.
 
 use super::IntegrateError;
-use super::dop853::DORMAND_PRINCE_8;
-use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
-use super::verner::VERNER_9;
+use super::tableau::{Estimate, Tableau};
 use alloc::vec::Vec;
 
 /// Which equations of motion are integrated.
@@ -15,55 +13,126 @@ pub enum Form {
     Hamiltonian,
 }
 
-/// Which method integrates them.
+/// How steps are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
-    /// The classical method of order 4, fixed step `dt` (s); steps that land on a sample time are shorter.
-    Rk4 {
-        /// Step, s.
-        dt: f64,
-    },
-    /// An embedded pair with step control.
-    Controlled {
-        /// Which pair.
-        pair: Pair,
-        /// How accurate its steps shall be.
-        control: Control,
-    },
-}
-
-/// Explicit methods with an estimate of their own error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pair {
+pub enum Scheme {
+    /// The classical explicit method of order 4.
+    Rk4,
+    /// The method of order 4 of Celledoni, Marthinsen and Owren: as [`Scheme::Rk4`], but Q moves along by compositions of Φ.
+    CommutatorFree4,
     /// Dormand and Prince's of order 5(4).
     DormandPrince,
     /// Dormand and Prince's of order 8(5,3), known as DOP853: for tolerances below 1e-8 or so.
     DormandPrince8,
     /// Verner's of order 9(8): for tolerances near rounding, which its result feels less than that of DOP853.
     Verner9,
+    /// Any other explicit method.
+    Explicit(&'static Tableau),
+    /// The implicit midpoint rule, of order 2: symmetric.
+    Midpoint,
+    /// Gauss's method with two stages, of order 4: symmetric.
+    Gauss2,
+    /// Gauss's method with three stages, of order 6: symmetric.
+    Gauss3,
+    /// Radau IIA with three stages, of order 5: implicit, damps what is stiff.
+    Radau5,
 }
 
-impl Pair {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::DormandPrince, Self::DormandPrince8, Self::Verner9];
+impl Scheme {
+    /// All that have a name of their own.
+    pub const ALL: [Self; 9] = [
+        Self::Rk4,
+        Self::CommutatorFree4,
+        Self::DormandPrince,
+        Self::DormandPrince8,
+        Self::Verner9,
+        Self::Midpoint,
+        Self::Gauss2,
+        Self::Gauss3,
+        Self::Radau5,
+    ];
 
     /// As scenes and the command line write it.
-    pub const fn name(self) -> &'static str {
+    pub const fn name(&self) -> &'static str {
         match self {
+            Self::Rk4 => "rk4",
+            Self::CommutatorFree4 => "cf4",
             Self::DormandPrince => "dopri5",
             Self::DormandPrince8 => "dop853",
             Self::Verner9 => "verner9",
+            Self::Explicit(_) => "explicit",
+            Self::Midpoint => "midpoint",
+            Self::Gauss2 => "gauss2",
+            Self::Gauss3 => "gauss3",
+            Self::Radau5 => "radau5",
         }
     }
 
-    /// Its coefficients.
-    pub const fn tableau(self) -> &'static Tableau {
+    /// What it is and when to take it, in one line.
+    pub const fn summary(&self) -> &'static str {
         match self {
-            Self::DormandPrince => &DORMAND_PRINCE,
-            Self::DormandPrince8 => &DORMAND_PRINCE_8,
-            Self::Verner9 => &VERNER_9,
+            Self::Rk4 => "classical Runge-Kutta of order 4, fixed step",
+            Self::CommutatorFree4 => "commutator-free of order 4, fixed step",
+            Self::DormandPrince => "Dormand-Prince 5(4), step control: for most motions",
+            Self::DormandPrince8 => {
+                "Dormand-Prince 8(5,3), step control: for tolerances below 1e-8 or so"
+            }
+            Self::Verner9 => "Verner 9(8), step control: for tolerances near rounding",
+            Self::Explicit(_) => "an explicit method of the caller's",
+            Self::Midpoint => "implicit midpoint rule, order 2, symmetric, fixed step",
+            Self::Gauss2 => "Gauss with 2 stages, order 4, symmetric, fixed step",
+            Self::Gauss3 => "Gauss with 3 stages, order 6, symmetric, fixed step: for long runs",
+            Self::Radau5 => "Radau IIA of order 5, implicit, step control: for stiff damped scenes",
         }
     }
+
+    /// The scheme of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scheme| scheme.name() == name)
+    }
+
+    /// Its coefficients, where it is an explicit Runge–Kutta method.
+    pub const fn tableau(&self) -> Option<&'static Tableau> {
+        match self {
+            Self::Rk4 => Some(&Tableau::RK4),
+            Self::DormandPrince => Some(&Tableau::DORMAND_PRINCE),
+            Self::DormandPrince8 => Some(&Tableau::DORMAND_PRINCE_8),
+            Self::Verner9 => Some(&Tableau::VERNER_9),
+            Self::Explicit(tableau) => Some(tableau),
+            Self::CommutatorFree4 | Self::Midpoint | Self::Gauss2 | Self::Gauss3 | Self::Radau5 => {
+                None
+            }
+        }
+    }
+
+    /// Whether it estimates its own error, so that it can control its step.
+    pub fn has_estimate(&self) -> bool {
+        match self {
+            Self::Radau5 => true,
+            _ => self
+                .tableau()
+                .is_some_and(|tableau| tableau.estimate != Estimate::None),
+        }
+    }
+}
+
+/// Which method integrates them: a scheme, and what chooses its steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Steps of one length; those that land on a sample time are shorter.
+    Fixed {
+        /// How steps are made.
+        scheme: Scheme,
+        /// Step, s.
+        dt: f64,
+    },
+    /// Step control, for a scheme that estimates its error.
+    Controlled {
+        /// How steps are made.
+        scheme: Scheme,
+        /// How accurate they shall be.
+        control: Control,
+    },
 }
 
 /// What step control is given.
@@ -109,48 +178,56 @@ impl Control {
 }
 
 impl Method {
-    /// Order 5 with step control to `tolerance`, with nothing else prescribed.
-    pub const fn dormand_prince(tolerance: f64) -> Self {
-        Self::controlled(Pair::DormandPrince, tolerance)
+    /// The classical method of order 4 with steps of `dt` (s).
+    pub const fn rk4(dt: f64) -> Self {
+        Self::fixed(Scheme::Rk4, dt)
     }
 
-    /// A pair with step control to `tolerance`, with nothing else prescribed.
-    pub const fn controlled(pair: Pair, tolerance: f64) -> Self {
+    /// Order 5 with step control to `tolerance`, with nothing else prescribed.
+    pub const fn dormand_prince(tolerance: f64) -> Self {
+        Self::controlled(Scheme::DormandPrince, tolerance)
+    }
+
+    /// Steps of `dt` (s).
+    pub const fn fixed(scheme: Scheme, dt: f64) -> Self {
+        Self::Fixed { scheme, dt }
+    }
+
+    /// Step control to `tolerance`, with nothing else prescribed.
+    pub const fn controlled(scheme: Scheme, tolerance: f64) -> Self {
         Self::Controlled {
-            pair,
+            scheme,
             control: Control::to(tolerance),
         }
     }
 
-    /// As scenes and the command line write it.
-    pub const fn name(&self) -> &'static str {
+    /// How steps are made.
+    pub const fn scheme(&self) -> &Scheme {
         match self {
-            Self::Rk4 { .. } => "rk4",
-            Self::Controlled { pair, .. } => pair.name(),
-        }
-    }
-
-    /// Its coefficients.
-    pub const fn tableau(&self) -> &'static Tableau {
-        match self {
-            Self::Rk4 { .. } => &CLASSICAL,
-            Self::Controlled { pair, .. } => pair.tableau(),
+            Self::Fixed { scheme, .. } | Self::Controlled { scheme, .. } => scheme,
         }
     }
 
     /// What its step control is given, if it has any.
     pub const fn control(&self) -> Option<Control> {
         match *self {
-            Self::Rk4 { .. } => None,
+            Self::Fixed { .. } => None,
             Self::Controlled { control, .. } => Some(control),
         }
     }
 
     fn check(&self) -> Result<(), IntegrateError> {
-        if let Self::Rk4 { dt } = *self {
-            return require("dt", dt, dt > 0.0 && dt.is_finite(), "positive and finite");
+        match self {
+            &Self::Fixed { dt, .. } => {
+                require("dt", dt, dt > 0.0 && dt.is_finite(), "positive and finite")
+            }
+            Self::Controlled { scheme, .. } if !scheme.has_estimate() => {
+                Err(IntegrateError::NoEstimate {
+                    scheme: scheme.name(),
+                })
+            }
+            Self::Controlled { control, .. } => control.check(),
         }
-        self.control().as_ref().map_or(Ok(()), Control::check)
     }
 }
 

@@ -40,6 +40,12 @@ pub struct Statistics {
     pub rejected: usize,
     /// Evaluations of the equations of motion.
     pub evaluations: usize,
+    /// Iterations of implicit steps.
+    pub iterations: usize,
+    /// Evaluations of `∂(ϕ̇, ẏ)/∂(ϕ, y)` for them.
+    pub jacobians: usize,
+    /// Factorisations of their matrices.
+    pub factorizations: usize,
 }
 
 /// What an integration returns.

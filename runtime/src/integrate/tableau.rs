@@ -1,5 +1,8 @@
 //! Coefficients of explicit Runge–Kutta methods.
 
+use super::dop853::DORMAND_PRINCE_8;
+use super::verner::VERNER_9;
+
 /// An explicit method; row i of `matrix` has i entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tableau {
@@ -15,6 +18,17 @@ pub struct Tableau {
     pub estimate: Estimate,
     /// Whether the last stage is the first stage of the next step.
     pub first_same_as_last: bool,
+}
+
+impl Tableau {
+    /// The classical method of order 4.
+    pub const RK4: Self = CLASSICAL;
+    /// Dormand and Prince's of order 5(4).
+    pub const DORMAND_PRINCE: Self = DORMAND_PRINCE;
+    /// Dormand and Prince's of order 8(5,3), known as DOP853.
+    pub const DORMAND_PRINCE_8: Self = DORMAND_PRINCE_8;
+    /// Verner's of order 9(8).
+    pub const VERNER_9: Self = VERNER_9;
 }
 
 /// What a method says about the error of its steps: weights b_i − b̂_i against embedded methods.
@@ -34,7 +48,7 @@ pub enum Estimate {
 }
 
 /// The classical method of order 4.
-pub(super) const CLASSICAL: Tableau = Tableau {
+const CLASSICAL: Tableau = Tableau {
     order: 4,
     nodes: &[0.0, 0.5, 0.5, 1.0],
     matrix: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
@@ -44,7 +58,7 @@ pub(super) const CLASSICAL: Tableau = Tableau {
 };
 
 /// J. R. Dormand and P. J. Prince, *A family of embedded Runge–Kutta formulae*, 1980: RK5(4)7M.
-pub(super) const DORMAND_PRINCE: Tableau = Tableau {
+const DORMAND_PRINCE: Tableau = Tableau {
     order: 5,
     nodes: &[0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0],
     matrix: &[

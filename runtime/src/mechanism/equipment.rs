@@ -221,7 +221,7 @@ fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), Vec<Mechan
 }
 
 /// A pivot as a share of the largest entry; 0 where all are.
-pub(crate) fn share(pivot: f64, largest: f64) -> f64 {
+fn share(pivot: f64, largest: f64) -> f64 {
     match largest > 0.0 {
         true => pivot.abs() / largest,
         false => 0.0,

@@ -16,7 +16,6 @@ mod reach;
 pub use body::{Body, BodySpec, Ranges};
 pub use check::CONFIGURATION_TOLERANCE;
 pub(crate) use check::{WHOLE, check_size};
-pub(crate) use equipment::share;
 pub use error::{Loci, MechanismError, StateError};
 pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;

@@ -90,7 +90,7 @@ fn balanced_cart_rolls_on_a_circle() {
         configuration: mechanism.home(),
         speeds: vec![0.5, 1.5],
     };
-    let options = options(Form::Hamiltonian, Method::Rk4 { dt: 0.1 }, 4.0);
+    let options = options(Form::Hamiltonian, Method::rk4(0.1), 4.0);
     let end = run(&mechanism, &initial, &options).state;
     let (sin, cos) = 2.0_f64.sin_cos();
     let expected = [cos, -sin, 3.0 * sin, sin, cos, 3.0 * (1.0 - cos)];
@@ -204,7 +204,7 @@ fn long_runs_stay_on_the_manifold() {
     let end = run(
         &mechanism,
         &initial,
-        &options(Form::Lagrangian, Method::Rk4 { dt: 1e-3 }, 20.0),
+        &options(Form::Lagrangian, Method::rk4(1e-3), 20.0),
     );
     assert_eq!(end.statistics.steps, 20_000);
     let rotation = Matrix3::from_row_slice(&end.state.configuration);

@@ -3,9 +3,9 @@
 use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::tree;
-use crate::support::{distance, fixed_steps, fixed_steps_of, mixed, options, run, start};
+use crate::support::{distance, mixed, options, run, start};
 use hamel::dynamics::Reference;
-use hamel::integrate::{Form, Method, Pair, integrate, no_observer};
+use hamel::integrate::{Form, Method, Scheme, integrate, no_observer};
 use std::sync::Arc;
 
 #[test]
@@ -17,30 +17,33 @@ fn methods_have_their_order_in_both_forms() {
         &initial,
         &options(
             Form::Lagrangian,
-            Method::controlled(Pair::Verner9, 1e-16),
+            Method::controlled(Scheme::Verner9, 1e-16),
             0.2,
         ),
     )
     .state;
+    // Few enough steps that the error of the finer run stays far above rounding.
+    let schemes = [
+        (4.0, 10.0, Scheme::Rk4),
+        (4.0, 10.0, Scheme::CommutatorFree4),
+        (5.0, 10.0, Scheme::DormandPrince),
+        (8.0, 1.0, Scheme::DormandPrince8),
+        (9.0, 1.0, Scheme::Verner9),
+        (2.0, 20.0, Scheme::Midpoint),
+        (4.0, 10.0, Scheme::Gauss2),
+        (6.0, 4.0, Scheme::Gauss3),
+        (5.0, 10.0, Scheme::Radau5),
+    ];
     for form in [Form::Lagrangian, Form::Hamiltonian] {
-        for (order, steps, method) in [
-            (
-                4.0,
-                10.0,
-                &(|step| Method::Rk4 { dt: step }) as &dyn Fn(f64) -> Method,
-            ),
-            (5.0, 10.0, &fixed_steps),
-            // Few enough that the error of the finer run stays far above rounding.
-            (8.0, 1.0, &|step| fixed_steps_of(Pair::DormandPrince8, step)),
-            (9.0, 1.0, &|step| fixed_steps_of(Pair::Verner9, step)),
-        ] {
+        for (order, steps, scheme) in schemes {
             let error = |steps: f64| {
-                let options = options(form, method(0.2 / steps), 0.2);
+                let options = options(form, Method::fixed(scheme, 0.2 / steps), 0.2);
                 distance(&run(&mechanism, &initial, &options).state, &reference)
             };
             let measured = (error(steps) / error(2.0 * steps)).log2();
             println!(
-                "{form:?}: order {measured:.2}, error {:e}",
+                "{form:?}, {}: order {measured:.2}, error {:e}",
+                scheme.name(),
                 error(2.0 * steps)
             );
             // Where the leading coefficient happens to be small, the next order shows: one more at most.
@@ -82,8 +85,8 @@ fn inputs_that_vary_in_time_keep_the_order() {
         "a hundred steps of 1e-13"
     );
     for form in [Form::Lagrangian, Form::Hamiltonian] {
-        let coarse = distance(&end(form, Method::Rk4 { dt: 0.05 }), &reference);
-        let fine = distance(&end(form, Method::Rk4 { dt: 0.025 }), &reference);
+        let coarse = distance(&end(form, Method::rk4(0.05)), &reference);
+        let fine = distance(&end(form, Method::rk4(0.025)), &reference);
         assert!(
             ((coarse / fine).log2() - 4.0).abs() < 0.5,
             "{coarse:e} {fine:e}"

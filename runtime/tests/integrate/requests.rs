@@ -6,8 +6,8 @@ use crate::common::trees::{GRAVITY, body, tree};
 use crate::support::{distance, fixed_steps, options, run, start};
 use hamel::dynamics::{Dynamics, DynamicsError, Reference};
 use hamel::integrate::{
-    Control, Form, IntegrateError, Method, Options, Pair, State, StepFailure, integrate, no_inputs,
-    no_observer,
+    Control, Form, IntegrateError, Method, Options, Scheme, State, StepFailure, integrate,
+    no_inputs, no_observer,
 };
 use hamel::mechanism::Mechanism;
 use hamel::spatial::{MassProperties, Pose};
@@ -22,7 +22,7 @@ fn sample_times_are_hit_exactly() {
         ..start(&mechanism, 8)
     };
     let samples = vec![0.25, 0.3, 0.3, 1.0 / 3.0, 0.7, 1.0];
-    for method in [Method::Rk4 { dt: 0.01 }, Method::dormand_prince(1e-10)] {
+    for method in [Method::rk4(0.01), Method::dormand_prince(1e-10)] {
         let options = Options {
             form: Form::Lagrangian,
             method,
@@ -77,7 +77,7 @@ fn work_is_counted() {
     let statistics = run(
         &mechanism,
         &initial,
-        &options(Form::Lagrangian, Method::Rk4 { dt: 0.01 }, 1.0),
+        &options(Form::Lagrangian, Method::rk4(0.01), 1.0),
     )
     .statistics;
     assert_eq!(
@@ -103,7 +103,7 @@ fn work_is_counted() {
         (100, 0, 1 + 6 * 100)
     );
     let rough = Method::Controlled {
-        pair: Pair::DormandPrince,
+        scheme: Scheme::DormandPrince,
         control: Control {
             tolerance: 1e-10,
             max_step: f64::INFINITY,
@@ -123,7 +123,7 @@ fn observer_ends_the_integration() {
     let mechanism = tree(&mut Random::new(4), &[joints::revolute()]);
     let initial = start(&mechanism, 8);
     let mut dynamics = Reference::new(Arc::clone(&mechanism));
-    let options = options(Form::Hamiltonian, Method::Rk4 { dt: 0.01 }, 1.0);
+    let options = options(Form::Hamiltonian, Method::rk4(0.01), 1.0);
     let mut observer = |step: &hamel::integrate::Step<'_>| {
         assert!(step.momenta.is_some());
         if step.number == 7 {
@@ -174,14 +174,14 @@ fn bad_requests_are_named() {
         };
         refused(&initial, &options).to_string()
     };
-    let rk4 = Method::Rk4 { dt: 0.1 };
+    let rk4 = Method::rk4(0.1);
     assert_eq!(
         with(rk4, -1.0, &[]),
         "t_end is -1 s: it lies before the initial time 0 s"
     );
     assert_eq!(with(rk4, f64::NAN, &[]), "t_end is NaN: it must be finite");
     assert_eq!(
-        with(Method::Rk4 { dt: 0.0 }, 1.0, &[]),
+        with(Method::rk4(0.0), 1.0, &[]),
         "dt is 0: it must be positive and finite"
     );
     assert_eq!(
@@ -219,7 +219,7 @@ fn steps_beyond_half_a_turn_are_refused() {
     let error = integrate(
         &mut dynamics,
         &initial,
-        &options(Form::Lagrangian, Method::Rk4 { dt: 0.1 }, 1.0),
+        &options(Form::Lagrangian, Method::rk4(0.1), 1.0),
         &mut no_inputs,
         &mut no_observer,
     )
@@ -288,7 +288,7 @@ fn singular_mass_is_an_error_of_the_initial_state() {
     let initial = start(&mechanism, 1);
     let mut dynamics = Reference::new(Arc::clone(&mechanism));
     for form in [Form::Lagrangian, Form::Hamiltonian] {
-        let options = options(form, Method::Rk4 { dt: 0.1 }, 1.0);
+        let options = options(form, Method::rk4(0.1), 1.0);
         let error = integrate(
             &mut dynamics,
             &initial,

@@ -5,7 +5,7 @@ use crate::common::trees::body;
 use crate::support::{options, run};
 use hamel::dynamics::Reference;
 use hamel::integrate::{
-    Control, Form, IntegrateError, Method, Pair, State, integrate, no_inputs, no_observer,
+    Control, Form, IntegrateError, Method, Scheme, State, integrate, no_inputs, no_observer,
 };
 use hamel::mechanism::{Mechanism, MechanismError};
 use hamel::spatial::{MassProperties, Pose};
@@ -35,7 +35,7 @@ fn the_nearest_approach_is_reported() {
     let mechanism = free_point(1.0).expect("valid");
     let aside = 0.01;
     let method = Method::Controlled {
-        pair: Pair::DormandPrince,
+        scheme: Scheme::DormandPrince,
         control: Control {
             tolerance: 1e-10,
             max_step: 1e-3,
@@ -94,7 +94,7 @@ fn a_failure_on_a_singular_set_names_it() {
     let error = integrate(
         &mut dynamics,
         &initial,
-        &options(Form::Lagrangian, Method::Rk4 { dt: 0.25 }, 4.0),
+        &options(Form::Lagrangian, Method::rk4(0.25), 4.0),
         &mut no_inputs,
         &mut no_observer,
     )
@@ -120,7 +120,7 @@ fn extreme_times_have_exponents() {
             ..towards_centre(0.5)
         };
         let mut dynamics = Reference::new(Arc::clone(&mechanism));
-        let options = options(Form::Lagrangian, Method::Rk4 { dt: 0.1 }, t_end);
+        let options = options(Form::Lagrangian, Method::rk4(0.1), t_end);
         integrate(
             &mut dynamics,
             &initial,

@@ -5,7 +5,7 @@ use crate::common::random::Random;
 use crate::common::trees::{configuration, tree};
 use hamel::dynamics::Reference;
 use hamel::integrate::{
-    Control, Form, Method, Options, Pair, Solution, State, integrate, no_inputs, no_observer,
+    Form, Method, Options, Scheme, Solution, State, integrate, no_inputs, no_observer,
 };
 use hamel::mechanism::Mechanism;
 use std::sync::Arc;
@@ -19,19 +19,9 @@ pub fn options(form: Form, method: Method, t_end: f64) -> Options {
     }
 }
 
-/// Dormand–Prince with steps of one size: no error is large enough to refuse one.
+/// Dormand–Prince with steps of one size.
 pub fn fixed_steps(step: f64) -> Method {
-    fixed_steps_of(Pair::DormandPrince, step)
-}
-
-/// The same of any pair.
-pub fn fixed_steps_of(pair: Pair, step: f64) -> Method {
-    let control = Control {
-        tolerance: 0.1,
-        max_step: step,
-        first_step: Some(step),
-    };
-    Method::Controlled { pair, control }
+    Method::fixed(Scheme::DormandPrince, step)
 }
 
 pub fn start(mechanism: &Mechanism, seed: u64) -> State {

@@ -1,14 +1,19 @@
 //! How a scene wants to be simulated: defaults that a caller may override.
 
-use hamel::integrate::{Form, Method, Pair};
+use hamel::integrate::{Form, Method, Scheme};
 
 /// Names of the forms of the equations of motion, as scene files and the command line write them.
 pub(crate) const FORM_NAMES: [&str; 2] = ["lagrangian", "hamiltonian"];
 
 /// Names of the integration methods, as scene files and the command line write them.
-pub(crate) const METHOD_NAMES: [&str; 4] = {
-    let [a, b, c] = Pair::ALL;
-    ["rk4", a.name(), b.name(), c.name()]
+pub(crate) const METHOD_NAMES: [&str; Scheme::ALL.len()] = {
+    let mut names = [""; Scheme::ALL.len()];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = Scheme::ALL[i].name();
+        i += 1;
+    }
+    names
 };
 
 /// Settings of a simulation.
@@ -29,10 +34,29 @@ impl Settings {
     pub const DEFAULT_T_END: f64 = 1.0;
     /// Time between two samples where a scene gives none, s.
     pub const DEFAULT_SAMPLE_STEP: f64 = 0.01;
-    /// Step of `rk4` where a scene gives none, s.
+    /// Step of methods without step control where a scene gives none, s.
     pub const DEFAULT_DT: f64 = 1e-3;
     /// Tolerance of methods with step control where a scene gives none.
     pub const DEFAULT_TOL: f64 = 1e-10;
+
+    /// The method that `scheme`, a step and a tolerance ask for; a tolerance alone asks for `dopri5`, a step alone for `rk4`. `None` where the
+    /// scheme cannot be told a tolerance. Of step and tolerance at most one is given.
+    pub fn method_of(scheme: Option<Scheme>, dt: Option<f64>, tol: Option<f64>) -> Option<Method> {
+        let implied = match dt {
+            Some(_) => Scheme::Rk4,
+            None => Scheme::DormandPrince,
+        };
+        let scheme = scheme.unwrap_or(implied);
+        match (dt, tol) {
+            (Some(dt), _) => Some(Method::fixed(scheme, dt)),
+            (None, Some(_)) if !scheme.has_estimate() => None,
+            (None, None) if !scheme.has_estimate() => Some(Method::fixed(scheme, Self::DEFAULT_DT)),
+            (None, tol) => {
+                let tol = tol.unwrap_or(Self::DEFAULT_TOL);
+                Some(Method::controlled(scheme, tol))
+            }
+        }
+    }
 
     /// Name of the form, as scene files and the command line write it.
     pub const fn form_name(&self) -> &'static str {

@@ -66,14 +66,9 @@ fn an_accuracy_implies_its_method() {
             .settings
             .method
     };
-    assert_eq!(method("dt = 0.25"), Method::Rk4 { dt: 0.25 });
+    assert_eq!(method("dt = 0.25"), Method::rk4(0.25));
     assert_eq!(method("tol = 0.05"), Method::dormand_prince(0.05));
-    assert_eq!(
-        method("method = 'rk4'"),
-        Method::Rk4 {
-            dt: Settings::DEFAULT_DT
-        }
-    );
+    assert_eq!(method("method = 'rk4'"), Method::rk4(Settings::DEFAULT_DT));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Error at the end of motions whose end is known to 24 digits, over run time.
 
 use super::motion::{FORMS, MOST_STEPS, kinematics, run, scene};
-use hamel::integrate::{Method, Pair, State};
+use hamel::integrate::{Method, Scheme, State};
 use hamel::nalgebra::Matrix3;
 use hamel_scene::Scene;
 use hamel_tests::figures::attitude_error;
@@ -39,7 +39,7 @@ pub fn table() {
         let reference = reference(name);
         let [lagrangian, hamiltonian] = FORMS.map(|form| {
             Curve::new(TOLERANCES.map(|tolerance| {
-                let method = Method::controlled(Pair::Verner9, tolerance);
+                let method = Method::controlled(Scheme::Verner9, tolerance);
                 measure(&scene, &reference, |times| {
                     run(&scene, form, method, times, MOST_STEPS)
                 })

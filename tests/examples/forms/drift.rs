@@ -1,15 +1,15 @@
 //! Energy over long motions.
 
 use super::motion::{FORMS, MOST_STEPS, energy_error, run, scene};
-use hamel::integrate::{Form, Method, Pair};
+use hamel::integrate::{Form, Method, Scheme};
 
 const TIMES: [f64; 3] = [10.0, 100.0, 1000.0];
 
 pub fn table() {
     let methods = [
-        Method::Rk4 { dt: 1e-3 },
+        Method::rk4(1e-3),
         Method::dormand_prince(1e-8),
-        Method::controlled(Pair::Verner9, 1e-12),
+        Method::controlled(Scheme::Verner9, 1e-12),
     ];
     println!("## Drift of the energy\n");
     println!("| scene | method | form | 10 s | 100 s | 1000 s |");

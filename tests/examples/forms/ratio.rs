@@ -2,7 +2,7 @@
 
 use super::drift::letter;
 use super::motion::{FORMS, energy_error, kinematics, run};
-use hamel::integrate::{Form, Method, Pair};
+use hamel::integrate::{Form, Method, Scheme};
 use hamel_scene::Scene;
 use hamel_tests::figures::state_distance;
 
@@ -50,7 +50,7 @@ pub fn table() {
     for exponent in [-8, -4, 0, 4, 8] {
         let scene = scene(10.0_f64.powi(exponent));
         let end = |form, tolerance| {
-            let method = Method::controlled(Pair::Verner9, tolerance);
+            let method = Method::controlled(Scheme::Verner9, tolerance);
             run(&scene, form, method, &[T_END], MOST_STEPS).0
         };
         let mut fine = [1e-14, 1e-12, 1e-10, 1e-8].into_iter();

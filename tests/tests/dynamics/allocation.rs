@@ -7,7 +7,7 @@ use hamel::dynamics::{
     Recursive,
 };
 use hamel::integrate::{
-    Control, Form, LinearStep, Method, Options, Pair, State, Statistics, integrate, no_inputs,
+    Control, Form, LinearStep, Method, Options, Scheme, State, Statistics, integrate, no_inputs,
     no_observer,
 };
 use hamel::mechanism::NamedFrame;
@@ -177,7 +177,7 @@ fn derivatives_do_not_allocate() {
         let mut forward = ForwardDerivatives::new(&case.mechanism);
         let mut hamiltonian = HamiltonianDerivatives::new(&case.mechanism);
         let mut steps = [Form::Lagrangian, Form::Hamiltonian]
-            .map(|form| LinearStep::new(&case.mechanism, form, &Method::Rk4 { dt: 1.0 }));
+            .map(|form| LinearStep::new(&case.mechanism, form, &Tableau::RK4));
         let mut gradients = [vec![0.0; freedoms], vec![0.0; freedoms]];
         counts.of("inverse_dynamics_derivatives", || {
             let found = dynamics.inverse_dynamics_derivatives(q, v, &case.rates, &mut inverse);
@@ -309,7 +309,7 @@ fn integration(case: &Case, form: Form, method: Method, t_end: f64) -> (u64, Sta
 fn accepted_steps_do_not_allocate() {
     let step = 1.0 / 1024.0;
     let controlled = Method::Controlled {
-        pair: Pair::DormandPrince,
+        scheme: Scheme::DormandPrince,
         control: Control {
             tolerance: 1e-3,
             max_step: step,
@@ -319,7 +319,7 @@ fn accepted_steps_do_not_allocate() {
     let mut compared = 0;
     for case in trees() {
         for form in [Form::Lagrangian, Form::Hamiltonian] {
-            for method in [Method::Rk4 { dt: step }, controlled] {
+            for method in [Method::rk4(step), controlled] {
                 let (few, first) = integration(&case, form, method, 4.0 * step);
                 let (many, second) = integration(&case, form, method, 12.0 * step);
                 // A refused step says why, in words that it allocates.

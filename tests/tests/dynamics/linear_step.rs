@@ -4,7 +4,7 @@ use crate::derivatives::Equipment;
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel::elements::{Drive, Law};
 use hamel::integrate::{
-    Control, Form, LinearStep, Method, Options, Pair, State, StepFailure, integrate, no_observer,
+    Control, Form, LinearStep, Method, Options, Scheme, State, StepFailure, integrate, no_observer,
 };
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{DMatrix, DVector};
@@ -22,10 +22,10 @@ const DT: f64 = 1.0 / 32.0;
 
 const FORMS: [Form; 2] = [Form::Lagrangian, Form::Hamiltonian];
 
-const FIXED: Method = Method::Rk4 { dt: DT };
+const FIXED: Method = Method::rk4(DT);
 
 /// A pair that takes its first step whatever its error.
-const fn unchecked(pair: Pair) -> Method {
+const fn unchecked(pair: Scheme) -> Method {
     let control = Control {
         tolerance: Control::LARGEST_TOLERANCE,
         max_step: DT,
@@ -134,7 +134,7 @@ impl Stepping<'_> {
     /// `[A B]` as the library has it, in the same units; the state reached is that of the integrator.
     fn linearized(&self, case: &Case) -> DMatrix<f64> {
         let y = self.y(&case.q, &case.speeds);
-        let mut step = LinearStep::new(self.mechanism, self.form, &self.method);
+        let mut step = LinearStep::new(self.mechanism, self.form, &Tableau::RK4);
         step.linearize(&case.q, &y, &case.efforts, DT)
             .expect("a short step");
         let (q, reached) = self.take(&case.q, &y, &case.efforts);
@@ -210,7 +210,7 @@ fn equipped_trees() {
 
 #[test]
 fn every_pair() {
-    for pair in Pair::ALL {
+    for pair in Scheme::ALL {
         let mut worst = Largest::new(pair.name());
         for (case, form) in cases(&library(), 4, 8).zip(FORMS.into_iter().cycle()) {
             let stepping = stepping(&case, form, unchecked(pair));
@@ -257,7 +257,7 @@ fn robots() {
 #[test]
 fn what_cannot_be_stepped_is_refused() {
     let case = cases(&library(), 1, 1).next().expect("one case");
-    let mut step = LinearStep::new(&case.mechanism, Form::Lagrangian, &FIXED);
+    let mut step = LinearStep::new(&case.mechanism, Form::Lagrangian, &Tableau::RK4);
     for length in [0.0, -DT, f64::NAN, f64::INFINITY] {
         let refused = step.linearize(&case.q, &case.speeds, &case.efforts, length);
         assert!(
@@ -279,7 +279,7 @@ fn what_cannot_be_stepped_is_refused() {
     };
     let driven = (*case.mechanism).clone().with_drives(vec![drive]);
     let driven = Arc::new(driven.expect("it fits"));
-    let mut step = LinearStep::new(&driven, Form::Lagrangian, &FIXED);
+    let mut step = LinearStep::new(&driven, Form::Lagrangian, &Tableau::RK4);
     let refused = step.linearize(&case.q, &case.speeds, &case.efforts, DT);
     let message = refused.expect_err("a function of time").to_string();
     assert!(message.contains("`shaker`"), "{message}");

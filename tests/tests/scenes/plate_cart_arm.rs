@@ -110,5 +110,5 @@ fn hamiltonian_form_reaches_the_reference() {
 /// errors grow 35-fold.
 #[test]
 fn fixed_steps_reach_the_reference() {
-    check(Form::Lagrangian, Method::Rk4 { dt: 0.25e-3 }, ALLOWED);
+    check(Form::Lagrangian, Method::rk4(0.25e-3), ALLOWED);
 }

@@ -18,7 +18,6 @@ mod hamiltonian;
 mod inverse;
 mod jacobian;
 mod link;
-mod lu;
 mod mass;
 mod operational;
 mod readings;

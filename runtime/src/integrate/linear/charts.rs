@@ -10,7 +10,7 @@ use core::ops::Range;
 
 /// [`ChartDerivatives`] of all joints.
 #[derive(Clone, Debug)]
-pub(super) struct Charts(Vec<Own>);
+pub(in crate::integrate) struct Charts(Vec<Own>);
 
 #[derive(Clone, Debug)]
 struct Own {
@@ -40,12 +40,18 @@ impl Own {
 }
 
 impl Charts {
-    pub(super) fn new(mechanism: &Mechanism) -> Self {
+    pub(in crate::integrate) fn new(mechanism: &Mechanism) -> Self {
         Self(mechanism.bodies().iter().map(Own::new).collect())
     }
 
     /// Evaluates them at base point `base`, `phi` and `speeds`.
-    pub(super) fn set(&mut self, mechanism: &Mechanism, base: &[f64], phi: &[f64], speeds: &[f64]) {
+    pub(in crate::integrate) fn set(
+        &mut self,
+        mechanism: &Mechanism,
+        base: &[f64],
+        phi: &[f64],
+        speeds: &[f64],
+    ) {
         for (own, body) in self.0.iter_mut().zip(mechanism.bodies()) {
             let mut out = ChartDerivatives {
                 carried: &mut own.carried,
@@ -72,18 +78,24 @@ impl Charts {
         }
     }
 
-    /// `ξ = T δϕ + D δϕ_i` into `local`; the first columns are those of δϕ.
-    pub(super) fn localize(&self, phi: &Sensitivity, local: &mut Sensitivity) {
+    /// `ξ = D δϕ_i` into `local`.
+    pub(in crate::integrate) fn localize(&self, phi: &Sensitivity, local: &mut Sensitivity) {
         local.entries_mut().fill(0.0);
         for own in &self.0 {
             let freedoms = &own.freedoms;
             add_block(local, freedoms, &own.moved, (phi, freedoms));
-            add_square(local, freedoms, &own.carried);
         }
     }
 
-    /// `δϕ̇_i = G δϕ + P δϕ_i + S⁻¹S̄ δv̄_i` into `slopes`.
-    pub(super) fn differentiate(
+    /// Adds T δϕ to `local`; the first columns are those of δϕ.
+    pub(super) fn carry(&self, local: &mut Sensitivity) {
+        for own in &self.0 {
+            add_square(local, &own.freedoms, &own.carried);
+        }
+    }
+
+    /// `δϕ̇_i = P δϕ_i + S⁻¹S̄ δv̄_i` into `slopes`.
+    pub(in crate::integrate) fn differentiate(
         &self,
         phi: &Sensitivity,
         faster: &Sensitivity,
@@ -94,7 +106,13 @@ impl Charts {
             let freedoms = &own.freedoms;
             add_block(slopes, freedoms, &own.rate_by_phi, (phi, freedoms));
             add_block(slopes, freedoms, &own.rate_by_speeds, (faster, &own.speeds));
-            add_square(slopes, freedoms, &own.rate_by_base);
+        }
+    }
+
+    /// Adds G δϕ to `slopes`; the first columns are those of δϕ.
+    pub(super) fn drag(&self, slopes: &mut Sensitivity) {
+        for own in &self.0 {
+            add_square(slopes, &own.freedoms, &own.rate_by_base);
         }
     }
 }

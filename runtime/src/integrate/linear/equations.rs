@@ -10,7 +10,7 @@ use alloc::boxed::Box;
 
 /// The derivatives of v̄ and ẏ.
 #[derive(Clone, Debug)]
-pub(super) enum Equations {
+pub(in crate::integrate) enum Equations {
     /// y = v̄.
     Lagrangian(Box<ForwardDerivatives>),
     /// y = p̄.
@@ -18,7 +18,7 @@ pub(super) enum Equations {
 }
 
 impl Equations {
-    pub(super) fn new(mechanism: &Mechanism, form: Form) -> Self {
+    pub(in crate::integrate) fn new(mechanism: &Mechanism, form: Form) -> Self {
         match form {
             Form::Lagrangian => Self::Lagrangian(Box::new(ForwardDerivatives::new(mechanism))),
             Form::Hamiltonian => {
@@ -36,7 +36,7 @@ impl Equations {
     }
 
     /// v̄ and ẏ at (q, y, τ), and the derivatives for [`Equations::differentiate`].
-    pub(super) fn evaluate(
+    pub(in crate::integrate) fn evaluate(
         &mut self,
         dynamics: &mut Recursive,
         (q, y, efforts): (&[f64], &[f64], &[f64]),
@@ -58,7 +58,7 @@ impl Equations {
     }
 
     /// δv̄ into `faster` and δẏ into `slopes`, of ξ and δy; the last columns are those of δτ.
-    pub(super) fn differentiate(
+    pub(in crate::integrate) fn differentiate(
         &self,
         local: &Sensitivity,
         y: &Sensitivity,

@@ -20,14 +20,14 @@ mod equations;
 
 use super::flow::{Rates, retract};
 use super::turns::{Turns, check_finite};
-use super::{Form, Method, StepFailure, Tableau};
+use super::{Form, StepFailure, Tableau};
 use crate::dynamics::{Dynamics, DynamicsError, Recursive, Sensitivity};
 use crate::mechanism::{Mechanism, WHOLE, check_size};
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
-use charts::Charts;
-use equations::Equations;
+pub(super) use charts::Charts;
+pub(super) use equations::Equations;
 
 /// One step and its A and B, with the workspace for them: one for each thread. After construction nothing allocates.
 #[derive(Clone, Debug)]
@@ -53,9 +53,9 @@ pub struct LinearStep {
 
 /// Derivatives of something in ϕ's and something in y's place: a column for each δϕ, δy and δτ.
 #[derive(Clone, Debug)]
-struct Change {
-    phi: Sensitivity,
-    y: Sensitivity,
+pub(super) struct Change {
+    pub(super) phi: Sensitivity,
+    pub(super) y: Sensitivity,
 }
 
 /// ϕ̇ and ẏ at one stage, and their derivatives.
@@ -75,7 +75,7 @@ struct Start<'a> {
 }
 
 impl Change {
-    fn new(freedoms: usize, speeds: usize) -> Self {
+    pub(super) fn new(freedoms: usize, speeds: usize) -> Self {
         let width = 2 * freedoms + speeds;
         Self {
             phi: Sensitivity::new(freedoms, width),
@@ -84,7 +84,7 @@ impl Change {
     }
 
     /// Of the start: y moves with δy, ϕ is 0 there.
-    fn reset(&mut self) {
+    pub(super) fn reset(&mut self) {
         self.phi.entries_mut().fill(0.0);
         self.y.entries_mut().fill(0.0);
         let (freedoms, width) = (self.phi.rows(), self.y.columns());
@@ -101,11 +101,11 @@ impl Change {
 }
 
 impl LinearStep {
-    /// Room for steps of `method` in the equations of `mechanism`; the step's length comes with each call.
-    pub fn new(mechanism: &Arc<Mechanism>, form: Form, method: &Method) -> Self {
+    /// Room for steps of the method of `tableau` ([`Scheme::tableau`](super::Scheme::tableau)) in the equations of `mechanism`; the step's length
+    /// comes with each call.
+    pub fn new(mechanism: &Arc<Mechanism>, form: Form, tableau: &'static Tableau) -> Self {
         let layout = *mechanism.layout();
         let (freedoms, speeds) = (layout.freedoms, layout.speeds);
-        let tableau = method.tableau();
         let stage = Stage {
             rates: Rates::new(mechanism),
             slopes: Change::new(freedoms, speeds),
@@ -160,6 +160,7 @@ impl LinearStep {
         let speeds = &self.stages[0].rates.speeds;
         self.charts.set(&mechanism, q, &self.phi, speeds);
         self.charts.localize(&self.change.phi, &mut self.local);
+        self.charts.carry(&mut self.local);
         self.store();
         Ok(())
     }
@@ -238,10 +239,12 @@ impl LinearStep {
         self.charts.rates(&rates.speeds, &mut rates.phi);
         check_finite(&mechanism, &rates.phi, &rates.y)?;
         self.charts.localize(&self.change.phi, &mut self.local);
+        self.charts.carry(&mut self.local);
         self.equations
             .differentiate(&self.local, &self.change.y, &mut self.faster, &mut slopes.y);
         self.charts
             .differentiate(&self.change.phi, &self.faster, &mut slopes.phi);
+        self.charts.drag(&mut slopes.phi);
         Ok(())
     }
 

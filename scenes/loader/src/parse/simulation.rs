@@ -3,7 +3,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink};
 use crate::settings::{FORM_NAMES, METHOD_NAMES, Settings, form_named};
-use hamel::integrate::{Control, Method, Pair};
+use hamel::integrate::{Control, Method, Scheme};
 
 /// Reads the settings; the defaults where the table or a key of it is absent or in error.
 pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
@@ -35,42 +35,15 @@ fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<Method> {
         .and_then(|method| method.choice(&METHOD_NAMES, sink));
     let dt = positive(table, "dt", sink);
     let tol = tolerance(table, sink);
-    let rk4 = Method::Rk4 {
-        dt: dt.unwrap_or(Settings::DEFAULT_DT),
-    };
-    let tol = tol.unwrap_or(Settings::DEFAULT_TOL);
-    let (key, method, advice) = match name {
-        Some("rk4") => ("tol", rk4, "its accuracy is `dt`"),
-        Some(name) => {
-            let mut pairs = Pair::ALL.into_iter();
-            let pair = pairs.find(|pair| pair.name() == name)?;
-            ("dt", Method::controlled(pair, tol), "its accuracy is `tol`")
-        }
-        None => {
-            let found = table.at_most_one(&["dt", "tol"], sink)?;
-            return Some(if found.0 == 0 {
-                rk4
-            } else {
-                Method::dormand_prince(tol)
-            });
-        }
-    };
-    unused(table, key, name.unwrap_or_default(), advice, sink).map(|()| method)
-}
-
-/// Refuses a key that means nothing to the method chosen.
-fn unused(
-    table: &mut Fields<'_>,
-    key: &'static str,
-    method: &str,
-    advice: &str,
-    sink: &mut Sink,
-) -> Option<()> {
-    let Some(value) = table.optional(key) else {
-        return Some(());
-    };
-    let message = format!("{} means nothing to the method `{method}`", value.path());
-    sink.push(Diagnostic::new(value.span(), message).label(advice));
+    let scheme = name.and_then(Scheme::named);
+    table.at_most_one(&["dt", "tol"], sink);
+    if let Some(method) = Settings::method_of(scheme, dt, tol) {
+        return Some(method);
+    }
+    let value = table.optional("tol")?;
+    let (path, name) = (value.path(), name.unwrap_or_default());
+    let message = format!("{path} means nothing to the method `{name}`");
+    sink.push(Diagnostic::new(value.span(), message).label("its accuracy is `dt`"));
     None
 }
 

@@ -51,16 +51,16 @@ fn comments(out: &mut String, lines: &[String]) {
 
 fn settings(out: &mut String, settings: &Settings) {
     let accuracy = match settings.method {
-        Method::Rk4 { dt } => format!("dt = {}", number(dt)),
-        Method::Controlled { pair, control } => {
-            let (name, tol) = (text(pair.name()), number(control.tolerance));
-            format!("method = {name}\ntol = {tol}")
-        }
+        Method::Fixed { dt, .. } => format!("dt = {}", number(dt)),
+        Method::Controlled { control, .. } => format!("tol = {}", number(control.tolerance)),
     };
     let (t_end, step) = (number(settings.t_end), number(settings.sample_step));
-    let form = text(settings.form_name());
+    let (form, method) = (
+        text(settings.form_name()),
+        text(settings.method.scheme().name()),
+    );
     out.push_str(&format!(
-        "\n[simulation]\nt_end = {t_end}\n{accuracy}\nform = {form}\nsample_step = {step}\n"
+        "\n[simulation]\nt_end = {t_end}\nmethod = {method}\n{accuracy}\nform = {form}\nsample_step = {step}\n"
     ));
 }
 

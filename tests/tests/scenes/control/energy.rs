@@ -2,7 +2,7 @@
 
 use super::{controller, last, parse, run, scene, text, watch};
 use hamel::control::{EnergyShaping, Port, PortSpring, Pump};
-use hamel::integrate::{Form, Method, Pair};
+use hamel::integrate::{Form, Method, Scheme};
 use hamel_scene::Scene;
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ fn shaped_energy_is_lost_at_the_port_alone() {
             let step = 0.5e-3;
             let options = Options {
                 form,
-                method: Method::Rk4 { dt: step },
+                method: Method::rk4(step),
                 t_end: 1.0,
                 samples: Vec::new(),
             };
@@ -86,7 +86,7 @@ fn a_stiff_port_brings_the_pendulum_upright() {
     let scene = parse(&upright);
     let (solution, readings) = run(
         &scene,
-        Method::controlled(Pair::DormandPrince8, 1e-10),
+        Method::controlled(Scheme::DormandPrince8, 1e-10),
         12.0,
     );
     assert!(last(&readings, 0).abs() < 1e-9 && readings[0].1[0] > 50.0);
@@ -107,7 +107,7 @@ fn a_weak_moment_swings_the_pendulum_up() {
     for form in [Form::Lagrangian, Form::Hamiltonian] {
         let mut scene = scene("ball_pendulum_swing_up");
         scene.settings.form = form;
-        let method = Method::controlled(Pair::DormandPrince8, 1e-11);
+        let method = Method::controlled(Scheme::DormandPrince8, 1e-11);
         let (_, readings) = run(&scene, method, scene.settings.t_end);
         // From 0.14 rad beside its lower rest: 2 m g l less a little.
         assert!((readings[0].1[0] + 19.62).abs() < 0.1, "{:?}", readings[0]);

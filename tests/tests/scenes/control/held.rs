@@ -32,7 +32,7 @@ fn law(time: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
     }
 }
 
-const METHODS: [Method; 2] = [Method::Rk4 { dt: 1e-3 }, Method::dormand_prince(1e-12)];
+const METHODS: [Method; 2] = [Method::rk4(1e-3), Method::dormand_prince(1e-12)];
 
 /// The same as one integration after the other, each with constant inputs.
 #[test]

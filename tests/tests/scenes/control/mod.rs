@@ -12,7 +12,7 @@ mod riccati;
 use hamel::control::{Controller, Feedback};
 use hamel::dynamics::Recursive;
 use hamel::integrate::{
-    Form, Method, Options, Pair, Solution, State, Step, integrate, integrate_held,
+    Form, Method, Options, Scheme, Solution, State, Step, integrate, integrate_held,
 };
 use hamel_scene::Scene;
 use std::ops::ControlFlow;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// As exact as the integrators get: what is left is rounding.
-const EXACT: Method = Method::controlled(Pair::Verner9, 1e-14);
+const EXACT: Method = Method::controlled(Scheme::Verner9, 1e-14);
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")

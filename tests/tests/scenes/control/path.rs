@@ -3,10 +3,10 @@
 use super::{EXACT, largest, last, parse, run, scene, text};
 use hamel::control::{ControlError, Curve, PathFollower, PathGains};
 use hamel::elements::Law;
-use hamel::integrate::{Method, Pair};
+use hamel::integrate::{Method, Scheme};
 use std::sync::Arc;
 
-const METHOD: Method = Method::controlled(Pair::DormandPrince8, 1e-10);
+const METHOD: Method = Method::controlled(Scheme::DormandPrince8, 1e-10);
 
 #[test]
 fn a_cart_comes_to_its_path_and_stays_there() {

@@ -3,12 +3,12 @@
 use super::{run, scene};
 use hamel::control::{Controller, Equilibrium, Feedback, Regulator, Weights};
 use hamel::dynamics::Recursive;
-use hamel::integrate::{Form, Method, Options, Pair, State, integrate_held, no_observer};
+use hamel::integrate::{Form, Method, Options, Scheme, State, integrate_held, no_observer};
 use hamel_scene::Scene;
 use std::sync::Arc;
 
 const LIMIT: f64 = 8.0;
-const METHOD: Method = Method::controlled(Pair::DormandPrince, 1e-8);
+const METHOD: Method = Method::controlled(Scheme::DormandPrince, 1e-8);
 
 /// Efforts of a controller at each period, and where the motion ends.
 fn held(scene: &Scene, controller: &mut dyn Controller, limit: f64) -> (Vec<Vec<f64>>, State) {

@@ -2,7 +2,7 @@
 
 use super::{parse, scene, text, watch};
 use hamel::control::{Equilibrium, Regulator, Weights};
-use hamel::integrate::{Method, Pair};
+use hamel::integrate::{Method, Scheme};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::spatial::so3;
 use hamel_scene::Scene;
@@ -87,7 +87,7 @@ fn a_hundred_random_attitudes_come_upright() {
         };
         farthest = farthest.max(angle);
         let begun = turned(&scene, &so3::exp(&(unit(&mut rng) * angle)));
-        let method = Method::controlled(Pair::DormandPrince8, 1e-9);
+        let method = Method::controlled(Scheme::DormandPrince8, 1e-9);
         let solution = watch(&begun, method, 5.0, &mut |_| {});
         let left: Vector3<f64> = so3::log(&attitude(&begun, &solution.state.configuration));
         let speeds = Vector3::from_column_slice(&solution.state.speeds);
@@ -103,7 +103,7 @@ fn a_hundred_random_attitudes_come_upright() {
 /// Attitudes along a motion, at fixed steps, so that no step is chosen by rounding.
 fn motion(scene: &Scene) -> Vec<Matrix3<f64>> {
     let mut attitudes = Vec::new();
-    watch(scene, Method::Rk4 { dt: 1e-3 }, 1.0, &mut |step| {
+    watch(scene, Method::rk4(1e-3), 1.0, &mut |step| {
         attitudes.push(attitude(scene, step.configuration));
     });
     attitudes

@@ -58,7 +58,7 @@ fn check<const K: usize>(joint: &str, form: Form, speeds: &[f64; K]) {
     let dt = 1e-2;
     let options = Options {
         form,
-        method: Method::Rk4 { dt },
+        method: Method::rk4(dt),
         t_end: dt * STEPS as f64,
         samples: Vec::new(),
     };

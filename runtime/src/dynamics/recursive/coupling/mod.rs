@@ -8,8 +8,8 @@ mod hamiltonian;
 mod lagrangian;
 
 use super::Recursive;
-use super::lu::Lu;
 use crate::dynamics::DynamicsError;
+use crate::lu::Lu;
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{apply, cross};
 use crate::spatial::join;
@@ -41,7 +41,7 @@ pub(super) struct Coupling {
     driven: Vec<bool>,
     /// Aᵀ, one row a constraint, one column a speed of the tree.
     matrix: Vec<f64>,
-    lu: Lu,
+    lu: Lu<f64>,
     /// B, one row a dependent, one column an independent speed.
     basis: DMatrix<f64>,
     /// M S̄, one row a speed of the tree.

@@ -1,0 +1,459 @@
+//! One step of an implicit method by collocation, in (ϕ, y).
+//!
+//! The increments Z of all stages over the state solve `Z = h A F(Z)`. Methods without step control are iterated until rounding stops them
+//! (E. Hairer, R. I. McLachlan and A. Razakarivony, *Achieving Brouwer's law with implicit Runge–Kutta methods*, 2008): by fixed points while
+//! these converge fast, and by Newton's method from then on. The first guess continues the polynomial of the step before.
+
+mod coefficients;
+mod modes;
+mod newton;
+
+pub(super) use coefficients::{Coefficients, GAUSS_2, GAUSS_3, MIDPOINT, RADAU_5};
+
+use super::StepFailure;
+use super::flow::{Flow, Rates};
+use super::standing::{Standing, add};
+use super::stepper::{Solves, Span, Stepper};
+use alloc::vec;
+use alloc::vec::Vec;
+use newton::Newton;
+use num_traits::Float;
+
+/// Iterations after which a step is given up. Fixed points that contract by 0.5 need 52 of them.
+const MOST_ITERATIONS: usize = 60;
+
+/// The contraction from which on Newton's method takes less work than fixed points, and J has become too old.
+const SLOW: f64 = 0.3;
+
+/// The same under step control, where few digits are asked for: RADAU5's.
+const SLOW_CONTROLLED: f64 = 1e-3;
+
+/// Changes below this that no longer shrink are rounding's: far above what any regular system makes of it, far below any error allowed.
+const STALLED: f64 = 1e-9;
+
+/// A collocation method at work.
+pub(super) struct Collocation {
+    method: &'static Coefficients,
+    /// What step control allows, in the sense of the estimate; `None` to iterate to rounding.
+    tolerance: Option<f64>,
+    freedoms: usize,
+    /// Z_i: ϕ, then y.
+    increments: Vec<Vec<f64>>,
+    /// Residuals, and the changes that come of them.
+    changes: Vec<Vec<f64>>,
+    stages: Vec<Rates>,
+    /// What one unit of each speed adds to y; empty before the first step.
+    units: Vec<f64>,
+    newton: Option<Newton>,
+    before: Before,
+    /// How the last iteration contracted.
+    contraction: f64,
+    estimate: Vec<f64>,
+    solves: Solves,
+}
+
+/// The increments of the step before.
+struct Before {
+    increments: Vec<Vec<f64>>,
+    /// Its length; 0 where there is none in the same charts.
+    step: f64,
+}
+
+impl Collocation {
+    pub(super) fn new(
+        method: &'static Coefficients,
+        tolerance: Option<f64>,
+        flow: &Flow<'_>,
+    ) -> Self {
+        let layout = flow.mechanism.layout();
+        let size = layout.freedoms + layout.speeds;
+        let increments = vec![vec![0.0; size]; method.nodes.len()];
+        let is_stiff = method.estimate.is_some();
+        Self {
+            tolerance: tolerance.map(of_estimate),
+            freedoms: layout.freedoms,
+            changes: increments.clone(),
+            stages: vec![flow.new_rates(); method.nodes.len()],
+            units: Vec::new(),
+            newton: is_stiff.then(|| Newton::new(method, flow)),
+            before: Before {
+                increments: increments.clone(),
+                step: 0.0,
+            },
+            contraction: 0.0,
+            estimate: vec![0.0; size],
+            increments,
+            solves: Solves::default(),
+            method,
+        }
+    }
+
+    /// Increments to begin with.
+    fn guess(&mut self, standing: &Standing, step: f64) {
+        let ratio = step / self.before.step;
+        for (increment, node) in self.increments.iter_mut().zip(self.method.nodes) {
+            if self.before.step > 0.0 {
+                continued(&self.before, self.method.nodes, node * ratio, increment);
+            } else {
+                let (phi, y) = increment.split_at_mut(self.freedoms);
+                // What is stiff does not go on as it begins.
+                let weight = if self.newton.is_some() {
+                    0.0
+                } else {
+                    step * node
+                };
+                for (part, rates) in [(phi, &standing.rates.phi), (y, &standing.rates.y)] {
+                    part.fill(0.0);
+                    add(part, weight, rates);
+                }
+            }
+        }
+    }
+
+    /// Iterates until the increments stand.
+    fn iterate(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        span: Span,
+    ) -> Result<(), StepFailure> {
+        if let Some(newton) = &mut self.newton {
+            newton.prepare(standing, flow, span, &mut self.solves)?;
+        }
+        self.guess(standing, span.step);
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_ITERATIONS {
+            self.solves.iterations += 1;
+            self.evaluate(standing, flow, span)?;
+            self.take_residuals(span.step);
+            if let Some(newton) = &mut self.newton {
+                newton.solve(&mut self.changes);
+            }
+            let size = self.largest_change(standing);
+            for (increment, change) in self.increments.iter_mut().zip(&self.changes) {
+                add(increment, 1.0, change);
+            }
+            // The first change says nothing yet of how fast the next will shrink.
+            let contraction = if last.is_finite() { size / last } else { 1.0 };
+            if self.stands(size, contraction) {
+                return Ok(());
+            }
+            self.contraction = contraction;
+            if size.is_nan() || (last.is_finite() && self.is_hopeless(contraction)) {
+                break;
+            }
+            last = size;
+        }
+        Err(self.no_convergence(flow))
+    }
+
+    /// Whether the change just made was the last one needed.
+    fn stands(&self, size: f64, contraction: f64) -> bool {
+        let left = size * contraction / (1.0 - contraction);
+        match self.tolerance {
+            _ if size == 0.0 => true,
+            Some(tolerance) => {
+                // RADAU5's: what is left over must not show in a result that is better than its estimate.
+                let allowed = tolerance * Float::sqrt(tolerance).min(0.03);
+                contraction < 1.0 && left <= allowed.max(10.0 * f64::EPSILON)
+            }
+            // The next change would be lost in rounding; or rounding has stopped them.
+            None => {
+                (contraction < 1.0 && left < 0.05 * f64::EPSILON)
+                    || (contraction >= 0.5 && size < STALLED && self.contraction < 0.5)
+            }
+        }
+    }
+
+    fn is_hopeless(&self, contraction: f64) -> bool {
+        match self.newton {
+            Some(_) => contraction >= 0.99,
+            // Newton's method does better.
+            None => contraction > SLOW && self.contraction > 0.0,
+        }
+    }
+
+    /// F at all stages.
+    fn evaluate(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        Span { time, step }: Span,
+    ) -> Result<(), StepFailure> {
+        let freedoms = self.freedoms;
+        let stages = self.stages.iter_mut().zip(&self.increments);
+        for ((rates, increment), node) in stages.zip(self.method.nodes) {
+            standing.move_by(flow, |_, phi, y| {
+                add(phi, 1.0, &increment[..freedoms]);
+                add(y, 1.0, &increment[freedoms..]);
+            })?;
+            standing.evaluate_there(flow, time + step * node, rates)?;
+        }
+        Ok(())
+    }
+
+    /// `h A F − Z`.
+    fn take_residuals(&mut self, step: f64) {
+        let rows = self.method.matrix.iter().zip(&self.increments);
+        for (change, (row, increment)) in self.changes.iter_mut().zip(rows) {
+            change.fill(0.0);
+            let (phi, y) = change.split_at_mut(self.freedoms);
+            for (weight, rates) in row.iter().zip(&self.stages) {
+                add(phi, step * weight, &rates.phi);
+                add(y, step * weight, &rates.y);
+            }
+            add(change, -1.0, increment);
+        }
+    }
+
+    /// The largest change, in radians and metres, and as a part of max(1, |v̄|).
+    fn largest_change(&self, standing: &Standing) -> f64 {
+        let mut largest = 0.0_f64;
+        for change in &self.changes {
+            let (phi, y) = change.split_at(self.freedoms);
+            let units = self.units.iter().zip(&standing.rates.speeds);
+            let rates = y
+                .iter()
+                .zip(units)
+                .map(|(y, (unit, speed))| y / (unit * speed.abs().max(1.0)));
+            for entry in phi.iter().copied().chain(rates) {
+                if entry.is_nan() {
+                    return f64::NAN;
+                }
+                largest = largest.max(entry.abs());
+            }
+        }
+        largest
+    }
+
+    /// Moves to the end of the step.
+    fn finish(
+        &self,
+        standing: &mut Standing,
+        flow: &Flow<'_>,
+        step: f64,
+    ) -> Result<(), StepFailure> {
+        let Coefficients {
+            weights,
+            rests,
+            ends,
+            ..
+        } = self.method;
+        let freedoms = self.freedoms;
+        standing.move_by(flow, |_, phi, y| {
+            if self.newton.is_some() {
+                // F of a stiff mechanism is its increments' rounding, many times over.
+                for (weight, increment) in ends.iter().zip(&self.increments) {
+                    add(phi, *weight, &increment[..freedoms]);
+                    add(y, *weight, &increment[freedoms..]);
+                }
+                return;
+            }
+            for ((weight, rest), rates) in weights.iter().zip(*rests).zip(&self.stages) {
+                for part in [rest, weight] {
+                    add(phi, step * part, &rates.phi);
+                    add(y, step * part, &rates.y);
+                }
+            }
+        })
+    }
+
+    /// The stage that moved most in the last iteration.
+    fn no_convergence(&self, flow: &Flow<'_>) -> StepFailure {
+        let largest = |range: core::ops::Range<usize>| {
+            let entries = self
+                .changes
+                .iter()
+                .flat_map(|change| &change[range.clone()]);
+            entries.fold(0.0_f64, |most, entry| most.max(entry.abs()))
+        };
+        let bodies = flow.mechanism.bodies().iter();
+        let sizes = bodies.map(|body| {
+            let speeds = &body.ranges().speeds;
+            let own = self.freedoms + speeds.start..self.freedoms + speeds.end;
+            largest(body.ranges().freedoms.clone()).max(largest(own))
+        });
+        let worst = sizes
+            .enumerate()
+            .fold((0, 0.0), |worst, (index, size)| match size > worst.1 {
+                true => (index, size),
+                false => worst,
+            });
+        StepFailure::NoConvergence {
+            joint: joint_name(flow, worst.0),
+            change: worst.1,
+            contraction: self.contraction,
+        }
+    }
+
+    fn slow(&self) -> f64 {
+        match self.tolerance {
+            Some(_) => SLOW_CONTROLLED,
+            None => SLOW,
+        }
+    }
+
+    /// `h f + Σ e_i Z_i`, filtered, into the errors of `standing`.
+    fn estimate(&mut self, standing: &mut Standing, step: f64, rates: &Rates, tolerance: f64) {
+        let (Some(newton), Some(weights)) = (&mut self.newton, self.method.estimate) else {
+            return;
+        };
+        let estimate = &mut self.estimate;
+        estimate.fill(0.0);
+        let (phi, y) = estimate.split_at_mut(self.freedoms);
+        add(phi, step, &rates.phi);
+        add(y, step, &rates.y);
+        for (weight, increment) in weights.iter().zip(&self.increments) {
+            add(estimate, *weight, increment);
+        }
+        newton.filter(estimate);
+        let (errors, _) = standing.errors();
+        let (phi, y) = estimate.split_at(self.freedoms);
+        for (errors, found) in [(&mut errors.phi, phi), (&mut errors.y, y)] {
+            errors.fill(0.0);
+            add(errors, 1.0 / tolerance, found);
+        }
+    }
+}
+
+impl Stepper for Collocation {
+    fn attempt(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        span: Span,
+    ) -> Result<(), StepFailure> {
+        if self.units.is_empty() {
+            self.units = flow.units(&standing.configuration)?;
+        }
+        self.contraction = 0.0;
+        loop {
+            let outcome = self.iterate(standing, flow, span);
+            let Err(cause) = outcome else {
+                return self.finish(standing, flow, span.step);
+            };
+            match &mut self.newton {
+                Some(newton) => {
+                    if !newton.doubt() {
+                        return Err(cause);
+                    }
+                }
+                None => self.newton = Some(Newton::new(self.method, flow)),
+            }
+            self.contraction = 0.0;
+            self.before.step = 0.0;
+        }
+    }
+
+    fn error(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        span: Span,
+        tolerance: f64,
+    ) -> Result<(f64, usize), StepFailure> {
+        let tolerance = of_estimate(tolerance);
+        let first = standing.rates.clone();
+        self.estimate(standing, span.step, &first, tolerance);
+        let found = self.judge(standing, flow)?;
+        if found.0 <= 1.0 {
+            return Ok(found);
+        }
+        // Where the first estimate is of what is stiff alone, the second is not.
+        let (mut phi, mut y) = (standing.offset.clone(), standing.y.clone());
+        add(&mut phi, 1.0, &self.estimate[..self.freedoms]);
+        add(&mut y, 1.0, &self.estimate[self.freedoms..]);
+        let mut rates = first;
+        flow.evaluate(span.time, &standing.base, &phi, &y, &mut rates)?;
+        self.estimate(standing, span.step, &rates, tolerance);
+        self.judge(standing, flow)
+    }
+
+    fn accept(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        time: f64,
+        span: Span,
+    ) -> Result<(), StepFailure> {
+        let slow = self.slow();
+        if let Some(newton) = &mut self.newton {
+            newton.move_on(self.contraction, slow);
+        }
+        let moves = standing.moves;
+        standing.accept(flow, time, None)?;
+        core::mem::swap(&mut self.increments, &mut self.before.increments);
+        self.before.step = if standing.moves == moves {
+            span.step
+        } else {
+            0.0
+        };
+        Ok(())
+    }
+
+    fn order(&self) -> u32 {
+        // The estimate of Radau IIA is of order 3.
+        if self.method.estimate.is_some() {
+            4
+        } else {
+            self.method.order
+        }
+    }
+
+    fn solves(&self) -> Solves {
+        self.solves
+    }
+}
+
+impl Collocation {
+    fn judge(
+        &self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+    ) -> Result<(f64, usize), StepFailure> {
+        let last = self.stages.last().map(|rates| &*rates.speeds);
+        standing.largest_error(flow, last)
+    }
+}
+
+/// What an estimate of order 3 may come to so that the error of a method of order 5 falls with the tolerance: RADAU5's rule.
+fn of_estimate(tolerance: f64) -> f64 {
+    0.1 * Float::powf(tolerance, 2.0 / 3.0)
+}
+
+/// Increments at `node` (in steps) beyond the end of the step before, by its polynomial through 0 and all stages.
+fn continued(before: &Before, nodes: &[f64], node: f64, increment: &mut [f64]) {
+    increment.fill(0.0);
+    for (i, values) in before.increments.iter().enumerate() {
+        let weight = lagrange(nodes, i, 1.0 + node) - lagrange(nodes, i, 1.0);
+        add(increment, weight, values);
+    }
+}
+
+/// The polynomial that is 1 at node i, and 0 at 0 and at the others.
+fn lagrange(nodes: &[f64], i: usize, at: f64) -> f64 {
+    let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
+    let factors = others.map(|(_, node)| (at - node) / (nodes[i] - node));
+    factors.product::<f64>() * at / nodes[i]
+}
+
+fn joint_name(flow: &Flow<'_>, body: usize) -> alloc::string::String {
+    let bodies = flow.mechanism.bodies();
+    bodies.get(body).map_or("", |body| body.joint_name()).into()
+}
+
+/// The matrix of the iteration is singular in a row.
+fn no_solution(flow: &Flow<'_>, row: usize) -> StepFailure {
+    let freedoms = flow.mechanism.layout().freedoms;
+    let owns = |body: &&crate::mechanism::Body| {
+        let ranges = body.ranges();
+        ranges.freedoms.contains(&row)
+            || row
+                .checked_sub(freedoms)
+                .is_some_and(|speed| ranges.speeds.contains(&speed))
+    };
+    let body = flow.mechanism.bodies().iter().find(owns);
+    StepFailure::SingularIteration {
+        joint: body.map_or("", |body| body.joint_name()).into(),
+    }
+}

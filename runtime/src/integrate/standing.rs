@@ -1,0 +1,239 @@
+//! Where a step begins, and where the step being tried ends: what all schemes share.
+
+use super::StepFailure;
+use super::flow::{Flow, Rates, retract};
+use super::residue::{Residue, add_exactly};
+use super::turns::{Turns, check_finite};
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// The ϕ from which on a joint gets a new base point. Each of them costs one rounding of Q, which a base at every step would
+/// cost at every step; from a half on, ϕ bends more than most steps do.
+const FAR: f64 = 0.5;
+
+/// The state at the last accepted step, and the end of the one being tried.
+pub(super) struct Standing {
+    /// Q at the state: `Φ(base, offset)`.
+    pub(super) configuration: Vec<f64>,
+    /// y at the state.
+    pub(super) y: Vec<f64>,
+    /// The points around which ϕ is measured.
+    pub(super) base: Vec<f64>,
+    /// ϕ at the state.
+    pub(super) offset: Vec<f64>,
+    /// Rates at the state, always.
+    pub(super) rates: Rates,
+    /// ϕ at the point that a step has come to: a stage, or its end.
+    pub(super) phi: Vec<f64>,
+    /// y there.
+    pub(super) next_y: Vec<f64>,
+    /// What ϕ and y are too coarse to hold.
+    residue: Residue,
+    next_residue: Residue,
+    /// Estimated errors of ϕ and y, and what that of y amounts to in v̄.
+    errors: Rates,
+    /// How far each joint turns from its base point.
+    turns: Turns,
+    /// How often base points have moved.
+    pub(super) moves: usize,
+}
+
+impl Standing {
+    pub(super) fn new(
+        flow: &mut Flow<'_>,
+        time: f64,
+        configuration: &[f64],
+        speeds: &[f64],
+    ) -> Result<Self, StepFailure> {
+        let mut speeds = speeds.to_vec();
+        flow.mechanism.set_driven_speeds(time, &mut speeds);
+        let y = flow.initial(configuration, &speeds)?;
+        let freedoms = flow.mechanism.layout().freedoms;
+        let mut standing = Self {
+            configuration: configuration.to_vec(),
+            base: configuration.to_vec(),
+            offset: vec![0.0; freedoms],
+            rates: flow.new_rates(),
+            phi: vec![0.0; freedoms],
+            next_y: y.clone(),
+            residue: Residue::new(&flow.mechanism),
+            next_residue: Residue::new(&flow.mechanism),
+            errors: flow.new_rates(),
+            turns: Turns::new(&flow.mechanism),
+            moves: 0,
+            y,
+        };
+        standing.evaluate(flow, time)?;
+        standing.turns.set(&flow.mechanism, configuration);
+        Ok(standing)
+    }
+
+    /// v̄ at the state.
+    pub(super) fn speeds(&self) -> &[f64] {
+        &self.rates.speeds
+    }
+
+    /// Rates at the state.
+    pub(super) fn evaluate(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
+        let rates = &mut self.rates;
+        flow.evaluate(time, &self.base, &self.offset, &self.y, rates)?;
+        check_finite(&flow.mechanism, &self.rates.phi, &self.rates.y)
+    }
+
+    /// Rates at the point that the step has come to.
+    pub(super) fn evaluate_there(
+        &self,
+        flow: &mut Flow<'_>,
+        time: f64,
+        rates: &mut Rates,
+    ) -> Result<(), StepFailure> {
+        flow.evaluate(time, &self.base, &self.phi, &self.next_y, rates)?;
+        check_finite(&flow.mechanism, &rates.phi, &rates.y)
+    }
+
+    /// Moves the point to the state and what `add` adds to it in ϕ and y, from what the last step left over on.
+    pub(super) fn move_by(
+        &mut self,
+        flow: &Flow<'_>,
+        add: impl FnOnce(&Rates, &mut [f64], &mut [f64]),
+    ) -> Result<(), StepFailure> {
+        let Residue { phi, y } = &mut self.next_residue;
+        phi.copy_from_slice(&self.residue.phi);
+        y.copy_from_slice(&self.residue.y);
+        add(&self.rates, phi, y);
+        add_all_exactly(&self.offset, &mut self.phi, phi);
+        add_all_exactly(&self.y, &mut self.next_y, y);
+        self.turns.check(&flow.mechanism, &self.phi, &self.next_y)
+    }
+
+    /// Room for an estimate of the errors of ϕ and y, and the rates at the state.
+    pub(super) fn errors(&mut self) -> (&mut Rates, &Rates) {
+        (&mut self.errors, &self.rates)
+    }
+
+    /// The largest of the estimated errors, as parts of ϕ and v̄ or of 1, and the joint that has it; `last` are speeds at or near the end of
+    /// the step, if the scheme has them.
+    ///
+    /// An error of p̄ counts as what it does to v̄: on a heavy body that carries a light one, the same p̄ is much more.
+    pub(super) fn largest_error(
+        &mut self,
+        flow: &mut Flow<'_>,
+        last: Option<&[f64]>,
+    ) -> Result<(f64, usize), StepFailure> {
+        let Self {
+            configuration,
+            phi,
+            rates,
+            errors,
+            ..
+        } = self;
+        let last = last.unwrap_or(&rates.speeds);
+        flow.speeds_of(configuration, &errors.y, &mut errors.speeds)?;
+        let part = |error: f64, size: f64| match error.abs() / size.max(1.0) {
+            part if part.is_nan() => f64::INFINITY,
+            part => part,
+        };
+        let mut worst = (0.0, 0);
+        for (index, body) in flow.mechanism.bodies().iter().enumerate() {
+            let (freedoms, speeds) = (body.ranges().freedoms.clone(), body.ranges().speeds.clone());
+            // No sum resolves a part of a step that is longer than 1 better than relative to it.
+            let local = freedoms.map(|i| part(errors.phi[i], phi[i].abs()));
+            let sizes = |i: usize| rates.speeds[i].abs().max(last[i].abs());
+            let rated = speeds.map(|i| part(errors.speeds[i], sizes(i)));
+            let error = local.chain(rated).fold(0.0, f64::max);
+            if error > worst.0 {
+                worst = (error, index);
+            }
+        }
+        Ok(worst)
+    }
+
+    /// Makes the point that the step has come to the state; joints whose ϕ has grown get a new base point. `last` are the rates there, if the
+    /// scheme has them already; it gets those at the state before.
+    pub(super) fn accept(
+        &mut self,
+        flow: &mut Flow<'_>,
+        time: f64,
+        last: Option<&mut Rates>,
+    ) -> Result<(), StepFailure> {
+        core::mem::swap(&mut self.residue, &mut self.next_residue);
+        core::mem::swap(&mut self.y, &mut self.next_y);
+        self.offset.copy_from_slice(&self.phi);
+        retract(
+            &flow.mechanism,
+            &self.base,
+            &self.offset,
+            &mut self.configuration,
+        );
+        self.recentre(flow)?;
+        let drives = flow.mechanism.drives();
+        for drive in drives {
+            let own = flow.mechanism.bodies()[drive.body].ranges().speeds.clone();
+            self.residue.y[own].fill(0.0);
+        }
+        // Prescribed speeds are what their laws say, not what steps have made of them.
+        flow.mechanism.set_driven_speeds(time, &mut self.y);
+        let Some(last) = last.filter(|_| drives.is_empty()) else {
+            return self.evaluate(flow, time);
+        };
+        // Only ϕ̇ belongs to the old base points.
+        core::mem::swap(&mut self.rates, last);
+        let rates = &mut self.rates;
+        flow.recentre(&self.configuration, &self.base, &self.offset, rates);
+        Ok(())
+    }
+
+    /// Moves the base point of every joint that is far from it to the state.
+    fn recentre(&mut self, flow: &mut Flow<'_>) -> Result<(), StepFailure> {
+        let mechanism = Arc::clone(&flow.mechanism);
+        let far = |phi: &[f64]| phi.iter().any(|entry| entry.abs() > FAR);
+        let mut moved = false;
+        for body in mechanism.bodies() {
+            let (freedoms, own) = (&body.ranges().freedoms, &body.ranges().configuration);
+            if !far(&self.offset[freedoms.clone()]) {
+                continue;
+            }
+            let (old, new) = (
+                &mut self.base[own.clone()],
+                &mut self.configuration[own.clone()],
+            );
+            let projected = body.joint().project(new);
+            projected.map_err(|cause| body.finite_map(cause))?;
+            let phi = &mut self.offset[freedoms.clone()];
+            self.residue.keep(body, old, new, phi);
+            old.copy_from_slice(new);
+            phi.fill(0.0);
+            moved = true;
+        }
+        if moved {
+            self.moves += 1;
+            self.turns.set(&mechanism, &self.base);
+        }
+        Ok(())
+    }
+
+    /// Largest rate at the state, as [`Standing::largest_error`] measures it, 1/s.
+    pub(super) fn pace(&mut self, flow: &mut Flow<'_>) -> Result<f64, StepFailure> {
+        let (rates, accelerations) = (&self.rates, &mut self.errors.speeds);
+        flow.speeds_of(&self.configuration, &rates.y, accelerations)?;
+        let local = rates.phi.iter().map(|rate| rate.abs());
+        let others = accelerations.iter().zip(&rates.speeds);
+        let others = others.map(|(rate, speed)| rate.abs() / speed.abs().max(1.0));
+        Ok(local.chain(others).fold(0.0, f64::max))
+    }
+}
+
+/// `start + change` into `sum`; what it lacks of the exact sums into `change`.
+fn add_all_exactly(start: &[f64], sum: &mut [f64], change: &mut [f64]) {
+    for ((&start, sum), change) in start.iter().zip(sum).zip(change) {
+        (*sum, *change) = add_exactly(start, *change);
+    }
+}
+
+/// Adds `weight · terms`.
+pub(super) fn add(sum: &mut [f64], weight: f64, terms: &[f64]) {
+    for (sum, term) in sum.iter_mut().zip(terms) {
+        *sum += weight * term;
+    }
+}
