@@ -4,6 +4,7 @@ use super::error::{body, values};
 use super::{Action, Element, ElementError, PointForce, Slope, Slopes, View};
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{apply, dot};
+use crate::spatial::split;
 use alloc::string::String;
 use nalgebra::{Matrix3, Vector3};
 
@@ -73,6 +74,11 @@ impl Element for BodySpring {
         0.5 * self.stiffness * stretch * stretch
     }
 
+    fn power(&self, view: &View<'_>) -> f64 {
+        let rate = self.line(view).2;
+        -self.damping * rate * rate
+    }
+
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
@@ -132,6 +138,20 @@ pub struct BodyWrench {
     pub axes: WrenchAxes,
 }
 
+impl BodyWrench {
+    /// Force and moment in world axes.
+    fn in_the_world(&self, view: &View<'_>) -> (Vector3<f64>, Vector3<f64>) {
+        if self.axes == WrenchAxes::World {
+            return (self.force, self.moment);
+        }
+        let rotation = view.pose(Some(self.body)).rotation;
+        (
+            apply(&rotation, &self.force),
+            apply(&rotation, &self.moment),
+        )
+    }
+}
+
 impl Element for BodyWrench {
     fn name(&self) -> &str {
         &self.name
@@ -145,16 +165,7 @@ impl Element for BodyWrench {
     }
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
-        let (force, moment) = match self.axes {
-            WrenchAxes::World => (self.force, self.moment),
-            WrenchAxes::Body => {
-                let rotation = view.pose(Some(self.body)).rotation;
-                (
-                    apply(&rotation, &self.force),
-                    apply(&rotation, &self.moment),
-                )
-            }
-        };
+        let (force, moment) = self.in_the_world(view);
         action.add_force(self.body, &view.arm(self.body, &self.point), &force);
         action.add_wrench(self.body, &moment, &Vector3::zeros());
     }
@@ -163,6 +174,14 @@ impl Element for BodyWrench {
     fn energy(&self, _view: &View<'_>) -> f64 {
         0.0
     }
+
+    fn power(&self, view: &View<'_>) -> f64 {
+        let (force, moment) = self.in_the_world(view);
+        let (_, velocity) = view.point(Some(self.body), &self.point);
+        let (turn, _) = split(view.motions.twist(self.body));
+        dot(&force, &velocity) + dot(&moment, &turn)
+    }
+
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }

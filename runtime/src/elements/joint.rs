@@ -43,6 +43,13 @@ impl Element for JointDamper {
         0.0
     }
 
+    fn power(&self, view: &View<'_>) -> f64 {
+        let mut velocity = [0.0; 6];
+        let velocity = view.joint_velocity(self.body, &mut velocity);
+        let losses = self.coefficients.iter().zip(velocity);
+        -losses.map(|(c, v)| c * v * v).sum::<f64>()
+    }
+
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
@@ -89,6 +96,12 @@ impl Element for JointEffort {
 
     fn energy(&self, _view: &View<'_>) -> f64 {
         0.0
+    }
+
+    fn power(&self, view: &View<'_>) -> f64 {
+        let mut velocity = [0.0; 6];
+        let velocity = view.joint_velocity(self.body, &mut velocity);
+        self.efforts.iter().zip(velocity).map(|(t, v)| t * v).sum()
     }
 
     fn slope(&self) -> Option<&dyn Slope> {

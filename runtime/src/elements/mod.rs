@@ -44,6 +44,11 @@ pub trait Element: Debug + Send + Sync {
 
     /// The energy that it stores, J; 0 for one that stores none.
     fn energy(&self, view: &View<'_>) -> f64;
+
+    /// The power that it feeds in, W: the rate at which the energy of the mechanism and of the element changes by what it exerts. 0 for
+    /// one that only stores, negative for one that dissipates.
+    fn power(&self, view: &View<'_>) -> f64;
+
     /// How what it exerts changes with the state, for derivatives of the dynamics; `None` where it does not say, and derivatives of a mechanism
     /// with it are refused.
     fn slope(&self) -> Option<&dyn Slope> {

@@ -121,6 +121,10 @@ impl Element for JointSpring {
         phi.iter().zip(&load).map(|(x, l)| 0.5 * x * l).sum()
     }
 
+    fn power(&self, _view: &View<'_>) -> f64 {
+        0.0
+    }
+
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
@@ -199,6 +203,10 @@ impl Element for RotationSpring {
         // (3 − tr R)/2 loses digits near rest; ¼ |R − I|² is the same and keeps them.
         let away = self.turn(view) - Matrix3::identity();
         0.25 * self.stiffness * away.norm_squared()
+    }
+
+    fn power(&self, _view: &View<'_>) -> f64 {
+        0.0
     }
 
     fn slope(&self) -> Option<&dyn Slope> {

@@ -97,6 +97,14 @@ pub enum IntegrateError {
         /// The scheme.
         scheme: &'static str,
     },
+    /// A scheme that the mechanism or the form is not made for.
+    #[error("the method `{scheme}` {reason}")]
+    Scheme {
+        /// The scheme.
+        scheme: &'static str,
+        /// What it takes, and what it was given.
+        reason: String,
+    },
     /// The end lies before the start.
     #[error("t_end is {} s: it lies before the initial time {} s", Seconds(*.end), Seconds(*.start))]
     TimeOrder {

@@ -141,18 +141,31 @@ impl<'a> Flow<'a> {
         self.evaluations += 1;
         retract(&self.mechanism, base, phi, &mut self.configuration);
         self.dynamic_rates(time, y, rates)?;
+        self.local_rates_of(base, phi, rates);
+        Ok(())
+    }
+
+    /// Q at which the equations were evaluated last.
+    pub(super) fn configuration(&self) -> &[f64] {
+        &self.configuration
+    }
+
+    /// H at `q` and y, the momenta, J.
+    pub(super) fn energy(&mut self, q: &[f64], y: &[f64]) -> Result<f64, DynamicsError> {
+        self.dynamics.hamiltonian(q, y)
+    }
+
+    /// ϕ̇ of the speeds in `rates`, at the Q at which the equations were evaluated last: `Φ(base, phi)`.
+    pub(super) fn local_rates_of(&mut self, base: &[f64], phi: &[f64], rates: &mut Rates) {
         for index in 0..self.mechanism.bodies().len() {
             self.local_rates(index, base, phi, rates);
         }
-        Ok(())
     }
 
     /// Rates at `q` that differ from `rates` in their base points alone: now `base`, with `q = Φ(base, phi)`.
     pub(super) fn recentre(&mut self, q: &[f64], base: &[f64], phi: &[f64], rates: &mut Rates) {
         self.configuration.copy_from_slice(q);
-        for index in 0..self.mechanism.bodies().len() {
-            self.local_rates(index, base, phi, rates);
-        }
+        self.local_rates_of(base, phi, rates);
     }
 
     /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::accelerations`] takes them.

@@ -10,6 +10,7 @@ mod clock;
 mod collocation;
 mod commutator_free;
 mod control;
+mod discrete_gradient;
 mod dop853;
 mod driver;
 mod error;
@@ -103,5 +104,6 @@ fn start<'a>(
     let mechanism = dynamics.mechanism();
     mechanism.check_configuration(&initial.configuration)?;
     mechanism.check_speeds("speeds", &initial.speeds)?;
+    options.check_scheme(mechanism)?;
     driver::Driver::new(dynamics, initial, options, period, inputs)
 }

@@ -2,6 +2,8 @@
 
 use super::IntegrateError;
 use super::tableau::{Estimate, Tableau};
+use crate::mechanism::Mechanism;
+use alloc::format;
 use alloc::vec::Vec;
 
 /// Which equations of motion are integrated.
@@ -36,11 +38,13 @@ pub enum Scheme {
     Gauss3,
     /// Radau IIA with three stages, of order 5: implicit, damps what is stiff.
     Radau5,
+    /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding.
+    DiscreteGradient,
 }
 
 impl Scheme {
     /// All that have a name of their own.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Rk4,
         Self::CommutatorFree4,
         Self::DormandPrince,
@@ -50,6 +54,7 @@ impl Scheme {
         Self::Gauss2,
         Self::Gauss3,
         Self::Radau5,
+        Self::DiscreteGradient,
     ];
 
     /// As scenes and the command line write it.
@@ -65,6 +70,7 @@ impl Scheme {
             Self::Gauss2 => "gauss2",
             Self::Gauss3 => "gauss3",
             Self::Radau5 => "radau5",
+            Self::DiscreteGradient => "discrete_gradient",
         }
     }
 
@@ -83,6 +89,9 @@ impl Scheme {
             Self::Gauss2 => "Gauss with 2 stages, order 4, symmetric, fixed step",
             Self::Gauss3 => "Gauss with 3 stages, order 6, symmetric, fixed step: for long runs",
             Self::Radau5 => "Radau IIA of order 5, implicit, step control: for stiff damped scenes",
+            Self::DiscreteGradient => {
+                "discrete gradient, order 2, fixed step, hamiltonian form alone: keeps the energy balance to rounding"
+            }
         }
     }
 
@@ -99,9 +108,12 @@ impl Scheme {
             Self::DormandPrince8 => Some(&Tableau::DORMAND_PRINCE_8),
             Self::Verner9 => Some(&Tableau::VERNER_9),
             Self::Explicit(tableau) => Some(tableau),
-            Self::CommutatorFree4 | Self::Midpoint | Self::Gauss2 | Self::Gauss3 | Self::Radau5 => {
-                None
-            }
+            Self::CommutatorFree4
+            | Self::Midpoint
+            | Self::Gauss2
+            | Self::Gauss3
+            | Self::Radau5
+            | Self::DiscreteGradient => None,
         }
     }
 
@@ -261,6 +273,34 @@ pub struct Options {
 }
 
 impl Options {
+    /// Whether the scheme can take the mechanism in this form.
+    pub(super) fn check_scheme(&self, mechanism: &Mechanism) -> Result<(), IntegrateError> {
+        let scheme = self.method.scheme();
+        if *scheme != Scheme::DiscreteGradient {
+            return Ok(());
+        }
+        let drive = mechanism.drives().first();
+        let constraint = mechanism.constraints().first();
+        let reason = match (self.form, drive, constraint) {
+            (Form::Lagrangian, ..) => {
+                "is one of the port-Hamiltonian form: choose that form".into()
+            }
+            (_, Some(drive), _) => format!(
+                "takes no prescribed motion, whose work it does not know: `{}` is one",
+                drive.name
+            ),
+            (.., Some(constraint)) => format!(
+                "takes no constraint that couples joints: `{}` is one",
+                constraint.name
+            ),
+            _ => return Ok(()),
+        };
+        Err(IntegrateError::Scheme {
+            scheme: scheme.name(),
+            reason,
+        })
+    }
+
     pub(super) fn check(&self, start: f64) -> Result<(), IntegrateError> {
         require("initial time", start, start.is_finite(), "finite")?;
         require("t_end", self.t_end, self.t_end.is_finite(), "finite")?;

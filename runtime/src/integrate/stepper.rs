@@ -70,6 +70,7 @@ pub(super) fn new(scheme: &Scheme, tolerance: Option<f64>, flow: &Flow<'_>) -> B
         Scheme::Gauss2 => Box::new(Collocation::new(&collocation::GAUSS_2, tolerance, flow)),
         Scheme::Gauss3 => Box::new(Collocation::new(&collocation::GAUSS_3, tolerance, flow)),
         Scheme::Radau5 => Box::new(Collocation::new(&collocation::RADAU_5, tolerance, flow)),
+        Scheme::DiscreteGradient => Box::new(Collocation::energy_keeping(flow)),
         _ => Box::new(CommutatorFree::new(flow)),
     }
 }

@@ -3,8 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod energy;
 mod motion;
 mod order;
 mod requests;
 mod singular;
+mod stiff;
 mod support;

@@ -3,7 +3,7 @@
 use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
 use super::link::Node;
-use crate::elements::{Action, MotionList, Motions, View};
+use crate::elements::{Action, Element, MotionList, Motions, View};
 use crate::mechanism::StateError;
 use crate::steps::Placement;
 use alloc::sync::Arc;
@@ -84,6 +84,21 @@ impl Recursive {
 
     /// Energy that the elements store at the placements of the nodes, J.
     pub(super) fn element_energy_here(&self, q: &[f64], speeds: &[f64]) -> f64 {
+        self.over_elements(q, speeds, |element, view| element.energy(view))
+    }
+
+    /// The power of all elements at the placements and twists of the nodes, W.
+    pub(crate) fn element_power_here(&self, q: &[f64], speeds: &[f64]) -> f64 {
+        self.over_elements(q, speeds, |element, view| element.power(view))
+    }
+
+    /// A sum over all elements.
+    fn over_elements(
+        &self,
+        q: &[f64],
+        speeds: &[f64],
+        quantity: impl Fn(&dyn Element, &View<'_>) -> f64,
+    ) -> f64 {
         let view = View {
             mechanism: &self.mechanism,
             configuration: q,
@@ -91,7 +106,7 @@ impl Recursive {
             motions: &Seen(&self.nodes),
         };
         let elements = self.mechanism.elements().iter();
-        elements.map(|element| element.energy(&view)).sum()
+        elements.map(|element| quantity(&**element, &view)).sum()
     }
 
     /// The external wrenches taken off what the bodies need.

@@ -84,6 +84,27 @@ impl Recursive {
         turn_back(&own.motion.placement.rotation, &own.wrench)
     }
 
+    /// The momentum of all that hangs on each joint, at its child frame and in child axes, at `q` and v̄ = `speeds`.
+    pub(crate) fn composite_momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        momenta: &mut [Vector6<f64>],
+    ) {
+        self.weigh(q);
+        self.set_twists(speeds);
+        self.set_momenta();
+        for index in (0..self.links.len()).rev() {
+            let own = &self.nodes[index];
+            let placement = &own.motion.placement;
+            momenta[index] = turn_back(&placement.rotation, &own.wrench);
+            if let Some(parent) = self.links[index].parent {
+                let shifted = shift_wrench(&own.wrench, &placement.offset);
+                self.nodes[parent].wrench += shifted;
+            }
+        }
+    }
+
     /// Kinetic and potential energy at the placements, twists and inertias of the workspace, J.
     pub(super) fn energy_here(&self, q: &[f64], speeds: &[f64]) -> f64 {
         let bodies: f64 = self

@@ -11,6 +11,7 @@ mod newton;
 pub(super) use coefficients::{Coefficients, GAUSS_2, GAUSS_3, MIDPOINT, RADAU_5};
 
 use super::StepFailure;
+use super::discrete_gradient::Correction;
 use super::flow::{Flow, Rates};
 use super::standing::{Standing, add};
 use super::stepper::{Solves, Span, Stepper};
@@ -50,6 +51,8 @@ pub(super) struct Collocation {
     contraction: f64,
     estimate: Vec<f64>,
     solves: Solves,
+    /// What makes the midpoint rule keep the energy.
+    correction: Option<Correction>,
 }
 
 /// The increments of the step before.
@@ -84,7 +87,16 @@ impl Collocation {
             estimate: vec![0.0; size],
             increments,
             solves: Solves::default(),
+            correction: None,
             method,
+        }
+    }
+
+    /// The midpoint rule with the correction that makes it a discrete-gradient method.
+    pub(super) fn energy_keeping(flow: &Flow<'_>) -> Self {
+        Self {
+            correction: Some(Correction::new(flow)),
+            ..Self::new(&MIDPOINT, None, flow)
         }
     }
 
@@ -120,6 +132,9 @@ impl Collocation {
         if let Some(newton) = &mut self.newton {
             newton.prepare(standing, flow, span, &mut self.solves)?;
         }
+        if let Some(correction) = &mut self.correction {
+            correction.begin(standing, flow)?;
+        }
         self.guess(standing, span.step);
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
@@ -135,11 +150,11 @@ impl Collocation {
             }
             // The first change says nothing yet of how fast the next will shrink.
             let contraction = if last.is_finite() { size / last } else { 1.0 };
-            if self.stands(size, contraction) {
+            let before = core::mem::replace(&mut self.contraction, contraction);
+            if self.stands(size, before) {
                 return Ok(());
             }
-            self.contraction = contraction;
-            if size.is_nan() || (last.is_finite() && self.is_hopeless(contraction)) {
+            if size.is_nan() || (last.is_finite() && self.is_hopeless(before)) {
                 break;
             }
             last = size;
@@ -148,7 +163,8 @@ impl Collocation {
     }
 
     /// Whether the change just made was the last one needed.
-    fn stands(&self, size: f64, contraction: f64) -> bool {
+    fn stands(&self, size: f64, before: f64) -> bool {
+        let contraction = self.contraction;
         let left = size * contraction / (1.0 - contraction);
         match self.tolerance {
             _ if size == 0.0 => true,
@@ -158,18 +174,23 @@ impl Collocation {
                 contraction < 1.0 && left <= allowed.max(10.0 * f64::EPSILON)
             }
             // The next change would be lost in rounding; or rounding has stopped them.
-            None => {
-                (contraction < 1.0 && left < 0.05 * f64::EPSILON)
-                    || (contraction >= 0.5 && size < STALLED && self.contraction < 0.5)
-            }
+            None if contraction < 0.5 => left < 0.05 * f64::EPSILON,
+            None => size < STALLED && before >= 0.5,
         }
     }
 
-    fn is_hopeless(&self, contraction: f64) -> bool {
+    fn is_hopeless(&self, before: f64) -> bool {
         match self.newton {
-            Some(_) => contraction >= 0.99,
+            // Step control had better try a shorter step; the correction for the energy may upset one iteration.
+            Some(_) => {
+                self.contraction.min(if self.tolerance.is_some() {
+                    1.0
+                } else {
+                    before
+                }) >= 0.99
+            }
             // Newton's method does better.
-            None => contraction > SLOW && self.contraction > 0.0,
+            None => self.contraction > SLOW && before > SLOW,
         }
     }
 
@@ -178,8 +199,9 @@ impl Collocation {
         &mut self,
         standing: &mut Standing,
         flow: &mut Flow<'_>,
-        Span { time, step }: Span,
+        span: Span,
     ) -> Result<(), StepFailure> {
+        let Span { time, step } = span;
         let freedoms = self.freedoms;
         let stages = self.stages.iter_mut().zip(&self.increments);
         for ((rates, increment), node) in stages.zip(self.method.nodes) {
@@ -188,6 +210,9 @@ impl Collocation {
                 add(y, 1.0, &increment[freedoms..]);
             })?;
             standing.evaluate_there(flow, time + step * node, rates)?;
+            if let Some(correction) = &mut self.correction {
+                correction.apply(standing, flow, span, increment, rates)?;
+            }
         }
         Ok(())
     }
@@ -326,22 +351,22 @@ impl Stepper for Collocation {
         if self.units.is_empty() {
             self.units = flow.units(&standing.configuration)?;
         }
-        self.contraction = 0.0;
         loop {
+            self.contraction = 0.0;
             let outcome = self.iterate(standing, flow, span);
             let Err(cause) = outcome else {
                 return self.finish(standing, flow, span.step);
             };
+            let extrapolates = core::mem::replace(&mut self.before.step, 0.0) > 0.0;
             match &mut self.newton {
+                // What oscillates fast does not go on as the polynomial does.
                 Some(newton) => {
-                    if !newton.doubt() {
+                    if !extrapolates && !newton.doubt() {
                         return Err(cause);
                     }
                 }
                 None => self.newton = Some(Newton::new(self.method, flow)),
             }
-            self.contraction = 0.0;
-            self.before.step = 0.0;
         }
     }
 
@@ -379,6 +404,9 @@ impl Stepper for Collocation {
         let slow = self.slow();
         if let Some(newton) = &mut self.newton {
             newton.move_on(self.contraction, slow);
+        }
+        if let Some(correction) = &mut self.correction {
+            correction.accept();
         }
         let moves = standing.moves;
         standing.accept(flow, time, None)?;

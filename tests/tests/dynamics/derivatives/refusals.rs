@@ -27,6 +27,10 @@ impl Element for Silent {
     fn energy(&self, _: &View<'_>) -> f64 {
         0.0
     }
+
+    fn power(&self, _: &View<'_>) -> f64 {
+        0.0
+    }
 }
 
 /// The message of the refusal; the mechanism itself moves.

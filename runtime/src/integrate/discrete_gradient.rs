@@ -1,0 +1,255 @@
+//! What turns the midpoint rule into a discrete-gradient method on the port-Hamiltonian form: one number a step.
+//!
+//! The midpoint rule takes `ϕ̇ = T v̄`, `p̄̇ = J̄22 v̄ − Tᵀ∂H/∂ϕ + τ̄` with `v̄ = ∂H/∂p̄` half-way. With `v̄ + λ M̄⁻¹Δp̄` for v̄ under T and J̄22, Δp̄ the change over the
+//! step, that is the discrete gradient of O. Gonzalez (*Time integration and discrete Hamiltonian systems*, 1996) with its correction
+//! along p̄, in the metric of the kinetic energy: the structure matrix stays skew, and λ is chosen such that the energy at the end is what it shall be. It is
+//! held against the energy at the beginning of all steps and the work done since, so that rounding does not add up.
+
+use super::StepFailure;
+use super::flow::{Flow, Rates, multiply, retract};
+use super::standing::{Standing, add};
+use super::stepper::Span;
+use crate::dynamics::Recursive;
+use crate::mechanism::Body;
+use crate::spatial::bracket_dual_product;
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::Vector6;
+
+/// The part of the energies that rounding makes of a mechanism of tens of joints. What is left of it adds up to no more, as the energy is
+/// always held against that of the beginning; to go after it would shake λ, by as much more as p̄ changes little.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The correction at work.
+pub(super) struct Correction {
+    dynamics: Recursive,
+    lambda: f64,
+    /// Whether λ has shaped the increments that come next.
+    is_in_force: bool,
+    /// Energy at the state as it shall be: what it was at first, and the work done since, J; NaN before the first step.
+    energy: f64,
+    /// Work of the step being tried, J.
+    work: f64,
+    /// Kinetic energy half-way, J.
+    kinetic: f64,
+    /// Δp̄, and M̄⁻¹ of it.
+    change: Vec<f64>,
+    faster: Vec<f64>,
+    /// Q half-way and at the end, ϕ and p̄ at the end.
+    middle: Vec<f64>,
+    end: Vec<f64>,
+    phi: Vec<f64>,
+    momenta: Vec<f64>,
+    efforts: Vec<f64>,
+    /// T M̄⁻¹Δp̄ and J̄22 M̄⁻¹Δp̄.
+    moved: Rates,
+    composites: Vec<Vector6<f64>>,
+    matrices: Matrices,
+}
+
+/// One joint's matrices.
+struct Matrices {
+    structure: Vec<f64>,
+    basis: Vec<f64>,
+    twists: Vec<f64>,
+    gradient: Vec<f64>,
+    inverse: Vec<f64>,
+}
+
+impl Correction {
+    pub(super) fn new(flow: &Flow<'_>) -> Self {
+        let mechanism = &flow.mechanism;
+        let layout = mechanism.layout();
+        let (freedoms, speeds) = (vec![0.0; layout.freedoms], vec![0.0; layout.speeds]);
+        let configuration = vec![0.0; layout.configuration];
+        Self {
+            dynamics: Recursive::new(Arc::clone(mechanism)),
+            lambda: 0.0,
+            is_in_force: false,
+            energy: f64::NAN,
+            work: 0.0,
+            kinetic: 0.0,
+            change: speeds.clone(),
+            faster: speeds.clone(),
+            middle: configuration.clone(),
+            end: configuration,
+            phi: freedoms.clone(),
+            momenta: speeds,
+            efforts: freedoms,
+            moved: flow.new_rates(),
+            composites: vec![Vector6::zeros(); mechanism.bodies().len()],
+            matrices: Matrices {
+                structure: vec![0.0; 36],
+                basis: vec![0.0; 36],
+                twists: vec![0.0; 36],
+                gradient: vec![0.0; 36],
+                inverse: vec![0.0; 36],
+            },
+        }
+    }
+
+    /// A step is about to be tried.
+    pub(super) fn begin(
+        &mut self,
+        standing: &Standing,
+        flow: &mut Flow<'_>,
+    ) -> Result<(), StepFailure> {
+        if self.energy.is_nan() {
+            self.energy = flow.energy(&standing.configuration, &standing.y)?;
+        }
+        self.is_in_force = false;
+        Ok(())
+    }
+
+    /// The step just tried is taken.
+    pub(super) const fn accept(&mut self) {
+        self.energy += self.work;
+    }
+
+    /// Corrects `rates` half-way, where `standing` has come to by `increment` (ϕ, then p̄).
+    pub(super) fn apply(
+        &mut self,
+        standing: &Standing,
+        flow: &mut Flow<'_>,
+        span: Span,
+        increment: &[f64],
+        rates: &mut Rates,
+    ) -> Result<(), StepFailure> {
+        let (turned, pushed) = increment.split_at(standing.offset.len());
+        self.middle.copy_from_slice(flow.configuration());
+        self.change.fill(0.0);
+        add(&mut self.change, 2.0, pushed);
+        flow.speeds_of(&self.middle, &self.change, &mut self.faster)?;
+        let power = self.power(flow, span.time + 0.5 * span.step, &rates.speeds);
+        self.work = span.step * power;
+        let twice = standing
+            .next_y
+            .iter()
+            .zip(&rates.speeds)
+            .map(|(p, v)| p * v);
+        self.kinetic = 0.5 * twice.sum::<f64>();
+        if self.is_in_force {
+            self.adjust(standing, flow, turned)?;
+        }
+        self.is_in_force = true;
+        self.move_by_structure(standing, flow);
+        add(&mut rates.phi, self.lambda, &self.moved.phi);
+        add(&mut rates.y, self.lambda, &self.moved.y);
+        Ok(())
+    }
+
+    /// λ by what the energy at the end lacks, as it now is.
+    fn adjust(
+        &mut self,
+        standing: &Standing,
+        flow: &mut Flow<'_>,
+        turned: &[f64],
+    ) -> Result<(), StepFailure> {
+        self.phi.copy_from_slice(&standing.offset);
+        add(&mut self.phi, 2.0, turned);
+        self.momenta.copy_from_slice(&standing.y);
+        add(&mut self.momenta, 1.0, &self.change);
+        retract(&flow.mechanism, &standing.base, &self.phi, &mut self.end);
+        let found = flow.energy(&self.end, &self.momenta)?;
+        let carried: f64 = self
+            .change
+            .iter()
+            .zip(&self.faster)
+            .map(|(p, v)| p * v)
+            .sum();
+        let error = found - (self.energy + self.work);
+        let rounding = ROUNDING * (found.abs() + self.kinetic);
+        if error.abs() > rounding && carried.abs() > rounding {
+            self.lambda += error / carried;
+        }
+        Ok(())
+    }
+
+    /// The power of inputs and elements half-way, W.
+    fn power(&mut self, flow: &mut Flow<'_>, time: f64, speeds: &[f64]) -> f64 {
+        flow.efforts(time, &self.middle, speeds, &mut self.efforts);
+        self.dynamics
+            .composite_momenta(&self.middle, speeds, &mut self.composites);
+        let elements = self.dynamics.element_power_here(&self.middle, speeds);
+        let bodies = flow.mechanism.bodies().iter();
+        let inputs = bodies.map(|body| {
+            self.matrices
+                .power(body, &self.middle, speeds, &self.efforts)
+        });
+        elements + inputs.sum::<f64>()
+    }
+
+    /// `(T, J̄22) M̄⁻¹Δp̄`.
+    fn move_by_structure(&mut self, standing: &Standing, flow: &mut Flow<'_>) {
+        self.moved.speeds.copy_from_slice(&self.faster);
+        flow.local_rates_of(&standing.base, &standing.phi, &mut self.moved);
+        for (index, body) in flow.mechanism.bodies().iter().enumerate() {
+            let own = body.ranges().speeds.clone();
+            let momenta = (&standing.next_y[own.clone()], &self.composites[index]);
+            let (faster, out) = (&self.faster[own.clone()], &mut self.moved.y[own]);
+            let structure = self.matrices.structure(body, &self.middle, momenta);
+            multiply(structure, faster, out);
+        }
+    }
+}
+
+impl Matrices {
+    /// J̄22 of one joint, S×S, of its own p̄ and the momentum of all that hangs on it, which a joint with constraints feels in full:
+    /// `X̄ᵀ ad*_{X̄} h + E T − TᵀEᵀ` with `E = ∂(X̄ᵀh)/∂ϕ` and `T = S₀⁻¹S̄`.
+    fn structure(
+        &mut self,
+        body: &Body,
+        q: &[f64],
+        (momenta, composite): (&[f64], &Vector6<f64>),
+    ) -> &[f64] {
+        let (joint, q) = (body.joint(), body.configuration(q));
+        let (freedoms, speeds) = (body.ranges().freedoms.len(), body.ranges().speeds.len());
+        let out = &mut self.structure[..speeds * speeds];
+        out.fill(0.0);
+        if joint.structures().speed_basis.is_identity() {
+            if !joint.structures().gamma.is_zero() {
+                joint.j22(q, momenta, out);
+            }
+            return out;
+        }
+        let basis = &mut self.basis[..freedoms * speeds];
+        let inverse = &mut self.inverse[..freedoms * freedoms];
+        let twists = &mut self.twists[..6 * freedoms];
+        let gradient = &mut self.gradient[..speeds * freedoms];
+        joint.speed_basis(q, basis);
+        joint.velocity_map_inverse(q, inverse);
+        joint.twist_map_child(q, twists);
+        joint.effort_gradient(q, composite, gradient);
+        let columns = || basis.chunks_exact(freedoms.max(1));
+        let twist = |own: &[f64]| {
+            let mut sum = [0.0; 6];
+            multiply(twists, own, &mut sum);
+            Vector6::from(sum)
+        };
+        for (b, own) in columns().enumerate() {
+            let (mut rate, mut moved) = ([0.0; 6], [0.0; 6]);
+            let (rate, moved) = (&mut rate[..freedoms], &mut moved[..speeds]);
+            multiply(inverse, own, rate);
+            multiply(gradient, rate, moved);
+            let turned = bracket_dual_product(&twist(own), composite);
+            for (a, other) in columns().enumerate() {
+                out[b * speeds + a] += moved[a] + twist(other).dot(&turned);
+                out[a * speeds + b] -= moved[a];
+            }
+        }
+        out
+    }
+
+    /// Power of the efforts at one joint, W.
+    fn power(&mut self, body: &Body, q: &[f64], speeds: &[f64], efforts: &[f64]) -> f64 {
+        let (joint, ranges) = (body.joint(), body.ranges());
+        let basis = &mut self.basis[..ranges.freedoms.len() * ranges.speeds.len()];
+        joint.speed_basis(body.configuration(q), basis);
+        let columns = basis.chunks_exact(ranges.freedoms.len().max(1));
+        let efforts = &efforts[ranges.freedoms.clone()];
+        let terms = columns.zip(&speeds[ranges.speeds.clone()]);
+        let effort = |column: &[f64]| column.iter().zip(efforts).map(|(b, t)| b * t).sum::<f64>();
+        terms.map(|(column, speed)| effort(column) * speed).sum()
+    }
+}

@@ -1,0 +1,140 @@
+//! Stiff springs and dampers: implicit methods take steps as long as the motion allows, whatever the stiffness.
+
+use crate::common::joints;
+use crate::support::{options, run};
+use hamel::elements::{Element, JointDamper, JointSpring};
+use hamel::integrate::{Form, Method, Scheme, Solution, State, Statistics};
+use hamel::mechanism::{BodySpec, Mechanism};
+use hamel::spatial::{MassProperties, Pose};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+/// A wheel of 1 kg m² on an axis through its centre, on a spring and a damper.
+fn wheel(stiffness: f64, damping: f64) -> Arc<Mechanism> {
+    let body = BodySpec {
+        name: "wheel".into(),
+        joint_name: "axis".into(),
+        parent: None,
+        joint: joints::revolute(),
+        placement: Pose::identity(),
+        child_placement: Pose::identity(),
+        mass: MassProperties {
+            mass: 1.0,
+            com: Vector3::zeros(),
+            inertia_com: Matrix3::identity(),
+        },
+    };
+    let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).expect("one body");
+    let elements: Vec<Arc<dyn Element>> = vec![
+        Arc::new(JointSpring {
+            name: "spring".into(),
+            body: 0,
+            stiffness: vec![stiffness],
+            rest: mechanism.home(),
+        }),
+        Arc::new(JointDamper {
+            name: "damper".into(),
+            body: 0,
+            coefficients: vec![damping],
+        }),
+    ];
+    Arc::new(mechanism.with_elements(elements).expect("they fit"))
+}
+
+/// From 0.5 rad, with a rate.
+fn turned(rate: f64, mechanism: &Mechanism) -> State {
+    let mut configuration = mechanism.home();
+    mechanism
+        .configuration_from_local(0, &[0.5])
+        .map(|own| configuration.copy_from_slice(&own))
+        .expect("an angle");
+    State {
+        time: 0.0,
+        configuration,
+        speeds: vec![rate],
+    }
+}
+
+/// The eigenvalues of the overdamped wheel, the slow one first.
+fn eigenvalues(stiffness: f64, damping: f64) -> (f64, f64) {
+    let fast = -0.5 * (damping + (damping * damping - 4.0 * stiffness).sqrt());
+    (stiffness / fast, fast)
+}
+
+/// Angle at `time` of the overdamped wheel that starts at 0.5 rad with `rate`.
+fn overdamped(stiffness: f64, damping: f64, rate: f64, time: f64) -> f64 {
+    let (slow, fast) = eigenvalues(stiffness, damping);
+    let share = (rate - slow * 0.5) / (fast - slow);
+    (0.5 - share) * (slow * time).exp() + share * (fast * time).exp()
+}
+
+fn angle(solution: &Solution) -> f64 {
+    let q = &solution.state.configuration;
+    match q.len() {
+        1 => q[0],
+        _ => q[1].atan2(q[0]),
+    }
+}
+
+/// Statistics of the overdamped wheel to 0.2 s by Radau IIA to 1e-8, and the error of its angle.
+fn overdamped_run(form: Form, stiffness: f64, starts_at_rest: bool) -> (Statistics, f64) {
+    let damping = stiffness / 10.0;
+    let mechanism = wheel(stiffness, damping);
+    let slow = 0.5 * eigenvalues(stiffness, damping).0;
+    let rate = if starts_at_rest { 0.0 } else { slow };
+    let options = options(form, Method::controlled(Scheme::Radau5, 1e-8), 0.2);
+    let solution = run(&mechanism, &turned(rate, &mechanism), &options);
+    let error = angle(&solution) - overdamped(stiffness, damping, rate, 0.2);
+    (solution.statistics, error.abs())
+}
+
+#[test]
+fn steps_do_not_depend_on_the_stiffness_of_what_is_damped() {
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        let runs = [4, 6, 8, 10, 12].map(|exponent| {
+            let (statistics, error) = overdamped_run(form, 10.0_f64.powi(exponent), false);
+            println!("{form:?}, 1e{exponent}: {error:e}, {statistics:?}");
+            // Some tens of steps of 1e-8, on a motion that forgets errors.
+            assert!(error < 1e-8, "1e{exponent}: {error:e}");
+            statistics.steps
+        });
+        let (least, most) = (runs.iter().min(), runs.iter().max());
+        assert!(most <= least.map(|least| least + 1).as_ref(), "{runs:?}");
+    }
+}
+
+/// The layer in which the speed comes from 0 to that of the slow motion is resolved: it is 1e8 times shorter, and ends in as many factors of step size.
+#[test]
+fn a_fast_layer_costs_few_steps() {
+    let (first, _) = overdamped_run(Form::Lagrangian, 1e4, true);
+    let (last, error) = overdamped_run(Form::Lagrangian, 1e12, true);
+    assert!(error < 1e-8, "{error:e}");
+    assert!(
+        last.steps < first.steps + 20,
+        "{last:?} instead of {first:?}"
+    );
+}
+
+/// A hundred steps, each of up to 1600 periods: nothing is resolved, and the energy stays what it was.
+#[test]
+fn symmetric_methods_keep_the_energy_of_what_they_do_not_resolve() {
+    for stiffness in [1e4, 1e8, 1e12] {
+        let mechanism = wheel(stiffness, 0.0);
+        let initial = turned(0.0, &mechanism);
+        for scheme in [Scheme::Midpoint, Scheme::Gauss2, Scheme::Gauss3] {
+            let options = options(Form::Lagrangian, Method::fixed(scheme, 1e-2), 1.0);
+            let solution = run(&mechanism, &initial, &options);
+            let energy = |state: &State| {
+                let placed = mechanism.kinematics(&state.configuration, &state.speeds);
+                placed.expect("sizes fit").energy()
+            };
+            let change = energy(&solution.state) / energy(&initial) - 1.0;
+            // A linear motion: a hundred steps, each solved to some tens of roundings.
+            assert!(
+                change.abs() < 1e-12,
+                "{stiffness:e}, {}: {change:e}",
+                scheme.name()
+            );
+        }
+    }
+}
