@@ -38,13 +38,15 @@ pub enum Scheme {
     Gauss3,
     /// Radau IIA with three stages, of order 5: implicit, damps what is stiff.
     Radau5,
+    /// An exponential Rosenbrock method of order 4(3): solves the linearised equations exactly, undamped stiff springs among them.
+    Exponential,
     /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding.
     DiscreteGradient,
 }
 
 impl Scheme {
     /// All that have a name of their own.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Rk4,
         Self::CommutatorFree4,
         Self::DormandPrince,
@@ -54,6 +56,7 @@ impl Scheme {
         Self::Gauss2,
         Self::Gauss3,
         Self::Radau5,
+        Self::Exponential,
         Self::DiscreteGradient,
     ];
 
@@ -70,6 +73,7 @@ impl Scheme {
             Self::Gauss2 => "gauss2",
             Self::Gauss3 => "gauss3",
             Self::Radau5 => "radau5",
+            Self::Exponential => "exponential",
             Self::DiscreteGradient => "discrete_gradient",
         }
     }
@@ -89,6 +93,9 @@ impl Scheme {
             Self::Gauss2 => "Gauss with 2 stages, order 4, symmetric, fixed step",
             Self::Gauss3 => "Gauss with 3 stages, order 6, symmetric, fixed step: for long runs",
             Self::Radau5 => "Radau IIA of order 5, implicit, step control: for stiff damped scenes",
+            Self::Exponential => {
+                "exponential Rosenbrock 4(3), step control: takes stiff springs exactly, undamped ones too"
+            }
             Self::DiscreteGradient => {
                 "discrete gradient, order 2, fixed step, hamiltonian form alone: keeps the energy balance to rounding"
             }
@@ -113,6 +120,7 @@ impl Scheme {
             | Self::Gauss2
             | Self::Gauss3
             | Self::Radau5
+            | Self::Exponential
             | Self::DiscreteGradient => None,
         }
     }
@@ -120,7 +128,7 @@ impl Scheme {
     /// Whether it estimates its own error, so that it can control its step.
     pub fn has_estimate(&self) -> bool {
         match self {
-            Self::Radau5 => true,
+            Self::Radau5 | Self::Exponential => true,
             _ => self
                 .tableau()
                 .is_some_and(|tableau| tableau.estimate != Estimate::None),

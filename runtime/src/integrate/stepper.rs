@@ -3,6 +3,7 @@
 use super::collocation::{self, Collocation};
 use super::commutator_free::CommutatorFree;
 use super::explicit::Explicit;
+use super::exponential::Exponential;
 use super::flow::Flow;
 use super::standing::Standing;
 use super::{Scheme, StepFailure};
@@ -70,6 +71,7 @@ pub(super) fn new(scheme: &Scheme, tolerance: Option<f64>, flow: &Flow<'_>) -> B
         Scheme::Gauss2 => Box::new(Collocation::new(&collocation::GAUSS_2, tolerance, flow)),
         Scheme::Gauss3 => Box::new(Collocation::new(&collocation::GAUSS_3, tolerance, flow)),
         Scheme::Radau5 => Box::new(Collocation::new(&collocation::RADAU_5, tolerance, flow)),
+        Scheme::Exponential => Box::new(Exponential::new(flow)),
         Scheme::DiscreteGradient => Box::new(Collocation::energy_keeping(flow)),
         _ => Box::new(CommutatorFree::new(flow)),
     }

@@ -33,6 +33,7 @@ fn methods_have_their_order_in_both_forms() {
         (4.0, 10.0, Scheme::Gauss2),
         (6.0, 4.0, Scheme::Gauss3),
         (5.0, 10.0, Scheme::Radau5),
+        (4.0, 10.0, Scheme::Exponential),
     ];
     for form in [Form::Lagrangian, Form::Hamiltonian] {
         let of_this_form =

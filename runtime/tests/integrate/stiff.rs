@@ -138,3 +138,27 @@ fn symmetric_methods_keep_the_energy_of_what_they_do_not_resolve() {
         }
     }
 }
+
+/// Steps of up to a thousand periods each.
+#[test]
+fn the_exponential_step_resolves_what_is_undamped() {
+    for (stiffness, steps) in [(1e4_f64, 10.0), (1e8, 10.0), (1e12, 1.0)] {
+        let frequency = stiffness.sqrt();
+        let mechanism = wheel(stiffness, 0.0);
+        let initial = turned(2.0, &mechanism);
+        for form in [Form::Lagrangian, Form::Hamiltonian] {
+            let options = options(form, Method::fixed(Scheme::Exponential, 0.1 / steps), 0.1);
+            let solution = run(&mechanism, &initial, &options);
+            let (sine, cosine) = (frequency * 0.1).sin_cos();
+            let expected = 0.5 * cosine + 2.0 / frequency * sine;
+            let error = (angle(&solution) - expected).abs();
+            println!(
+                "{form:?} {stiffness:e}: {error:e} {:?}",
+                solution.statistics
+            );
+            // Rounding of the phase, as of its frequency.
+            let floor = f64::EPSILON * frequency * 0.1;
+            assert!(error < 10.0 * floor.max(1e-15), "{stiffness:e}: {error:e}");
+        }
+    }
+}

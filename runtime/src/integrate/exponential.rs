@@ -1,0 +1,246 @@
+//! One step of an exponential Rosenbrock method of order 4(3): the equations linearised at the state are solved exactly, what is left is
+//! taken as in an explicit method.
+//!
+//! M. Hochbruck, A. Ostermann and J. Schweitzer, *Exponential Rosenbrock-type methods*, 2009: exprb43. A stiff spring at a joint is linear but for the
+//! bend of ϕ, so that its oscillation is followed through steps of many periods, damped or not. The matrices are dense: made for up to some
+//! tens of freedoms.
+
+use super::StepFailure;
+use super::flow::{Flow, Rates};
+use super::jacobian::Jacobian;
+use super::phi::Phi;
+use super::standing::{Standing, add};
+use super::stepper::{Solves, Span, Stepper};
+use alloc::vec;
+use alloc::vec::Vec;
+use num_traits::Float;
+
+/// The method at work. Vectors have ϕ first, then y.
+pub(super) struct Exponential {
+    freedoms: usize,
+    jacobian: Jacobian,
+    phi: Phi,
+    /// The matrix for which φ was evaluated last, by rows, and the step.
+    of: (Vec<f64>, f64),
+    /// Where the step just tried began; NaN at first. Another try from there keeps J.
+    at: f64,
+    /// f and its derivative in time at the state.
+    first: Vec<f64>,
+    drift: Vec<f64>,
+    increment: Vec<f64>,
+    /// What the equations are at both stages beyond those at the state, linearised: D₂, D₃.
+    remainders: [Vec<f64>; 2],
+    combined: Vec<f64>,
+    rates: Rates,
+    error: Vec<f64>,
+    solves: Solves,
+}
+
+impl Exponential {
+    pub(super) fn new(flow: &Flow<'_>) -> Self {
+        let jacobian = Jacobian::new(flow);
+        let size = jacobian.size();
+        let vector = vec![0.0; size];
+        Self {
+            freedoms: flow.mechanism.layout().freedoms,
+            phi: Phi::new(size),
+            of: (vec![f64::NAN; size * size], f64::NAN),
+            at: f64::NAN,
+            first: vector.clone(),
+            drift: vector.clone(),
+            increment: vector.clone(),
+            remainders: [vector.clone(), vector.clone()],
+            combined: vector.clone(),
+            rates: flow.new_rates(),
+            error: vector,
+            solves: Solves::default(),
+            jacobian,
+        }
+    }
+
+    /// f, its derivative in time, and φ of hJ.
+    fn linearize(
+        &mut self,
+        standing: &Standing,
+        flow: &mut Flow<'_>,
+        Span { time, step }: Span,
+    ) -> Result<(), StepFailure> {
+        if self.at != time {
+            store(&standing.rates, &mut self.first);
+            // Half the digits of a difference; the drift is that of inputs and prescribed motions alone.
+            let later = Float::sqrt(f64::EPSILON) * step;
+            flow.evaluate(
+                time + later,
+                &standing.base,
+                &standing.offset,
+                &standing.y,
+                &mut self.rates,
+            )?;
+            store(&self.rates, &mut self.drift);
+            for (drift, first) in self.drift.iter_mut().zip(&self.first) {
+                *drift = (*drift - first) / later;
+            }
+            self.jacobian.evaluate(standing, flow, time)?;
+            self.solves.jacobians += 1;
+            self.at = time;
+        }
+        let size = self.jacobian.size();
+        let entry = |i: usize, j: usize| self.jacobian.entry(i, j);
+        let (known, of_step) = &mut self.of;
+        let same = known
+            .iter()
+            .enumerate()
+            .all(|(n, known)| *known == entry(n / size, n % size));
+        if same && *of_step == step {
+            return Ok(());
+        }
+        for (n, known) in known.iter_mut().enumerate() {
+            *known = entry(n / size, n % size);
+        }
+        *of_step = step;
+        self.solves.factorizations += 1;
+        if !self.phi.evaluate(|i, j| step * entry(i, j)) {
+            *of_step = f64::NAN;
+            return Err(StepFailure::SingularIteration {
+                joint: flow.mechanism.bodies()[0].joint_name().into(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Moves to the increment.
+    fn move_on(&self, standing: &mut Standing, flow: &Flow<'_>) -> Result<(), StepFailure> {
+        let (turned, pushed) = self.increment.split_at(self.freedoms);
+        standing.move_by(flow, |_, phi, y| {
+            add(phi, 1.0, turned);
+            add(y, 1.0, pushed);
+        })
+    }
+
+    /// D of a stage at `time`, where `standing` has come to after `later` seconds: `f − f₀ − J Z − later · ∂f/∂t`.
+    fn remain(
+        &mut self,
+        stage: usize,
+        standing: &Standing,
+        flow: &mut Flow<'_>,
+        Span { time, step: later }: Span,
+    ) -> Result<(), StepFailure> {
+        standing.evaluate_there(flow, time + later, &mut self.rates)?;
+        let remainder = &mut self.remainders[stage];
+        store(&self.rates, remainder);
+        add(remainder, -1.0, &self.first);
+        add(remainder, -later, &self.drift);
+        for (i, remainder) in remainder.iter_mut().enumerate() {
+            let row = self.increment.iter().enumerate();
+            let linear: f64 = row.map(|(j, z)| self.jacobian.entry(i, j) * z).sum();
+            *remainder -= linear;
+        }
+        Ok(())
+    }
+}
+
+impl Stepper for Exponential {
+    fn attempt(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        span: Span,
+    ) -> Result<(), StepFailure> {
+        self.linearize(standing, flow, span)?;
+        let Span { time, step } = span;
+        let (phi, first, drift) = (&self.phi, &self.first, &self.drift);
+        self.increment.fill(0.0);
+        phi.add(true, 1, 0.5 * step, first, &mut self.increment);
+        phi.add(true, 2, 0.25 * step * step, drift, &mut self.increment);
+        self.move_on(standing, flow)?;
+        let half = Span {
+            time,
+            step: 0.5 * step,
+        };
+        self.remain(0, standing, flow, half)?;
+
+        let Self {
+            phi,
+            first,
+            drift,
+            increment,
+            remainders,
+            combined,
+            ..
+        } = self;
+        increment.fill(0.0);
+        combined.copy_from_slice(first);
+        add(combined, 1.0, &remainders[0]);
+        phi.add(false, 1, step, combined, increment);
+        phi.add(false, 2, step * step, drift, increment);
+        self.move_on(standing, flow)?;
+        self.remain(1, standing, flow, span)?;
+
+        let Self {
+            phi,
+            first,
+            drift,
+            increment,
+            remainders: [second, third],
+            combined,
+            error,
+            ..
+        } = self;
+        increment.fill(0.0);
+        phi.add(false, 1, step, first, increment);
+        phi.add(false, 2, step * step, drift, increment);
+        combined.fill(0.0);
+        add(combined, 16.0, second);
+        add(combined, -2.0, third);
+        phi.add(false, 3, step, combined, increment);
+        combined.fill(0.0);
+        add(combined, -48.0, second);
+        add(combined, 12.0, third);
+        error.fill(0.0);
+        phi.add(false, 4, step, combined, error);
+        add(increment, 1.0, error);
+        self.move_on(standing, flow)
+    }
+
+    fn error(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        _span: Span,
+        tolerance: f64,
+    ) -> Result<(f64, usize), StepFailure> {
+        let (errors, _) = standing.errors();
+        let (turned, pushed) = self.error.split_at(self.freedoms);
+        for (errors, found) in [(&mut errors.phi, turned), (&mut errors.y, pushed)] {
+            errors.fill(0.0);
+            add(errors, 1.0 / tolerance, found);
+        }
+        standing.largest_error(flow, Some(&self.rates.speeds))
+    }
+
+    fn accept(
+        &mut self,
+        standing: &mut Standing,
+        flow: &mut Flow<'_>,
+        time: f64,
+        _span: Span,
+    ) -> Result<(), StepFailure> {
+        self.at = f64::NAN;
+        standing.accept(flow, time, None)
+    }
+
+    fn order(&self) -> u32 {
+        4
+    }
+
+    fn solves(&self) -> Solves {
+        self.solves
+    }
+}
+
+/// ϕ̇ and ẏ, one after the other.
+fn store(rates: &Rates, into: &mut [f64]) {
+    let (phi, y) = into.split_at_mut(rates.phi.len());
+    phi.copy_from_slice(&rates.phi);
+    y.copy_from_slice(&rates.y);
+}
