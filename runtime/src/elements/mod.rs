@@ -21,6 +21,7 @@ pub use error::ElementError;
 pub use joint::{JointDamper, JointEffort};
 pub use kernels::ElementKernels;
 pub use slopes::{End, PointForce, Slope, Slopes};
+pub(crate) use slopes::{JointSlopes, Target};
 pub use spring::{JointSpring, RotationSpring};
 pub(crate) use view::MotionList;
 pub use view::{Action, Motions, View};

@@ -10,6 +10,8 @@ use crate::mechanism::Mechanism;
 use crate::spatial::fused::{add_cross, cross, dot};
 use crate::spatial::split;
 use crate::steps::Variation;
+use alloc::vec;
+use alloc::vec::Vec;
 use core::ops::Range;
 use nalgebra::{Matrix3, Vector3, Vector6};
 
@@ -26,10 +28,90 @@ pub struct Slopes<'a> {
     pub(crate) columns: &'a [Vector6<f64>],
     /// One a freedom.
     pub(crate) variations: &'a [Variation<f64>],
-    /// `∂(generalised force)/∂ϕ`: a row a speed, a column a freedom.
-    pub(crate) by_local: &'a mut Sensitivity,
-    /// `∂(generalised force)/∂v̄`.
-    pub(crate) by_speeds: &'a mut Sensitivity,
+    pub(crate) into: Target<'a>,
+}
+
+/// Where slopes go.
+#[derive(Debug)]
+pub(crate) enum Target<'a> {
+    /// All of them.
+    Whole {
+        /// `∂(generalised force)/∂ϕ`: a row a speed, a column a freedom.
+        by_local: &'a mut Sensitivity,
+        /// `∂(generalised force)/∂v̄`.
+        by_speeds: &'a mut Sensitivity,
+    },
+    /// Those of each joint's own forces by its own motion, and no others.
+    Joints(&'a mut JointSlopes),
+}
+
+/// How each joint's own generalised forces change with its own ϕ and v̄.
+#[derive(Clone, Debug)]
+pub(crate) struct JointSlopes {
+    joints: Vec<OwnSlopes>,
+    /// The joint of each freedom and of each speed.
+    of_freedom: Vec<usize>,
+    of_speed: Vec<usize>,
+}
+
+#[derive(Clone, Debug)]
+struct OwnSlopes {
+    freedoms: Range<usize>,
+    speeds: Range<usize>,
+    /// S×K and S×S, column by column.
+    by_local: Vec<f64>,
+    by_speeds: Vec<f64>,
+}
+
+impl JointSlopes {
+    pub(crate) fn new(mechanism: &Mechanism) -> Self {
+        let (mut of_freedom, mut of_speed) = (Vec::new(), Vec::new());
+        let bodies = mechanism.bodies().iter().enumerate();
+        let joints = bodies.map(|(index, body)| {
+            let (freedoms, speeds) = (&body.ranges().freedoms, &body.ranges().speeds);
+            of_freedom.resize(freedoms.end, index);
+            of_speed.resize(speeds.end, index);
+            OwnSlopes {
+                by_local: vec![0.0; speeds.len() * freedoms.len()],
+                by_speeds: vec![0.0; speeds.len() * speeds.len()],
+                freedoms: freedoms.clone(),
+                speeds: speeds.clone(),
+            }
+        });
+        Self {
+            joints: joints.collect(),
+            of_freedom,
+            of_speed,
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        for own in &mut self.joints {
+            own.by_local.fill(0.0);
+            own.by_speeds.fill(0.0);
+        }
+    }
+
+    /// `∂/∂ϕ` (S×K) and `∂/∂v̄` (S×S) of one joint's forces, column by column.
+    pub(crate) fn of(&self, joint: usize) -> (&[f64], &[f64]) {
+        let own = &self.joints[joint];
+        (&own.by_local, &own.by_speeds)
+    }
+
+    fn add(&mut self, row: usize, column: Column, entry: f64) {
+        let index = self.of_speed[row];
+        let own = &mut self.joints[index];
+        let (slopes, column) = match column {
+            Column::Local(freedom) if self.of_freedom[freedom] == index => {
+                (&mut own.by_local, freedom - own.freedoms.start)
+            }
+            Column::Speed(speed) if self.of_speed[speed] == index => {
+                (&mut own.by_speeds, speed - own.speeds.start)
+            }
+            _ => return,
+        };
+        slopes[column * own.speeds.len() + row - own.speeds.start] += entry;
+    }
 }
 
 /// A point of a body: which, and the way to it from the origin of the joint-child frame, world axes, as [`View::arm`] has it.
@@ -204,9 +286,15 @@ impl Slopes<'_> {
     }
 
     fn add(&mut self, row: usize, column: Column, entry: f64) {
-        match column {
-            Column::Local(freedom) => self.by_local.add(row, freedom, entry),
-            Column::Speed(speed) => self.by_speeds.add(row, speed, entry),
+        match &mut self.into {
+            Target::Joints(slopes) => slopes.add(row, column, entry),
+            Target::Whole {
+                by_local,
+                by_speeds,
+            } => match column {
+                Column::Local(freedom) => by_local.add(row, freedom, entry),
+                Column::Speed(speed) => by_speeds.add(row, speed, entry),
+            },
         }
     }
 }

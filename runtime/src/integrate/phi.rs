@@ -148,9 +148,9 @@ impl Phi {
         let Self { whole, work, .. } = self;
         for k in (1..COUNT).rev() {
             whole[0].mul_to(&whole[k], work);
-            for j in 1..=k {
+            for (j, lower) in whole.iter().enumerate().take(k + 1).skip(1) {
                 let weight = 1.0 / factorial(k - j);
-                work.zip_apply(&whole[j], |sum, x| *sum += weight * x);
+                work.zip_apply(lower, |sum, x| *sum += weight * x);
             }
             let scale = Float::powi(0.5, k as i32);
             whole[k].copy_from(work);

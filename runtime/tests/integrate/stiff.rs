@@ -1,7 +1,7 @@
 //! Stiff springs and dampers: implicit methods take steps as long as the motion allows, whatever the stiffness.
 
 use crate::common::joints;
-use crate::support::{options, run};
+use crate::support::{distance, options, run};
 use hamel::elements::{Element, JointDamper, JointSpring};
 use hamel::integrate::{Form, Method, Scheme, Solution, State, Statistics};
 use hamel::mechanism::{BodySpec, Mechanism};
@@ -161,4 +161,94 @@ fn the_exponential_step_resolves_what_is_undamped() {
             assert!(error < 10.0 * floor.max(1e-15), "{stiffness:e}: {error:e}");
         }
     }
+}
+
+/// A chain of bars on ball joints with springs and dampers, that starts level in gravity.
+fn chain(length: usize, stiffness: f64, damping: f64) -> Arc<Mechanism> {
+    let bars = (0..length).map(|index| BodySpec {
+        name: format!("bar {index}"),
+        joint_name: format!("joint {index}"),
+        parent: index.checked_sub(1),
+        joint: joints::ball(),
+        placement: Pose {
+            rotation: Matrix3::identity(),
+            translation: Vector3::new(if index == 0 { 0.0 } else { 0.1 }, 0.0, 0.0),
+        },
+        child_placement: Pose::identity(),
+        mass: MassProperties {
+            mass: 0.1,
+            com: Vector3::new(0.05, 0.0, 0.0),
+            inertia_com: Matrix3::from_diagonal(&Vector3::new(2e-5, 1e-4, 1e-4)),
+        },
+    });
+    let gravity = Vector3::new(0.0, 0.3, -9.81);
+    let mechanism = Mechanism::new(gravity, bars.collect()).expect("a chain");
+    let elements = (0..length).flat_map(|body| -> [Arc<dyn Element>; 2] {
+        let matrix = Matrix3::from_diagonal_element(stiffness);
+        [
+            Arc::new(JointSpring {
+                name: format!("spring {body}"),
+                body,
+                stiffness: matrix.as_slice().to_vec(),
+                rest: mechanism.bodies()[body].home(),
+            }),
+            Arc::new(JointDamper {
+                name: format!("damper {body}"),
+                body,
+                coefficients: vec![damping; 3],
+            }),
+        ]
+    });
+    let elements = elements.collect();
+    Arc::new(mechanism.with_elements(elements).expect("they fit"))
+}
+
+fn at_rest(mechanism: &Mechanism) -> State {
+    State {
+        time: 0.0,
+        configuration: mechanism.home(),
+        speeds: vec![0.0; mechanism.layout().speeds],
+    }
+}
+
+/// Both ways to solve for the stages, dense in the port-Hamiltonian and by the tree in the Lagrangian form, find the motion that an explicit method
+/// follows in many more steps.
+#[test]
+fn stiff_chains_move_as_they_do_in_small_steps() {
+    let mechanism = chain(6, 1e3, 1.0);
+    let initial = at_rest(&mechanism);
+    let solve = |form, method| run(&mechanism, &initial, &options(form, method, 0.02));
+    let expected = solve(
+        Form::Lagrangian,
+        Method::controlled(Scheme::DormandPrince8, 1e-10),
+    );
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        let found = solve(form, Method::controlled(Scheme::Radau5, 1e-7));
+        let error = distance(&found.state, &expected.state);
+        println!(
+            "{form:?}: {error:e}, {:?} for {:?}",
+            found.statistics, expected.statistics
+        );
+        // Some tens of steps of 1e-7 on a damped motion, with speeds of up to a few rad/s.
+        assert!(error < 1e-5, "{form:?}: {error:e}");
+        assert!(found.statistics.steps * 4 < expected.statistics.steps);
+    }
+}
+
+/// Symmetric methods on a chain of 24 speeds whose springs have no damping: steps of many periods, solved by the tree.
+#[test]
+fn undamped_chains_stay_as_they_are() {
+    let mechanism = chain(8, 1e5, 0.0);
+    let initial = at_rest(&mechanism);
+    let energy = |state: &State| {
+        let placed = mechanism.kinematics(&state.configuration, &state.speeds);
+        placed.expect("sizes fit").energy()
+    };
+    let options = options(Form::Lagrangian, Method::fixed(Scheme::Midpoint, 2e-3), 0.1);
+    let solution = run(&mechanism, &initial, &options);
+    // The chain sags by micrometres: a few joules of weight times that, and no more.
+    let change = (energy(&solution.state) - energy(&initial)).abs();
+    println!("{change:e} J, {:?}", solution.statistics);
+    assert!(change < 1e-6, "{change:e} J");
+    assert!(solution.statistics.evaluations < 10 * solution.statistics.steps);
 }

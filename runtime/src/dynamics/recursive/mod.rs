@@ -18,6 +18,7 @@ mod hamiltonian;
 mod inverse;
 mod jacobian;
 mod link;
+mod loaded;
 mod mass;
 mod operational;
 mod readings;
@@ -28,6 +29,7 @@ pub use derivatives::{
     ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Sensitivity,
 };
 pub use frames::FrameReadings;
+pub(crate) use loaded::LoadedMass;
 pub use mass::MassMatrix;
 pub use readings::{Frame, Readings};
 

@@ -5,8 +5,10 @@
 //! these converge fast, and by Newton's method from then on. The first guess continues the polynomial of the step before.
 
 mod coefficients;
+mod dense;
 mod modes;
 mod newton;
+mod tree;
 
 pub(super) use coefficients::{Coefficients, GAUSS_2, GAUSS_3, MIDPOINT, RADAU_5};
 
@@ -361,7 +363,7 @@ impl Stepper for Collocation {
             match &mut self.newton {
                 // What oscillates fast does not go on as the polynomial does.
                 Some(newton) => {
-                    if !extrapolates && !newton.doubt() {
+                    if !extrapolates && !newton.doubt(flow, self.tolerance.is_some()) {
                         return Err(cause);
                     }
                 }

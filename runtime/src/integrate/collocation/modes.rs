@@ -23,6 +23,14 @@ pub(super) struct Line<T> {
     pub(super) column: Vec<T>,
 }
 
+/// The real eigenvalue of `A⁻¹`, for a matrix that has one.
+pub(super) fn real(matrix: &[&[f64]]) -> Option<f64> {
+    modes(matrix).iter().find_map(|mode| match mode {
+        Mode::Real(line) => Some(line.value),
+        Mode::Pair(_) => None,
+    })
+}
+
 /// The blocks of `A⁻¹`, the real ones first.
 pub(super) fn modes(matrix: &[&[f64]]) -> Vec<Mode> {
     let size = matrix.len();

@@ -1,96 +1,64 @@
 //! Newton's iteration for the stages of a collocation method, with one matrix for a whole step or many.
 //!
-//! The increments Z solve `Z = h A F(Z)`. From a residual `R = h A F(Z) − Z` comes the change `(1 − h A⊗J)⁻¹ R`, in the blocks of
-//! [`modes`]: `ΔZ = T (Λ − hJ)⁻¹ Λ T⁻¹ R`.
+//! The increments Z solve `Z = h A F(Z)`. From a residual `R = h A F(Z) − Z` comes a change that nears `(1 − h A⊗J)⁻¹ R`: by the tree where the
+//! mechanism is large, else, and where that does not converge, by dense blocks.
 
 use super::coefficients::Coefficients;
-use super::modes::{Line, Mode, modes};
-use crate::integrate::StepFailure;
+use super::dense::Dense;
+use super::tree::Tree;
 use crate::integrate::flow::Flow;
-use crate::integrate::jacobian::Jacobian;
 use crate::integrate::standing::Standing;
 use crate::integrate::stepper::{Solves, Span};
-use crate::lu::Lu;
-use alloc::vec;
+use crate::integrate::{Form, StepFailure};
+use alloc::boxed::Box;
 use alloc::vec::Vec;
-use nalgebra::{Complex, ComplexField};
 
-/// J and the factors made of it.
+/// The number of speeds from which on the tree takes less work than dense blocks, although it takes more iterations.
+const LARGE: usize = 16;
+
+/// The same in the port-Hamiltonian form, where the tree leaves out how v̄ changes with Q at the same p̄, and takes many more.
+const LARGE_HAMILTONIAN: usize = 96;
+
+/// The number of times that a step is shortened on end before the tree is given up: by a factor of 4 each.
+const PATIENCE: usize = 6;
+
+/// The linear equations of the iteration.
 pub(super) struct Newton {
-    jacobian: Jacobian,
-    blocks: Vec<Block>,
+    system: System,
+    method: &'static Coefficients,
     /// The step that the factors are for; NaN where there are none.
     step: f64,
-    /// Whether J is to be evaluated before the next iteration.
+    /// Whether the matrices are to be evaluated before the next iteration.
     stale: bool,
-    /// Whether J belongs to the state at which the step begins.
-    pub(super) is_fresh: bool,
+    /// Whether they belong to the state at which the step begins.
+    is_fresh: bool,
+    /// How many steps on end the tree has been refused.
+    refusals: usize,
 }
 
-enum Block {
-    Real(Factors<f64>),
-    Pair(Factors<Complex<f64>>),
-}
-
-/// One block at work.
-struct Factors<T> {
-    line: Line<T>,
-    factors: Lu<T>,
-    vector: Vec<T>,
-}
-
-impl<T: ComplexField<RealField = f64> + Copy> Factors<T> {
-    fn new(line: Line<T>, size: usize) -> Self {
-        Self {
-            line,
-            factors: Lu::new(size),
-            vector: vec![T::zero(); size],
-        }
-    }
-
-    /// Factorises `λ − hJ`; the row that depends on others where it is singular.
-    fn factorize(&mut self, jacobian: &Jacobian, step: f64) -> Result<(), usize> {
-        let value = self.line.value;
-        let entry = |i: usize, j: usize| {
-            let entry = T::from_real(-step * jacobian.entry(i, j));
-            if i == j { entry + value } else { entry }
-        };
-        self.factors.factorize(entry, 0.0).map_err(|(row, _)| row)
-    }
-
-    /// `(λ − hJ)⁻¹ λ` times this mode's part of `residuals`.
-    fn solve(&mut self, residuals: &[Vec<f64>]) {
-        for (k, sum) in self.vector.iter_mut().enumerate() {
-            let terms = self.line.row.iter().zip(residuals);
-            *sum = terms.fold(T::zero(), |sum, (row, residual)| {
-                sum + *row * T::from_real(residual[k])
-            }) * self.line.value;
-        }
-        self.factors.solve(&mut self.vector);
-    }
-
-    /// Adds `weight` times what the solution is of stage i.
-    fn add(&self, i: usize, weight: f64, change: &mut [f64]) {
-        for (change, entry) in change.iter_mut().zip(&self.vector) {
-            *change += weight * (self.line.column[i] * *entry).real();
-        }
-    }
+enum System {
+    Tree(Box<Tree>),
+    Dense(Box<Dense>),
 }
 
 impl Newton {
-    pub(super) fn new(method: &Coefficients, flow: &Flow<'_>) -> Self {
-        let jacobian = Jacobian::new(flow);
-        let size = jacobian.size();
-        let block = |mode| match mode {
-            Mode::Real(line) => Block::Real(Factors::new(line, size)),
-            Mode::Pair(line) => Block::Pair(Factors::new(line, size)),
+    pub(super) fn new(method: &'static Coefficients, flow: &Flow<'_>) -> Self {
+        let mechanism = &flow.mechanism;
+        let large = match flow.form {
+            Form::Lagrangian => LARGE,
+            Form::Hamiltonian => LARGE_HAMILTONIAN,
         };
+        let by_tree = mechanism.layout().speeds >= large && mechanism.constraints().is_empty();
         Self {
-            blocks: modes(method.matrix).into_iter().map(block).collect(),
-            jacobian,
+            system: match by_tree {
+                true => System::Tree(Box::new(Tree::new(method, flow))),
+                false => System::Dense(Box::new(Dense::new(method, flow))),
+            },
+            method,
             step: f64::NAN,
             stale: true,
             is_fresh: false,
+            refusals: 0,
         }
     }
 
@@ -99,73 +67,71 @@ impl Newton {
         &mut self,
         standing: &Standing,
         flow: &mut Flow<'_>,
-        span: Span,
+        Span { time, step }: Span,
         solves: &mut Solves,
     ) -> Result<(), StepFailure> {
         if self.stale {
-            self.jacobian.evaluate(standing, flow, span.time)?;
+            match &mut self.system {
+                System::Tree(tree) => tree.evaluate(standing),
+                System::Dense(dense) => dense.evaluate(standing, flow, time)?,
+            }
             solves.jacobians += 1;
             (self.stale, self.is_fresh, self.step) = (false, true, f64::NAN);
         }
-        if self.step == span.step {
+        if self.step == step {
             return Ok(());
         }
         self.step = f64::NAN;
-        for block in &mut self.blocks {
-            let outcome = match block {
-                Block::Real(factors) => factors.factorize(&self.jacobian, span.step),
-                Block::Pair(factors) => factors.factorize(&self.jacobian, span.step),
-            };
-            outcome.map_err(|row| super::no_solution(flow, row))?;
-            solves.factorizations += 1;
-        }
-        self.step = span.step;
+        solves.factorizations += match &mut self.system {
+            System::Tree(tree) => tree.factorize(step)?,
+            System::Dense(dense) => dense.factorize(flow, step)?,
+        };
+        self.step = step;
         Ok(())
     }
 
-    /// Asks for a new J, and for one of differences where the last was new already; whether that leaves anything to try.
-    pub(super) fn doubt(&mut self) -> bool {
-        if self.is_fresh && self.jacobian.is_differenced() {
-            return false;
-        }
+    /// Asks for new matrices, and for better ones where the last were new already; whether that leaves anything to try. Where the step can be
+    /// shortened, that is tried before the tree is given up.
+    pub(super) fn doubt(&mut self, flow: &Flow<'_>, can_shorten: bool) -> bool {
         if self.is_fresh {
-            self.jacobian.difference();
+            match &mut self.system {
+                System::Tree(_) if can_shorten && self.refusals < PATIENCE => {
+                    self.refusals += 1;
+                    return false;
+                }
+                System::Tree(_) => {
+                    self.system = System::Dense(Box::new(Dense::new(self.method, flow)));
+                }
+                System::Dense(dense) if dense.is_differenced() => return false,
+                System::Dense(dense) => dense.difference(),
+            }
         }
         self.stale = true;
         true
     }
 
-    /// The state has moved on; whether J still serves is known by how fast it made the last iteration converge.
-    pub(super) const fn move_on(&mut self, contraction: f64, slow: f64) {
+    /// The state has moved on; whether the matrices still serve is known by how fast they made the last iteration converge.
+    pub(super) fn move_on(&mut self, contraction: f64, slow: f64) {
         self.is_fresh = false;
-        if contraction > slow {
+        self.refusals = 0;
+        if contraction > slow || matches!(self.system, System::Tree(_)) {
             self.stale = true;
         }
     }
 
     /// Residuals of all stages into the changes that they call for.
     pub(super) fn solve(&mut self, residuals: &mut [Vec<f64>]) {
-        for block in &mut self.blocks {
-            match block {
-                Block::Real(factors) => factors.solve(residuals),
-                Block::Pair(factors) => factors.solve(residuals),
-            }
-        }
-        for (i, change) in residuals.iter_mut().enumerate() {
-            change.fill(0.0);
-            for block in &self.blocks {
-                match block {
-                    Block::Real(factors) => factors.add(i, 1.0, change),
-                    Block::Pair(factors) => factors.add(i, 2.0, change),
-                }
-            }
+        match &mut self.system {
+            System::Tree(tree) => tree.solve(residuals, self.step),
+            System::Dense(dense) => dense.solve(residuals),
         }
     }
 
-    /// `(γ − hJ)⁻¹ x` in place, γ the real eigenvalue.
+    /// `(γ − hJ)⁻¹ x` in place, γ the real eigenvalue of A⁻¹.
     pub(super) fn filter(&mut self, x: &mut [f64]) {
-        if let Some(Block::Real(factors)) = self.blocks.first_mut() {
-            factors.factors.solve(x);
+        match &mut self.system {
+            System::Tree(tree) => tree.filter(x),
+            System::Dense(dense) => dense.filter(x),
         }
     }
 }

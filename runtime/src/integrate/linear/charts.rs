@@ -66,6 +66,12 @@ impl Charts {
         }
     }
 
+    /// D (K×K) and `∂ϕ̇/∂v̄` (K×S) of one joint, column by column.
+    pub(in crate::integrate) fn of(&self, joint: usize) -> (&[f64], &[f64]) {
+        let own = &self.0[joint];
+        (&own.moved, &own.rate_by_speeds)
+    }
+
     /// ϕ̇ at v̄, one a freedom.
     pub(super) fn rates(&self, speeds: &[f64], rates: &mut [f64]) {
         for own in &self.0 {

@@ -9,7 +9,7 @@ use super::sweep::Push;
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::elements::Seen;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
-use crate::elements::{Slopes, View};
+use crate::elements::{Slopes, Target, View};
 use crate::mechanism::Mechanism;
 use crate::steps::Variation;
 use alloc::sync::Arc;
@@ -85,6 +85,21 @@ impl Recursive {
     }
 
     fn add_element_slopes(&self, q: &[f64], speeds: &[f64], out: &mut Acting) {
+        let into = Target::Whole {
+            by_local: &mut out.by_local,
+            by_speeds: &mut out.by_speeds,
+        };
+        self.add_slopes(q, speeds, &out.variations, into);
+    }
+
+    /// The slopes of elements at the placements and twists of the nodes.
+    pub(in crate::dynamics::recursive) fn add_slopes(
+        &self,
+        q: &[f64],
+        speeds: &[f64],
+        variations: &[Variation<f64>],
+        into: Target<'_>,
+    ) {
         let mechanism = Arc::clone(&self.mechanism);
         let view = View {
             mechanism: &mechanism,
@@ -94,9 +109,8 @@ impl Recursive {
         };
         let mut slopes = Slopes {
             columns: &self.columns,
-            variations: &out.variations,
-            by_local: &mut out.by_local,
-            by_speeds: &mut out.by_speeds,
+            variations,
+            into,
         };
         for slope in mechanism.elements().iter().filter_map(|e| e.slope()) {
             slope.add_slopes(&view, &mut slopes);

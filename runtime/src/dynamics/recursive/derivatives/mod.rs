@@ -189,7 +189,7 @@ impl Recursive {
     }
 
     /// The variations of the joint under body `index` at (q, v̄, v̄̇), one a freedom, after [`Recursive::advance`].
-    pub(super) fn vary(
+    pub(in crate::dynamics::recursive) fn vary(
         &self,
         index: usize,
         state: (&[f64], &[f64], &[f64]),
