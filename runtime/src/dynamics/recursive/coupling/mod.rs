@@ -9,6 +9,7 @@ mod lagrangian;
 
 use super::Recursive;
 use crate::dynamics::DynamicsError;
+use crate::dynamics::error::Space;
 use crate::lu::Lu;
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{apply, cross};
@@ -249,7 +250,9 @@ impl Recursive {
         }
         if let Err((row, pivot, limit)) = cholesky(mass) {
             let speed = coupling.independent[row];
-            return Err(self.mechanism.singular_speed(speed, pivot, limit));
+            return Err(self
+                .mechanism
+                .singular_mass(Space::Speeds, speed, pivot, limit));
         }
         let mut side = nalgebra::DVectorViewMut::from_slice(x, mass.nrows());
         // The pivots are above zero.
