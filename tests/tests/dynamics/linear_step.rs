@@ -2,12 +2,12 @@
 
 use crate::derivatives::Equipment;
 use hamel::dynamics::{Dynamics, Recursive};
-use hamel::elements::{Drive, Law};
+use hamel::elements::{Drive, Law, PointConstraint};
 use hamel::integrate::{
     Control, Form, LinearStep, Method, Options, Scheme, State, StepFailure, integrate, no_observer,
 };
 use hamel::mechanism::Mechanism;
-use hamel::nalgebra::{DMatrix, DVector};
+use hamel::nalgebra::{DMatrix, DVector, Vector3};
 use hamel_tests::differences::{STEP, derivative, local, moved};
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::peers::{Reference, convert, numbers};
@@ -283,4 +283,19 @@ fn what_cannot_be_stepped_is_refused() {
     let refused = step.linearize(&case.q, &case.speeds, &case.efforts, DT);
     let message = refused.expect_err("a function of time").to_string();
     assert!(message.contains("`shaker`"), "{message}");
+    let edge = PointConstraint {
+        name: "edge".to_owned(),
+        body: 0,
+        point: Vector3::new(0.3, -0.2, 0.5),
+        direction: Vector3::new(0.6, 0.5, -0.4),
+    };
+    let coupled = (*case.mechanism).clone();
+    let coupled = coupled.with_constraints(vec![edge], &case.q);
+    let coupled = Arc::new(coupled.expect("it fits"));
+    let mut step = LinearStep::new(&coupled, Form::Lagrangian, &FIXED);
+    let refused = step.linearize(&case.q, &case.speeds, &case.efforts, DT);
+    let message = refused
+        .expect_err("speeds that depend on others")
+        .to_string();
+    assert!(message.contains("`edge`"), "{message}");
 }

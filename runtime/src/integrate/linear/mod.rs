@@ -133,7 +133,7 @@ impl LinearStep {
     ///
     /// # Errors
     /// A step that is not positive and finite; a state of the wrong size, not finite or off the joints' manifolds; a singular mass matrix; a
-    /// joint that turns by more than π; a joint whose motion is prescribed, and what else derivatives do not cover.
+    /// joint that turns by more than π; a joint whose motion is prescribed; a constraint that couples joints; what derivatives do not cover.
     pub fn linearize(
         &mut self,
         q: &[f64],
@@ -201,6 +201,13 @@ impl LinearStep {
             return Err(StepFailure::Dynamics(DynamicsError::NotDifferentiable {
                 what: "a joint whose motion is prescribed",
                 name: drive.name.clone(),
+            }));
+        }
+        if let Some(constraint) = mechanism.constraints().first() {
+            // The dependent speeds would have to be completed at each stage.
+            return Err(StepFailure::Dynamics(DynamicsError::NotDifferentiable {
+                what: "a constraint that couples joints",
+                name: constraint.name.clone(),
             }));
         }
         mechanism.check_configuration(q)?;
