@@ -8,8 +8,8 @@ use hamel::dynamics::{
 };
 use hamel::elements::PointConstraint;
 use hamel::integrate::{
-    Control, Form, LinearStep, Method, Options, Scheme, State, Statistics, integrate, no_inputs,
-    no_observer,
+    Control, Form, LinearStep, Method, Options, Scheme, State, Statistics, Tableau, integrate,
+    no_inputs, no_observer,
 };
 use hamel::mechanism::NamedFrame;
 use hamel::nalgebra::{Vector3, Vector6};

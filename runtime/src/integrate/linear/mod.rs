@@ -133,7 +133,7 @@ impl LinearStep {
     ///
     /// # Errors
     /// A step that is not positive and finite; a state of the wrong size, not finite or off the joints' manifolds; a singular mass matrix; a
-    /// joint that turns by more than π; a joint whose motion is prescribed; a constraint that couples joints; what derivatives do not cover.
+    /// joint that turns by more than π; a joint whose motion is prescribed, and what else derivatives do not cover.
     pub fn linearize(
         &mut self,
         q: &[f64],
@@ -161,7 +161,24 @@ impl LinearStep {
         self.charts.set(&mechanism, q, &self.phi, speeds);
         self.charts.localize(&self.change.phi, &mut self.local);
         self.charts.carry(&mut self.local);
+        self.complete(efforts)?;
         self.store();
+        Ok(())
+    }
+
+    /// Where constraints couple joints, the speeds of the state reached that depend on the others, and how they change.
+    fn complete(&mut self, efforts: &[f64]) -> Result<(), StepFailure> {
+        if self.dynamics.mechanism().constraints().is_empty() {
+            return Ok(());
+        }
+        let rates = &mut self.stages[0].rates;
+        let reached = (&self.configuration[..], &self.y[..], efforts);
+        self.equations
+            .evaluate(&mut self.dynamics, reached, rates)?;
+        self.y.copy_from_slice(&rates.speeds);
+        let Change { y, .. } = &mut self.change;
+        self.equations.hasten(&self.local, y, &mut self.faster);
+        y.entries_mut().copy_from_slice(self.faster.entries());
         Ok(())
     }
 
@@ -201,13 +218,6 @@ impl LinearStep {
             return Err(StepFailure::Dynamics(DynamicsError::NotDifferentiable {
                 what: "a joint whose motion is prescribed",
                 name: drive.name.clone(),
-            }));
-        }
-        if let Some(constraint) = mechanism.constraints().first() {
-            // The dependent speeds would have to be completed at each stage.
-            return Err(StepFailure::Dynamics(DynamicsError::NotDifferentiable {
-                what: "a constraint that couples joints",
-                name: constraint.name.clone(),
             }));
         }
         mechanism.check_configuration(q)?;

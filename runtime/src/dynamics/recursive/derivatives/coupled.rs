@@ -40,6 +40,8 @@ pub(super) struct Coupled {
     /// v̄̇ of the tree.
     accelerations: Vec<f64>,
     column: Column,
+    /// ∂v̄/∂ϕ and ∂v̄/∂v̄_i, the dependent speeds completed.
+    pub(super) completed: [Sensitivity; 2],
 }
 
 /// One column on its way to an answer.
@@ -73,6 +75,10 @@ impl Coupled {
                 asked: vec![0.0; count],
                 reduced: vec![0.0; layout.speeds - count],
             },
+            completed: [
+                Sensitivity::new(layout.speeds, layout.freedoms),
+                Sensitivity::new(layout.speeds, layout.speeds),
+            ],
         })
     }
 
@@ -187,6 +193,9 @@ impl Recursive {
                     *asked = -work.slipping.entry(row, slot);
                 }
                 coupling.solve_dependent(&mut asked);
+                for (&speed, value) in coupling.dependent.iter().zip(&asked) {
+                    work.completed[0].set(speed, slot, *value);
+                }
                 for (row, needed) in work.column.needed.iter_mut().enumerate() {
                     *needed = work.inverse.by_local.entry(row, slot);
                 }
@@ -264,6 +273,10 @@ fn answer_speeds(coupling: &mut Coupling, work: &mut Coupled, out: &mut Sensitiv
         let speed = coupling.independent[j];
         let mut dependent = core::mem::take(&mut work.column.dependent);
         coupling.copy_basis(j, &mut dependent);
+        work.completed[1].set(speed, speed, 1.0);
+        for (&follower, value) in coupling.dependent.iter().zip(&dependent) {
+            work.completed[1].set(follower, speed, *value);
+        }
         for (row, needed) in work.column.needed.iter_mut().enumerate() {
             *needed = work.inverse.by_speeds.entry(row, speed);
         }

@@ -141,6 +141,13 @@ impl ForwardDerivatives {
     pub const fn by_efforts(&self) -> &Sensitivity {
         &self.by_efforts
     }
+
+    /// `∂v̄/∂ϕ` and `∂v̄/∂v̄ᵢ = S̄` of the speeds that [`Dynamics::complete_speeds`] completes where constraints couple joints: a row a speed, columns of
+    /// freedoms and of speeds, 0 for the dependent ones. `None` where no constraint does, so that every speed stands for itself.
+    pub fn completed_speeds(&self) -> Option<[&Sensitivity; 2]> {
+        let coupled = self.coupled.as_ref()?;
+        Some(coupled.completed.each_ref())
+    }
 }
 
 impl Recursive {
