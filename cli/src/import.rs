@@ -15,8 +15,9 @@ Examples:
       edit between the two to add an initial state, springs or a motion
 
 The scene has a body for each link that moves by itself; fixed joints join links to one body, and keep their frames as [[frame]].
-Every joint is at home (angles and displacements 0) and at rest. What the scene does not hold (limits, mimic joints, friction,
-shapes …) is told on stderr and in comments. scenes/README.md says how each element of URDF is read.
+Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres, cylinders and capsules of <visual> become [[shape]],
+which pictures show; meshes and the shapes of <collision> do not. What the scene does not hold (limits, mimic joints, friction, meshes …)
+is told on stderr and in comments. scenes/README.md says how each element of URDF is read.
 
 Exit codes: 0 success; 1 a robot with mistakes, a file that cannot be written; 2 wrong options.";
 

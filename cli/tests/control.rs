@@ -149,6 +149,56 @@ fn a_controller_that_fails_on_the_way_says_why() {
     ]);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{stderr}");
-    assert!(stderr.contains("the controller fails: at 1.57"), "{stderr}");
+    assert!(
+        stderr.contains("the controller `path` fails: at 1.57"),
+        "{stderr}"
+    );
     assert!(stderr.contains("and so no direction"), "{stderr}");
+}
+
+/// A pole that turns at 1e160 rad/s has no motion that could be foreseen.
+#[test]
+fn predictive_control_says_where_it_finds_no_plan() {
+    let (scene, wild) = ("../scenes/balance_mpc.toml", file("wild.toml"));
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(scene));
+    let still = "initial.phi = [0.55, -0.45]";
+    let turning = "initial = { phi = [0.55, -0.45], speeds = [1e160, 0.0] }";
+    let text = text.expect("a scene").replace(still, turning);
+    std::fs::write(&wild, text).expect("a file of our own");
+    let output = hamel(&["simulate", &wild.to_string_lossy(), "--json"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    for told in [
+        "at 0 s the controller `mpc` fails: no plan of inputs within the limits is found: in period 1 of 25 ahead, ",
+        "the input of joint `slide_x` is at its limit of 8 N m or N",
+    ] {
+        assert!(stderr.contains(told), "{stderr}");
+    }
+}
+
+#[test]
+fn efforts_stand_with_the_samples() {
+    let text = stdout(&[
+        "simulate",
+        "scenes/balance_mpc.toml",
+        "--at",
+        "0,0.101,0.119",
+        "--json",
+    ]);
+    let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+    let samples = report["samples"].as_array().expect("a list");
+    assert_eq!(samples.len(), 3);
+    for sample in samples {
+        let efforts = sample["efforts"].as_array().expect("a list");
+        let joints: Vec<_> = efforts.iter().map(|effort| &effort["joint"]).collect();
+        assert_eq!(joints, ["slide_x", "slide_y", "cardan"]);
+        assert!(efforts[0]["tau"][0].as_f64().expect("a number").abs() > 0.0);
+        assert_eq!(efforts[2]["tau"], serde_json::json!([0.0, 0.0]));
+    }
+    assert_eq!(samples[1]["efforts"], samples[2]["efforts"]);
+    let text = stdout(&["simulate", "scenes/free_body.toml", "--at", "0", "--json"]);
+    assert!(
+        !text.contains("efforts") && !text.contains("frames"),
+        "{text}"
+    );
 }

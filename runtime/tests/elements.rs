@@ -2,17 +2,14 @@
 
 mod common;
 
+use common::equipment::{driven, equipped, losses, springs};
 use common::random::Random;
 use common::readings::{assert_same, readings};
 use common::trees::{configuration, trees};
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
-use hamel::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, Law,
-    RotationSpring, WrenchAxes,
-};
+use hamel::elements::{BodyWrench, Element, JointDamper, WrenchAxes};
 use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
-use hamel::mechanism::Mechanism;
-use nalgebra::{DVector, Matrix3, Vector3};
+use nalgebra::{DVector, Vector3};
 use std::sync::Arc;
 
 /// As in the comparison without elements, whose condition these mechanisms share.
@@ -20,119 +17,6 @@ const ROUNDING: f64 = 1e-12;
 
 /// Tolerance 1e-12 a step and up to some hundred steps of forces of size 10.
 const DRIFT: f64 = 1e-8;
-
-fn springs(random: &mut Random, mechanism: &Mechanism) -> Vec<Arc<dyn Element>> {
-    let mut elements: Vec<Arc<dyn Element>> = Vec::new();
-    for (body, owner) in mechanism.bodies().iter().enumerate() {
-        let size = owner.ranges().freedoms.len();
-        let half = random.vec(size * size);
-        let product = |i: usize, j: usize| -> f64 {
-            (0..size)
-                .map(|k| half[i * size + k] * half[j * size + k])
-                .sum()
-        };
-        elements.push(Arc::new(JointSpring {
-            name: format!("spring {body}"),
-            body,
-            stiffness: (0..size * size)
-                .map(|n| product(n / size, n % size))
-                .collect(),
-            rest: owner.home(),
-        }));
-        elements.push(Arc::new(RotationSpring {
-            name: format!("rotation spring {body}"),
-            body,
-            stiffness: 1.7,
-            rest: Matrix3::identity(),
-        }));
-        elements.push(Arc::new(BodySpring {
-            name: format!("rope {body}"),
-            bodies: [owner.parent(), Some(body)],
-            points: [random.vector(), random.vector()],
-            stiffness: 3.0,
-            damping: 0.0,
-            length: 0.4,
-        }));
-    }
-    elements
-}
-
-fn losses(random: &mut Random, mechanism: &Mechanism) -> Vec<Arc<dyn Element>> {
-    let mut elements = springs(random, mechanism);
-    for (body, owner) in mechanism.bodies().iter().enumerate() {
-        let size = owner.ranges().freedoms.len();
-        elements.push(Arc::new(JointDamper {
-            name: format!("damper {body}"),
-            body,
-            coefficients: random.vec(size).into_iter().map(f64::abs).collect(),
-        }));
-        elements.push(Arc::new(JointEffort {
-            name: format!("motor {body}"),
-            body,
-            efforts: random.vec(size),
-        }));
-        for axes in [WrenchAxes::World, WrenchAxes::Body] {
-            elements.push(Arc::new(BodyWrench {
-                name: format!("push {body}"),
-                body,
-                point: random.vector(),
-                force: random.vector(),
-                moment: random.vector(),
-                axes,
-            }));
-        }
-    }
-    elements
-}
-
-/// The mechanism with everything on it; every other joint that can have a rotor has one.
-fn equipped(
-    seed: u64,
-    mechanism: &Mechanism,
-    elements: fn(&mut Random, &Mechanism) -> Vec<Arc<dyn Element>>,
-) -> Mechanism {
-    let mut random = Random::new(300 + seed);
-    let elements = elements(&mut random, mechanism);
-    let mut equipped = mechanism
-        .clone()
-        .with_elements(elements)
-        .expect("elements fit");
-    for body in 0..mechanism.bodies().len() {
-        let size = mechanism.bodies()[body].ranges().freedoms.len();
-        let inertia: Vec<f64> = random.vec(size).into_iter().map(f64::abs).collect();
-        // Nonholonomic joints refuse, as they should.
-        if let Ok(with_rotor) = equipped.clone().with_armature(body, &inertia) {
-            equipped = with_rotor;
-        }
-    }
-    equipped
-}
-
-fn driven(mechanism: Mechanism) -> Mechanism {
-    let holonomic = |body: usize| {
-        let structures = mechanism.bodies()[body].joint().structures();
-        structures.speed_basis.is_identity()
-    };
-    let Some(body) = (0..mechanism.bodies().len())
-        .rev()
-        .find(|&body| holonomic(body))
-    else {
-        return mechanism;
-    };
-    let size = mechanism.bodies()[body].ranges().freedoms.len();
-    let law = Law {
-        rate: 0.3,
-        amplitude: 0.2,
-        frequency: 2.0,
-        phase: 0.4,
-    };
-    let drive = Drive {
-        name: "drive".into(),
-        body,
-        laws: vec![law; size],
-    };
-    mechanism.with_drives(vec![drive]).expect("fits")
-}
 
 fn same(found: &[f64], expected: &[f64], what: &str) {
     assert_same(found, expected, ROUNDING, what);

@@ -33,6 +33,7 @@ The CSV file has one row a sample: `t_s`, `energy_J`, and for each body NAME
   NAME.rx_rad, .ry_rad, .rz_rad              attitude as rotation vector, body to world
   NAME.vx_m_per_s, …                         velocity of the centre of mass, world axes
   NAME.wx_rad_per_s, …                       angular velocity, body axes
+then for each named frame its origin and quaternion, FRAME.x_m, … and .qw, …, and with a controller the efforts JOINT.tau.FREEDOM.
 The Parquet file has the same columns and more: docs/trajectories.md lists them.
 
 The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellipsoids or boxes of their inertias. Drag to turn,

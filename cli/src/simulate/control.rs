@@ -13,15 +13,17 @@ use std::fmt;
 pub struct Loop {
     state: RefCell<State>,
     period: Option<f64>,
-    kind: &'static str,
 }
 
 #[derive(Debug)]
 struct State {
     controller: Box<dyn Controller>,
+    kind: &'static str,
     failure: Option<String>,
     errors: Vec<MeasureOutcome>,
     values: Vec<f64>,
+    /// τ as it was taken last, one entry a freedom.
+    efforts: Vec<f64>,
     largest_effort: f64,
 }
 
@@ -96,15 +98,16 @@ impl Loop {
             .collect();
         let state = State {
             controller,
+            kind: control.kind,
             failure: None,
             values: vec![0.0; errors.len()],
             errors,
+            efforts: vec![0.0; plan.scene.mechanism.layout().freedoms],
             largest_effort: 0.0,
         };
         Ok(Some(Self {
             state: RefCell::new(state),
             period: control.period,
-            kind: control.kind,
         }))
     }
 
@@ -116,17 +119,25 @@ impl Loop {
     /// τ into `efforts`; NaN where the law fails, so that the integration ends.
     pub fn fill(&self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
         let state = &mut *self.state.borrow_mut();
-        if let Err(cause) = state.controller.efforts(time, q, speeds, efforts) {
-            state.fail(time, &cause);
-            efforts.fill(f64::NAN);
-        }
+        state.take(time, q, speeds);
+        efforts.copy_from_slice(&state.efforts);
         let sizes = efforts.iter().map(|effort| effort.abs());
         state.largest_effort = sizes.fold(state.largest_effort, f64::max);
     }
 
-    /// Judges the controller by a step.
+    /// τ from the end of `step` on: where it is held, as it was taken last, which is then at the latest.
+    pub fn efforts(&self, step: &Step<'_>) -> Vec<f64> {
+        let state = &mut *self.state.borrow_mut();
+        if self.period.is_none() {
+            state.take(step.time, step.configuration, step.speeds);
+        }
+        state.efforts.clone()
+    }
+
+    /// Judges the controller by a step that was accepted: step control went round what failed before.
     pub fn see(&self, step: &Step<'_>) {
         let state = &mut *self.state.borrow_mut();
+        state.failure = None;
         let (q, speeds) = (step.configuration, step.speeds);
         let values = &mut state.values;
         match state.controller.measure(step.time, q, speeds, values) {
@@ -148,7 +159,7 @@ impl Loop {
     pub fn finish(self) -> Outcome {
         let state = self.state.into_inner();
         Outcome {
-            kind: self.kind,
+            kind: state.kind,
             period_s: self.period,
             errors: state.errors,
             largest_effort: state.largest_effort,
@@ -157,8 +168,19 @@ impl Loop {
 }
 
 impl State {
+    /// τ of the law; NaN where it fails.
+    fn take(&mut self, time: f64, q: &[f64], speeds: &[f64]) {
+        self.efforts.fill(0.0);
+        let taken = self.controller.efforts(time, q, speeds, &mut self.efforts);
+        if let Err(cause) = taken {
+            self.fail(time, &cause);
+            self.efforts.fill(f64::NAN);
+        }
+    }
+
     fn fail(&mut self, time: f64, cause: &dyn fmt::Display) {
-        let message = || format!("at {time} s the controller fails: {cause}");
+        let kind = self.kind;
+        let message = || format!("at {time} s the controller `{kind}` fails: {cause}");
         self.failure.get_or_insert_with(message);
     }
 }

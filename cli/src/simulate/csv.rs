@@ -1,10 +1,10 @@
 //! The trajectory as CSV: one row a sample, units in the names of the columns.
 
+use super::plan::Plan;
 use super::sample::Sample;
 use crate::output::Failure;
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::Path;
 
 /// Endings of a body's columns; each stands after the body's name and a point.
 const COLUMNS: [&str; 12] = [
@@ -22,11 +22,26 @@ const COLUMNS: [&str; 12] = [
     "wz_rad_per_s",
 ];
 
-/// Names of the columns: of time, energy, and twelve for each body. [`Sample::numbers`] has the numbers under them.
-pub fn columns<'a>(bodies: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let columns = bodies.flat_map(|body| COLUMNS.map(|column| format!("{body}.{column}")));
-    let head = ["t_s", "energy_J"].map(String::from).into_iter();
-    head.chain(columns).collect()
+/// Endings of a named frame's columns.
+const FRAME_COLUMNS: [&str; 7] = ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"];
+
+/// Names of the columns: of time, energy, twelve for each body, seven for each named frame, and one for each freedom where there is a controller.
+/// [`Sample::numbers`] has the numbers under them.
+pub fn columns(plan: &Plan) -> Vec<String> {
+    let mechanism = &plan.scene.mechanism;
+    let mut names = ["t_s", "energy_J"].map(String::from).to_vec();
+    for body in mechanism.bodies() {
+        names.extend(COLUMNS.map(|column| format!("{}.{column}", body.name())));
+    }
+    for frame in mechanism.frames() {
+        names.extend(FRAME_COLUMNS.map(|column| format!("{}.{column}", frame.name)));
+    }
+    let controlled = mechanism.bodies().iter().filter(|_| plan.control.is_some());
+    for body in controlled {
+        let freedoms = body.joint().freedoms().iter();
+        names.extend(freedoms.map(|freedom| format!("{}.tau.{freedom}", body.joint_name())));
+    }
+    names
 }
 
 /// A CSV file being written.
@@ -36,11 +51,14 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    /// Creates the file `path` with its header row.
+    /// Creates the file that `plan` asks for, if it asks for one, with its header row.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn create<'a>(path: &Path, bodies: impl Iterator<Item = &'a str>) -> Result<Self, Failure> {
+    pub fn create(plan: &Plan) -> Result<Option<Self>, Failure> {
+        let Some(path) = &plan.csv else {
+            return Ok(None);
+        };
         let target = path.display().to_string();
         let file = File::create(path).map_err(|error| Failure::Write {
             target: target.clone(),
@@ -48,8 +66,8 @@ impl Trajectory {
         })?;
         let writer = csv::Writer::from_writer(BufWriter::new(file));
         let mut trajectory = Self { writer, target };
-        trajectory.record(columns(bodies).into_iter())?;
-        Ok(trajectory)
+        trajectory.record(columns(plan).into_iter())?;
+        Ok(Some(trajectory))
     }
 
     /// Adds a row.

@@ -73,6 +73,8 @@ mod tests {
             t: 0.1,
             energy: -1.0 / 3.0,
             bodies: Vec::new(),
+            frames: Vec::new(),
+            efforts: Vec::new(),
         }];
         let statistics = Statistics {
             steps: 3,

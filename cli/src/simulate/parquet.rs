@@ -5,7 +5,7 @@ use super::plan::Plan;
 use super::sample::Sample;
 use crate::output::Failure;
 use hamel::integrate::Step;
-use hamel::mechanism::{Body, Kinematics, Mechanism};
+use hamel::mechanism::Kinematics;
 use parquet::basic::{Repetition, Type as Physical};
 use parquet::data_type::DoubleType;
 use parquet::errors::{ParquetError, Result as Written};
@@ -37,7 +37,7 @@ impl Parquet {
             return Ok(None);
         };
         let target = path.display().to_string();
-        let names = names(&plan.scene.mechanism);
+        let names = names(plan);
         let columns = vec![Vec::new(); names.len()];
         let writer = writer(path, plan, names).map_err(|error| refusal(&target, error))?;
         Ok(Some(Self {
@@ -130,9 +130,9 @@ fn write_group(writer: &mut SerializedFileWriter<File>, columns: &mut [Vec<f64>]
 }
 
 /// `t_s` and the other columns of the CSV, energies, `JOINT.q.NAME` for every stored scalar, `JOINT.v.NAME` for every speed.
-fn names(mechanism: &Mechanism) -> Vec<String> {
-    let bodies = mechanism.bodies();
-    let mut names = columns(bodies.iter().map(Body::name));
+fn names(plan: &Plan) -> Vec<String> {
+    let bodies = plan.scene.mechanism.bodies();
+    let mut names = columns(plan);
     names.extend(["kinetic_energy_J", "potential_energy_J"].map(String::from));
     for body in bodies {
         let scalars = body.joint().coordinates().iter();

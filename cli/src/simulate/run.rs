@@ -43,17 +43,26 @@ struct Run {
     solution: Solution,
     statistics: Statistics,
     outcome: Option<Outcome>,
+    /// What the controller exerts at each sample; empty without one.
+    efforts: Vec<Vec<f64>>,
 }
 
 fn simulate(plan: &Plan, quiet: bool) -> Result<Run, Failure> {
     let control = Loop::new(plan)?;
     let mut recorder = Recorder::new(plan, quiet)?;
+    let mut efforts: Vec<Vec<f64>> = Vec::new();
     let start = Instant::now();
     let result = move_on(plan, control.as_ref(), &mut |step| {
+        let mut tau = Vec::new();
         if let Some(control) = &control {
             control.see(step);
+            if let Some(sample) = step.sample {
+                tau = control.efforts(step);
+                // Samples at one time are seen once.
+                efforts.resize(sample + 1, tau.clone());
+            }
         }
-        recorder.see(step)
+        recorder.see(step, &tau)
     });
     let run_time_s = start.elapsed().as_secs_f64();
     recorder.finish()?;
@@ -72,6 +81,7 @@ fn simulate(plan: &Plan, quiet: bool) -> Result<Run, Failure> {
         solution,
         statistics,
         outcome: control.map(Loop::finish),
+        efforts,
     })
 }
 
@@ -120,8 +130,13 @@ fn initial(plan: &Plan) -> State {
     }
 }
 
-fn sample<'a>(mechanism: &'a Mechanism, state: &State) -> Result<Sample<'a>, Failure> {
-    Sample::new(mechanism, state.time, &state.configuration, &state.speeds)
+fn sample<'a>(
+    mechanism: &'a Mechanism,
+    state: &State,
+    efforts: &[f64],
+) -> Result<Sample<'a>, Failure> {
+    let at = (&*state.configuration, &*state.speeds);
+    Sample::new(mechanism, state.time, at, efforts)
         .map_err(|error| Failure::Simulation(error.to_string()))
 }
 
@@ -138,14 +153,9 @@ struct Recorder<'a> {
 impl<'a> Recorder<'a> {
     fn new(plan: &'a Plan, quiet: bool) -> Result<Self, Failure> {
         let mechanism: &Mechanism = &plan.scene.mechanism;
-        let names = mechanism.bodies().iter().map(|body| body.name());
-        let trajectory = match &plan.csv {
-            Some(path) => Some(Trajectory::create(path, names)?),
-            None => None,
-        };
         Ok(Self {
             mechanism,
-            trajectory,
+            trajectory: Trajectory::create(plan)?,
             parquet: Parquet::create(plan)?,
             page: Page::create(plan)?,
             progress: Progress::new(plan.settings.t_end, quiet),
@@ -153,7 +163,8 @@ impl<'a> Recorder<'a> {
         })
     }
 
-    fn see(&mut self, step: &Step<'_>) -> ControlFlow<()> {
+    /// Takes the end of a step, where it is a sample; `efforts` are the controller's, empty without one.
+    fn see(&mut self, step: &Step<'_>, efforts: &[f64]) -> ControlFlow<()> {
         self.progress.at(step.time);
         if let Some(page) = &mut self.page {
             page.step(step.time);
@@ -161,7 +172,7 @@ impl<'a> Recorder<'a> {
         if step.sample.is_none() {
             return ControlFlow::Continue(());
         }
-        match self.record(step) {
+        match self.record(step, efforts) {
             Ok(()) => ControlFlow::Continue(()),
             Err(failure) => {
                 self.failure = Some(failure);
@@ -170,13 +181,13 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    fn record(&mut self, step: &Step<'_>) -> Result<(), Failure> {
+    fn record(&mut self, step: &Step<'_>, efforts: &[f64]) -> Result<(), Failure> {
         if self.trajectory.is_none() && self.parquet.is_none() && self.page.is_none() {
             return Ok(());
         }
         let kinematics = self.mechanism.kinematics(step.configuration, step.speeds);
         let kinematics = kinematics.map_err(|error| Failure::Simulation(error.to_string()))?;
-        let sample = Sample::of(self.mechanism, step.time, &kinematics);
+        let sample = Sample::of(self.mechanism, step.time, &kinematics, efforts);
         if let Some(trajectory) = &mut self.trajectory {
             trajectory.write(&sample)?;
         }
@@ -184,7 +195,7 @@ impl<'a> Recorder<'a> {
             parquet.write(&sample, step, &kinematics)?;
         }
         if let Some(page) = &mut self.page {
-            page.sample(step, &kinematics);
+            page.sample(step, &kinematics, efforts);
         }
         Ok(())
     }
@@ -200,8 +211,11 @@ impl<'a> Recorder<'a> {
 
 fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
     let samples = run.solution.samples.iter();
+    let efforts = run.efforts.iter().map(Vec::as_slice);
+    let efforts = efforts.chain(std::iter::repeat(&[][..]));
     let samples: Vec<Sample<'_>> = samples
-        .map(|state| sample(&plan.scene.mechanism, state))
+        .zip(efforts)
+        .map(|(state, efforts)| sample(&plan.scene.mechanism, state, efforts))
         .collect::<Result<_, _>>()?;
     json::print(&Report {
         scene: &plan.scene.name,
@@ -228,8 +242,8 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
     let most_kinetic_energy = most.map_err(|error| Failure::Simulation(error.to_string()))?;
     let summary = Summary {
         plan,
-        first: &sample(mechanism, &first)?,
-        last: &sample(mechanism, last)?,
+        first: &sample(mechanism, &first, &[])?,
+        last: &sample(mechanism, last, &[])?,
         most_kinetic_energy,
         samples: solution.samples.len(),
         outcome: run.outcome.as_ref(),

@@ -18,6 +18,10 @@ const FINITE_LIMIT: u64 = 60_000;
 const POINTS: usize = 8;
 /// Their |ϕ_k| are below 2⁻⁶: inside the domain of most Φ, and a term of order 12 is still 2⁻⁷², far above the tolerance.
 const REACH_BITS: i32 = 6;
+/// The claim where it is proved for every ϕ.
+const STAYS: &str = "Φ(Q, ϕ) stays on the manifold";
+/// Why it holds for every ϕ where Φ is Q exp(ϕ).
+const FLOW: &str = "at every Q the derivatives of the relations along Q exp(tξ) have normal form 0, so that they stay 0 for every t";
 /// What one point costs, in term operations.
 const POINT_COST: u64 = 500;
 
@@ -94,7 +98,18 @@ impl Prover<'_> {
                 ))
             },
         );
-        match (attempt, moved.filter(|_| !self.x.exponential)) {
+        let moved = moved.filter(|_| !self.x.exponential);
+        match (attempt, moved) {
+            // Its relations g have derivatives Σ a g along the flow t ↦ Q exp(tξ), so that they stay 0.
+            (Ok(Some(claim)), None) if claim.proof == Proof::NormalForm => Ok(Some(symbolic(
+                "retract_on_manifold",
+                STAYS,
+                Proof::NormalForm,
+                match relations.is_empty() {
+                    true => "the manifold has no relations",
+                    false => FLOW,
+                },
+            ))),
             (Ok(Some(claim)), Some(moved)) => {
                 if let Some(value) = self.leaves_manifold(&moved) {
                     return Err(Box::new(leaves_at_finite(&span, value)));
@@ -102,7 +117,7 @@ impl Prover<'_> {
                 match self.stays_at_finite(&moved) {
                     true => Ok(Some(symbolic(
                         "retract_on_manifold",
-                        "Φ(Q, ϕ) stays on the manifold",
+                        STAYS,
                         Proof::NormalForm,
                         "the relations at Φ(Q, ϕ) have normal form 0",
                     ))),

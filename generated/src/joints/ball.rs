@@ -27,7 +27,7 @@
 //! Proved when this file was generated:
 //! - `pose_in_se3`: H(Q) ∈ SE(3) (normal form)
 //! - `retract_at_zero`: Φ(Q, 0) = Q (normal form)
-//! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold to second order in ϕ (normal form)
+//! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold (normal form)
 //! - `retract_is_exponential`: Φ(Q, ϕ) = Q exp(ϕ) (normal form)
 //! - `twist_map_in_frame`: X maps velocities in parent axes (normal form)
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)

@@ -27,7 +27,7 @@
 //! Proved when this file was generated:
 //! - `pose_in_se3`: H(Q) ∈ SE(3) (normal form)
 //! - `retract_at_zero`: Φ(Q, 0) = Q (normal form)
-//! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold to second order in ϕ (normal form)
+//! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold (normal form)
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible (certificate)

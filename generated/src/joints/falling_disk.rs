@@ -35,7 +35,7 @@
 //! - `defined`: H, Φ, X, S, A and S̄ are smooth at Q where -r_q33*r_q33 + 1 ≠ 0 (certificate)
 //! - `pose_in_se3`: H(Q) ∈ SE(3) (normal form)
 //! - `retract_at_zero`: Φ(Q, 0) = Q (normal form)
-//! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold to second order in ϕ (normal form)
+//! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold (normal form)
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
 //! - `velocity_map_invertible`: S₀ is invertible where -r_q33*r_q33 + 1 ≠ 0 (certificate)

@@ -91,13 +91,16 @@ pub enum ControlError {
         /// The least speed, m/s.
         limit: f64,
     },
-    /// The optimiser gives no inputs.
-    #[error("at {time} s the optimiser ends with `{status}`")]
-    Optimizer {
-        /// When, s.
-        time: f64,
-        /// What it says.
-        status: String,
+    /// The optimiser refuses the problem itself.
+    #[error("the optimiser cannot be set up: {0}")]
+    Optimizer(String),
+    /// No inputs within the limits whose motion can be foreseen, or none that the optimiser finds.
+    #[error("no plan of inputs within the limits is found: {cause}; {binding}")]
+    NoPlan {
+        /// What stands against it.
+        cause: String,
+        /// Which inputs are at their limits.
+        binding: String,
     },
     /// A virtual spring or damper is refused.
     #[error(transparent)]

@@ -43,6 +43,8 @@ pub struct PredictiveRegulator {
     program: Program,
     /// The inputs of the horizon, period by period.
     plan: Vec<f64>,
+    /// The period up to which a motion was foreseen last.
+    reached: usize,
     begun: bool,
     x: Vec<f64>,
 }
@@ -112,6 +114,7 @@ impl PredictiveRegulator {
         Ok(Self {
             program: Program::new(horizon * limits.len())?,
             plan: rest.repeat(horizon),
+            reached: 0,
             begun: false,
             gain,
             x: vec![0.0; equilibrium.states()],
@@ -160,6 +163,7 @@ impl PredictiveRegulator {
         let mut cost = 0.0;
         self.program.clear();
         for k in 0..self.horizon() {
+            self.reached = k;
             let now = k * inputs..(k + 1) * inputs;
             if task == Task::FeedBack {
                 self.feed_back(&q, &speeds, k)?;
@@ -199,7 +203,7 @@ impl PredictiveRegulator {
     }
 
     /// A plan to begin with: what is left of the last one, or linear feedback that is cut off, whichever costs less; and its cost.
-    fn begin(&mut self, time: f64, q: &[f64], speeds: &[f64]) -> Result<f64, ControlError> {
+    fn begin(&mut self, q: &[f64], speeds: &[f64]) -> Result<f64, ControlError> {
         self.shift();
         let (kept, cost) = (self.plan.clone(), self.cost(q, speeds));
         let simple = self.foresee(q, speeds, Task::FeedBack);
@@ -209,25 +213,53 @@ impl PredictiveRegulator {
                 self.plan = kept;
                 Ok(cost)
             }
-            Err(cause) => Err(cause),
-            Ok(_) => Err(ControlError::Optimizer {
-                time,
-                status: String::from("no plan whose motion can be foreseen"),
-            }),
+            Err(cause) => Err(self.lost(&cause)),
+            Ok(_) => Err(self.lost(&"the cost is not finite")),
+        }
+    }
+
+    /// The refusal of a motion that was foreseen as far as [`Self::reached`].
+    fn lost(&self, cause: &dyn fmt::Display) -> ControlError {
+        let (period, horizon) = (self.reached + 1, self.horizon());
+        self.no_plan(
+            self.reached,
+            format!("in period {period} of {horizon} ahead, {cause}"),
+        )
+    }
+
+    /// The refusal of a plan, with the inputs that it has at their limits in a period.
+    fn no_plan(&self, period: usize, cause: String) -> ControlError {
+        let start = period * self.limits.len();
+        let now = self.plan[start..].iter().zip(&self.limits);
+        let bound = now.zip(self.equilibrium.inputs());
+        let bound = bound.filter(|((input, limit), _)| input.abs() >= **limit);
+        let bound: Vec<String> = bound
+            .map(|((_, limit), &freedom)| {
+                let joint = owner(self.equilibrium.mechanism(), freedom);
+                format!("the input of joint `{joint}` is at its limit of {limit} N m or N")
+            })
+            .collect();
+        ControlError::NoPlan {
+            cause,
+            binding: match bound.is_empty() {
+                true => String::from("no input is at its limit then"),
+                false => bound.join(", "),
+            },
         }
     }
 
     /// One program, and as much of its change of the plan as makes the plan better; whether any does.
     fn improve(
         &mut self,
-        time: f64,
         (q, speeds): (&[f64], &[f64]),
         cost: &mut f64,
     ) -> Result<bool, ControlError> {
-        self.foresee(q, speeds, Task::Learn)?;
-        let change = self.program.solve();
-        let change = change.map_err(|status| ControlError::Optimizer { time, status })?;
-        let (kept, change) = (self.plan.clone(), change.to_vec());
+        let foreseen = self.foresee(q, speeds, Task::Learn);
+        foreseen.map_err(|cause| self.lost(&cause))?;
+        let change = self.program.solve().map(<[f64]>::to_vec);
+        let told = |status| format!("the optimiser ends with `{status}`");
+        let change = change.map_err(|status| self.no_plan(0, told(status)))?;
+        let kept = self.plan.clone();
         let inputs = self.limits.len();
         for halvings in 0..MOST_HALVINGS {
             let part = 0.5_f64.powi(halvings);
@@ -262,12 +294,17 @@ impl PredictiveRegulator {
     }
 }
 
-/// The refusal of a limit below what the joint of `freedom` needs at rest.
-fn weak(mechanism: &Mechanism, freedom: usize, effort: f64, limit: f64) -> ControlError {
+/// The name of the joint that a freedom belongs to.
+fn owner(mechanism: &Mechanism, freedom: usize) -> &str {
     let mut bodies = mechanism.bodies().iter();
     let owner = bodies.find(|body| body.ranges().freedoms.contains(&freedom));
+    owner.map_or("", |body| body.joint_name())
+}
+
+/// The refusal of a limit below what the joint of `freedom` needs at rest.
+fn weak(mechanism: &Mechanism, freedom: usize, effort: f64, limit: f64) -> ControlError {
     ControlError::Weak {
-        joint: owner.map_or("", |body| body.joint_name()).into(),
+        joint: owner(mechanism, freedom).into(),
         effort,
         limit,
     }
@@ -309,19 +346,19 @@ fn seen_from(equilibrium: &Equilibrium, x: &[f64]) -> DMatrix<f64> {
 impl Controller for PredictiveRegulator {
     fn efforts(
         &mut self,
-        time: f64,
+        _time: f64,
         q: &[f64],
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
         check_sizes(self.equilibrium.mechanism(), q, speeds, efforts)?;
-        let mut cost = self.begin(time, q, speeds)?;
+        let mut cost = self.begin(q, speeds)?;
         let programs = match core::mem::replace(&mut self.begun, true) {
             true => 1,
             false => FIRST_PROGRAMS,
         };
         for _ in 0..programs {
-            if !self.improve(time, (q, speeds), &mut cost)? {
+            if !self.improve((q, speeds), &mut cost)? {
                 break;
             }
         }

@@ -1,6 +1,6 @@
 //! Why equations of motion cannot be evaluated.
 
-use crate::mechanism::StateError;
+use crate::mechanism::{Mechanism, StateError};
 use alloc::string::String;
 
 /// Why equations of motion cannot be evaluated.
@@ -88,4 +88,42 @@ pub enum DynamicsError {
     /// A vector has the wrong size or holds a number that is not finite.
     #[error(transparent)]
     State(#[from] StateError),
+}
+
+/// The two sizes that a mass matrix of a mechanism can have.
+#[derive(Clone, Copy)]
+pub(super) enum Space {
+    /// M, one row a freedom.
+    Freedoms,
+    /// M̄, one row a speed.
+    Speeds,
+}
+
+impl Mechanism {
+    /// The joint and the freedom or speed behind a row of a mass matrix whose pivot is not above its limit.
+    pub(super) fn singular_mass(
+        &self,
+        space: Space,
+        row: usize,
+        pivot: f64,
+        limit: f64,
+    ) -> DynamicsError {
+        let owner = self.bodies().iter().find_map(|body| {
+            let (range, names) = match space {
+                Space::Freedoms => (&body.ranges().freedoms, body.joint().freedoms()),
+                Space::Speeds => (&body.ranges().speeds, body.joint().speeds()),
+            };
+            let name = range
+                .contains(&row)
+                .then(|| names.get(row - range.start))??;
+            Some((body.joint_name(), *name))
+        });
+        let (joint, speed) = owner.unwrap_or(("", ""));
+        DynamicsError::SingularMass {
+            joint: joint.into(),
+            speed,
+            pivot,
+            limit,
+        }
+    }
 }

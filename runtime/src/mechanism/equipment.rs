@@ -129,7 +129,7 @@ impl Mechanism {
     /// tips of the tree.
     ///
     /// # Errors
-    /// Every constraint that does not fit; a wrong size of `q`; constraints that are dependent at `q`.
+    /// Every constraint that does not fit; a wrong size of `q`; every constraint that depends on the others at `q`.
     pub fn with_constraints(
         mut self,
         constraints: Vec<PointConstraint>,
@@ -146,12 +146,16 @@ impl Mechanism {
             let mut ranges = drives.map(|drive| &self.bodies[drive.body].ranges.speeds);
             ranges.any(|range| range.contains(&speed))
         };
-        self.equipment.dependent = dependent(matrix, taken).map_err(|(row, ratio)| {
-            vec![MechanismError::DependentConstraint {
-                constraint: self.equipment.constraints[row].name.clone(),
-                ratio,
-                limit: INDEPENDENCE,
-            }]
+        self.equipment.dependent = dependent(matrix, taken).map_err(|rows| {
+            let refused = rows.into_iter().map(|(row, ratio)| {
+                let constraint = self.equipment.constraints[row].name.clone();
+                MechanismError::DependentConstraint {
+                    constraint,
+                    ratio,
+                    limit: INDEPENDENCE,
+                }
+            });
+            refused.collect::<Vec<_>>()
         })?;
         Ok(self)
     }
@@ -228,42 +232,48 @@ fn share(pivot: f64, largest: f64) -> f64 {
     }
 }
 
-/// One column for each row of `matrix`, by elimination with pivoting among the columns that are not `taken`, in the order of the rows; else a row that
-/// depends on others, with the ratio of its pivot to the largest entry.
+/// One column for each row of `matrix`, by elimination with pivoting among the columns that are not `taken`, in the order of the rows; else all
+/// rows that depend on the others, each with the ratio of its largest remainder to the largest entry of `matrix`.
 fn dependent(
     mut matrix: DMatrix<f64>,
     taken: impl Fn(usize) -> bool,
-) -> Result<Vec<usize>, (usize, f64)> {
+) -> Result<Vec<usize>, Vec<(usize, f64)>> {
     let largest = matrix.amax();
+    let limit = INDEPENDENCE * largest;
     let mut rows: Vec<usize> = (0..matrix.nrows()).collect();
     let mut columns: Vec<usize> = (0..matrix.ncols()).filter(|&j| !taken(j)).collect();
     let mut chosen = Vec::new();
-    while let Some(&first) = rows.first() {
-        let entries = || {
-            let of_row = |&i: &usize| columns.iter().map(move |&j| (i, j));
-            rows.iter().flat_map(of_row)
-        };
+    while !rows.is_empty() {
         let size = |&(i, j): &(usize, usize)| matrix[(i, j)].abs();
-        let best = entries().max_by(|a, b| size(a).total_cmp(&size(b)));
-        let best = best.ok_or((first, 0.0))?;
-        let good = entries().filter(|entry| size(entry) >= PREFERENCE * size(&best));
+        let of_row = |i: usize| columns.iter().map(move |&j| (i, j));
+        let remainder = |i: usize| of_row(i).map(|entry| size(&entry)).max_by(f64::total_cmp);
+        let best = rows.iter().filter_map(|&i| remainder(i));
+        let best = best.max_by(f64::total_cmp).unwrap_or(0.0);
+        let entries = rows.iter().flat_map(|&i| of_row(i));
+        let good = entries.filter(|entry| size(entry) >= PREFERENCE * best && size(entry) > limit);
         let deepest = good.max_by(|a, b| a.1.cmp(&b.1).then(size(a).total_cmp(&size(b))));
-        let (row, column) = deepest.unwrap_or(best);
-        let pivot = matrix[(row, column)];
-        if pivot.is_nan() || pivot.abs() <= INDEPENDENCE * largest {
-            return Err((row, share(pivot, largest)));
-        }
+        let Some((row, column)) = deepest else {
+            let refused = rows
+                .iter()
+                .map(|&i| (i, share(remainder(i).unwrap_or(0.0), largest)));
+            return Err(refused.collect());
+        };
         rows.retain(|&i| i != row);
         columns.retain(|&j| j != column);
         chosen.push((row, column));
-        let pivot_row = matrix.row(row).into_owned();
-        for &i in &rows {
-            let factor = matrix[(i, column)] / pivot;
-            for j in 0..matrix.ncols() {
-                matrix[(i, j)] -= factor * pivot_row[j];
-            }
-        }
+        eliminate(&mut matrix, &rows, (row, column));
     }
     chosen.sort_unstable();
     Ok(chosen.into_iter().map(|(_, column)| column).collect())
+}
+
+/// Takes as much of the pivot's row off each of `rows` as makes its entry in the pivot's column 0.
+fn eliminate(matrix: &mut DMatrix<f64>, rows: &[usize], (row, column): (usize, usize)) {
+    let pivot_row = matrix.row(row).into_owned();
+    for &i in rows {
+        let factor = matrix[(i, column)] / pivot_row[column];
+        for j in 0..matrix.ncols() {
+            matrix[(i, j)] -= factor * pivot_row[j];
+        }
+    }
 }

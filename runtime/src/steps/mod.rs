@@ -143,7 +143,8 @@ pub trait Steps {
     );
 }
 
-/// A slice as an array of the size that the joint's type has.
+/// A slice as an array of the size that the joint's type has: the recursions cut their own vectors by the layout of that joint, and the
+/// sizes of what callers hand over are checked before.
 fn sized<E, const S: usize>(slice: &[E]) -> &[E; S] {
     slice.try_into().expect("one entry a speed of the joint")
 }

@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test file uses its own part of this module")]
 
 pub mod derived;
+pub mod dual;
+pub mod equipment;
 pub mod joints;
 pub mod polar;
 pub mod random;

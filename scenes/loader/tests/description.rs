@@ -38,6 +38,23 @@ fn what_is_absent_has_its_default() {
     assert_eq!(link.at, hamel::spatial::Pose::identity());
 }
 
+/// A file written on Windows says the same as one written elsewhere, and descriptions come through the writer as they are.
+#[test]
+fn a_description_has_lines_and_tabs_whatever_ends_the_lines() {
+    let unix = format!(
+        "hamel = 1\ngravity = [0, 0, -9.81]\ndescription = \"\"\"\nFirst:\n\tsecond\n\"\"\"\n{}",
+        body("link", "world", "")
+    );
+    let windows = unix.replace('\n', "\r\n");
+    for text in [unix, windows] {
+        let scene = Scene::from_toml(&text, "scene.toml").expect("a sound text");
+        assert_eq!(scene.description, "First:\n\tsecond\n");
+        let written = scene.to_toml(&[], |_| Vec::new());
+        let again = Scene::from_toml(&written, "written.toml").expect("a sound text");
+        assert_eq!(again.description, scene.description);
+    }
+}
+
 #[test]
 fn six_moments_fill_a_symmetric_matrix() {
     let link = &read(&body("link", "world", "")).bodies[0];

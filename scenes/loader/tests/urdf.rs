@@ -76,6 +76,26 @@ fn an_axis_that_is_not_given_is_x_and_told() {
 }
 
 #[test]
+fn a_version_that_is_not_known_is_told() {
+    let told = |version: &str| {
+        let text = format!(
+            "<robot name=\"r\" version=\"{version}\"><link name=\"base\"/><link name=\"arm\">{INERTIAL}</link>\
+             <joint name=\"joint\" type=\"floating\"><parent link=\"base\"/><child link=\"arm\"/></joint></robot>"
+        );
+        let import = read(&text, "r.urdf", &Options::default());
+        notices(&import.unwrap_or_else(|errors| panic!("{errors}")))
+    };
+    for known in ["1", "1.0", "1.1", " 1.2 "] {
+        assert_eq!(told(known), [""; 0], "{known}");
+    }
+    for (unknown, known) in [("2.7", "1.2"), ("1.3", "1.2"), ("0.9", "1.0"), ("x", "1.0")] {
+        let message =
+            format!("version `{unknown}` of URDF is not known: it is read as {known}: <robot>");
+        assert_eq!(told(unknown), [message]);
+    }
+}
+
+#[test]
 fn fixed_links_become_part_of_the_body_and_named_frames() {
     let more = format!(
         "<link name=\"bolt\">{INERTIAL}</link><link name=\"tip\"/>\

@@ -6,9 +6,10 @@ use hamel::dynamics::{
     Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, MassMatrix,
     Recursive,
 };
+use hamel::elements::PointConstraint;
 use hamel::integrate::{
-    Control, Form, LinearStep, Method, Options, Scheme, State, Statistics, integrate, no_inputs,
-    no_observer,
+    Control, Form, LinearStep, Method, Options, Scheme, State, Statistics, Tableau, integrate,
+    no_inputs, no_observer,
 };
 use hamel::mechanism::NamedFrame;
 use hamel::nalgebra::{Vector3, Vector6};
@@ -94,6 +95,43 @@ fn elements_do_not_allocate() {
             found.expect("every body has mass");
         });
     }
+    counts.assert_none(1);
+}
+
+/// Forward dynamics and its derivatives where constraints couple joints.
+#[test]
+fn coupled_joints_do_not_allocate() {
+    let mut counts = Counts::default();
+    let mut coupled = 0;
+    for case in trees() {
+        let edge = PointConstraint {
+            name: "edge".to_owned(),
+            body: case.mechanism.bodies().len() - 1,
+            point: Vector3::new(0.3, -0.2, 0.5),
+            direction: Vector3::new(0.6, 0.5, -0.4),
+        };
+        let mechanism = (*case.mechanism).clone();
+        // The joints of a few trees allow nothing that the edge forbids.
+        let Ok(mechanism) = mechanism.with_constraints(vec![edge], &case.q) else {
+            continue;
+        };
+        coupled += 1;
+        let mechanism = Arc::new(mechanism);
+        let (q, tau, mut v) = (&case.q[..], &case.efforts[..], case.speeds.clone());
+        let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+        let mut forward = ForwardDerivatives::new(&mechanism);
+        let (mut rates, mut forces) = (case.rates.clone(), [0.0]);
+        counts.of("equations and derivatives", || {
+            dynamics.complete_speeds(q, &mut v).expect("determined");
+            let found = dynamics.accelerations(q, &v, tau, &mut rates);
+            found.expect("every body has mass");
+            let found = dynamics.coupling_force(q, &v, &rates, tau, &mut forces);
+            found.expect("determined");
+            let found = dynamics.forward_dynamics_derivatives(q, &v, tau, &mut forward);
+            found.expect("every body has mass");
+        });
+    }
+    assert!(coupled >= 40, "{coupled} trees take an edge");
     counts.assert_none(1);
 }
 

@@ -1,7 +1,7 @@
 //! The numbers of a page as bytes: little-endian, times as f64, everything else as f32.
 
+use super::super::sample::seven;
 use hamel::spatial::Pose;
-use nalgebra::{Rotation3, UnitQuaternion};
 
 /// Times, columns and poses of the frames so far.
 pub struct Blob {
@@ -46,14 +46,4 @@ impl Blob {
             .chain(rest.flat_map(|number| number.to_le_bytes()))
             .collect()
     }
-}
-
-/// A pose as position, m, and unit quaternion, scalar first.
-pub fn seven(pose: &Pose<f64>) -> [f64; 7] {
-    let [x, y, z] = pose.translation.into();
-    let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
-    let [i, j, k, w] = UnitQuaternion::from_rotation_matrix(&rotation)
-        .coords
-        .into();
-    [x, y, z, w, i, j, k]
 }

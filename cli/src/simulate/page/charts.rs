@@ -43,10 +43,10 @@ pub struct Charts<'a> {
 }
 
 impl<'a> Charts<'a> {
-    /// The charts of a mechanism.
-    pub fn new(mechanism: &'a Mechanism) -> Self {
+    /// The charts of a mechanism; one with efforts where it is `controlled`.
+    pub fn new(mechanism: &'a Mechanism, controlled: bool) -> Self {
         let mut columns = 0;
-        let described = described(mechanism, &mut columns);
+        let described = described(mechanism, controlled, &mut columns);
         Self {
             mechanism,
             described,
@@ -71,8 +71,13 @@ impl<'a> Charts<'a> {
         self.steps.note(time);
     }
 
-    /// The columns' values at the end of `step`, in the order of [`described`].
-    pub fn values(&mut self, step: &Step<'_>, kinematics: &Kinematics) -> Vec<f64> {
+    /// The columns' values at the end of `step`, in the order of [`described`]; `efforts` are a controller's, empty without one.
+    pub fn values(
+        &mut self,
+        step: &Step<'_>,
+        kinematics: &Kinematics,
+        efforts: &[f64],
+    ) -> Vec<f64> {
         let energy = kinematics.energy();
         let first = *self.first_energy.get_or_insert(energy);
         let (about_origin, linear) = split(&kinematics.momentum());
@@ -93,6 +98,7 @@ impl<'a> Charts<'a> {
             ));
         }
         values.extend(step.speeds);
+        values.extend(efforts);
         values.extend(self.steps.take());
         values
     }
@@ -129,7 +135,7 @@ fn local_coordinates(body: &Body, q: &[f64]) -> Vec<f64> {
 }
 
 /// Which columns there are, numbered in the order of [`Charts::values`].
-fn described(mechanism: &Mechanism, next: &mut usize) -> Vec<Chart> {
+fn described(mechanism: &Mechanism, controlled: bool, next: &mut usize) -> Vec<Chart> {
     let mut plain = |name: &str, unit: &str, columns: &[&str]| {
         let columns = numbered(columns.iter().copied(), next);
         variant(name, unit, None, columns)
@@ -142,18 +148,22 @@ fn described(mechanism: &Mechanism, next: &mut usize) -> Vec<Chart> {
         plain(&about("the world’s origin"), "kg m²/s", &["x", "y", "z"]),
         plain(&about("the centre of mass"), "kg m²/s", &["x", "y", "z"]),
     ];
-    let mut coordinates = Vec::new();
-    for (index, body) in mechanism.bodies().iter().enumerate() {
-        let columns = numbered(body.joint().freedoms().iter().copied(), next);
-        let unit = units(body, |angular| if angular { "rad" } else { "m" });
-        coordinates.push(variant(body.joint_name(), &unit, Some(index), columns));
-    }
-    let mut speeds = Vec::new();
-    for (index, body) in mechanism.bodies().iter().enumerate() {
-        let columns = numbered(body.joint().speeds().iter().copied(), next);
-        let unit = units(body, |angular| if angular { "rad/s" } else { "m/s" });
-        speeds.push(variant(body.joint_name(), &unit, Some(index), columns));
-    }
+    let joints =
+        |names: fn(&Body) -> &[&'static str], units: [&'static str; 2], next: &mut usize| {
+            let bodies = mechanism.bodies().iter().enumerate();
+            let variants = bodies.map(|(index, body)| {
+                let columns = numbered(names(body).iter().copied(), next);
+                let unit = unit(body, units);
+                variant(body.joint_name(), &unit, Some(index), columns)
+            });
+            variants.collect::<Vec<_>>()
+        };
+    let coordinates = joints(|body| body.joint().freedoms(), ["rad", "m"], next);
+    let speeds = joints(|body| body.joint().speeds(), ["rad/s", "m/s"], next);
+    let efforts = match controlled {
+        true => joints(|body| body.joint().freedoms(), ["N m", "N"], next),
+        false => Vec::new(),
+    };
     let columns = numbered(["longest", "shortest"].into_iter(), next);
     let steps = vec![variant("", "s", None, columns)];
     [
@@ -162,6 +172,7 @@ fn described(mechanism: &Mechanism, next: &mut usize) -> Vec<Chart> {
         ("Momentum", false, momentum),
         ("Coordinates ϕ from home", false, coordinates),
         ("Speeds v̄", false, speeds),
+        ("Controller’s efforts τ", false, efforts),
         ("Integration steps", true, steps),
     ]
     .map(|(title, log, variants)| Chart {
@@ -169,7 +180,9 @@ fn described(mechanism: &Mechanism, next: &mut usize) -> Vec<Chart> {
         log,
         variants,
     })
-    .into()
+    .into_iter()
+    .filter(|chart| !chart.variants.is_empty())
+    .collect()
 }
 
 fn variant(name: &str, unit: &str, body: Option<usize>, columns: Vec<Column>) -> Variant {
@@ -193,15 +206,14 @@ fn numbered<'n>(names: impl Iterator<Item = &'n str>, next: &mut usize) -> Vec<C
     columns.collect()
 }
 
-/// Units of a joint's freedoms: those that turn the body are angular.
-fn units(body: &Body, unit: impl Fn(bool) -> &'static str) -> String {
+/// Unit of a joint's freedoms, of those for turns and for slides: freedoms that turn the body are angular.
+fn unit(body: &Body, units: [&'static str; 2]) -> String {
     let mut map = Matrix6xX::zeros(body.joint().layout().freedoms);
     body.joint()
         .twist_map_child(&body.home(), map.as_mut_slice());
     let columns = map.column_iter();
     let turns: Vec<bool> = columns.map(|twist| twist.rows(0, 3).amax() > 0.0).collect();
-    let units = [true, false]
-        .into_iter()
-        .filter(|kind| turns.contains(kind));
-    units.map(unit).collect::<Vec<_>>().join(", ")
+    let units = [true, false].into_iter().zip(units);
+    let units = units.filter(|(kind, _)| turns.contains(kind));
+    units.map(|(_, unit)| unit).collect::<Vec<_>>().join(", ")
 }

@@ -1,7 +1,7 @@
 //! What a page is told of the mechanism and of the run, as JSON.
 
 use super::super::plan::Plan;
-use super::blob::seven;
+use super::super::sample::seven;
 use super::charts::Chart;
 use super::solids::{Ellipsoid, Shape};
 use hamel::mechanism::Body;

@@ -55,7 +55,7 @@ impl<'a> Page<'a> {
             error,
         })?;
         let bodies = plan.scene.mechanism.bodies().len() as f64;
-        let charts = Charts::new(&plan.scene.mechanism);
+        let charts = Charts::new(&plan.scene.mechanism, plan.control.is_some());
         Ok(Some(Self {
             blob: Blob::new(charts.columns()),
             charts,
@@ -73,7 +73,9 @@ impl<'a> Page<'a> {
     }
 
     /// Takes a sample as a frame, unless the frame before it is too near. The first and the last sample are frames.
-    pub fn sample(&mut self, step: &Step<'_>, kinematics: &Kinematics) {
+    ///
+    /// `efforts` are the controller's, empty without one.
+    pub fn sample(&mut self, step: &Step<'_>, kinematics: &Kinematics, efforts: &[f64]) {
         let near = step.time - self.last_frame < self.spacing * (1.0 - ROUNDING);
         let is_last = step
             .sample
@@ -82,7 +84,7 @@ impl<'a> Page<'a> {
             return;
         }
         self.last_frame = step.time;
-        let columns = self.charts.values(step, kinematics);
+        let columns = self.charts.values(step, kinematics, efforts);
         let poses = kinematics.bodies.iter().map(|body| body.pose);
         self.blob.push(step.time, &columns, poses);
     }

@@ -1,6 +1,6 @@
 //! What stands for a body: the ellipsoid of its inertia, and simple shapes of the scene.
 
-use super::blob::seven;
+use super::super::sample::seven;
 use hamel::spatial::{MassProperties, Pose};
 use hamel_scene::{Geometry, ShapeDescription};
 use nalgebra::{Matrix3, Vector3};

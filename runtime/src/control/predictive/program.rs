@@ -19,7 +19,6 @@ pub(super) struct Program {
 impl Program {
     /// A program of `size` numbers.
     pub(super) fn new(size: usize) -> Result<Self, ControlError> {
-        let refuse = |status: String| ControlError::Optimizer { time: 0.0, status };
         // Every place of the upper triangle is there from the start: later programs only change numbers.
         let full = upper(&DMatrix::from_element(size, size, 1.0));
         let starts = (0..=size).map(|column| column * (column + 1) / 2).collect();
@@ -29,7 +28,7 @@ impl Program {
             .verbose(false)
             .presolve_enable(false)
             .build()
-            .map_err(|error| refuse(error.to_string()))?;
+            .map_err(|error| ControlError::Optimizer(error.to_string()))?;
         let bounds = vec![1.0; 2 * size];
         let solver = DefaultSolver::new(
             &hessian,
@@ -39,7 +38,7 @@ impl Program {
             &[NonnegativeConeT(2 * size)],
             settings,
         )
-        .map_err(|error| refuse(error.to_string()))?;
+        .map_err(|error| ControlError::Optimizer(error.to_string()))?;
         Ok(Self {
             hessian: DMatrix::zeros(size, size),
             gradient: DVector::zeros(size),

@@ -4,6 +4,7 @@ use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
 use super::link::Kind;
 use crate::dynamics::DynamicsError;
+use crate::dynamics::error::Space;
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use crate::spatial::fused::{add_cross, dot};
 use crate::spatial::{shift_wrench, split};
@@ -84,7 +85,7 @@ impl MassMatrix {
             let pivot = self.factors[k * size + k];
             let limit = ROUNDINGS * size as f64 * f64::EPSILON * self.rows[k * size + k];
             if pivot.is_nan() || pivot <= limit {
-                return Err(mechanism.singular_speed(k, pivot, limit));
+                return Err(mechanism.singular_mass(Space::Speeds, k, pivot, limit));
             }
             let (above, row) = self.factors.split_at_mut(k * size);
             let mut ancestor = self.parents[k];

@@ -120,16 +120,18 @@ fn inverse(matrix: &Matrix6<f64>) -> Result<Matrix6<f64>, (usize, f64)> {
     }
     let scaled = Matrix6::from_fn(|i, j| matrix[(i, j)] * scales[i] * scales[j]);
     let mut left = scaled;
+    let mut factor = Matrix6::zeros();
     for k in 0..6 {
         let pivot = left[(k, k)];
         if pivot.is_nan() || pivot <= LEAST_PIVOT {
             return Err((k, pivot));
         }
-        let column = left.column(k).into_owned();
-        left -= column * column.transpose() / pivot;
+        let column = left.column(k) / Float::sqrt(pivot);
+        left -= column * column.transpose();
+        factor.set_column(k, &column);
     }
-    let factors = Cholesky::new(scaled).ok_or((5, 0.0))?;
-    let inverse = factors.inverse();
+    // What rounding leaves above the diagonal is not read.
+    let inverse = Cholesky::pack_dirty(factor).inverse();
     Ok(Matrix6::from_fn(|i, j| {
         inverse[(i, j)] * scales[i] * scales[j]
     }))

@@ -3,6 +3,7 @@
 use super::Recursive;
 use super::link::{Link, Node};
 use crate::dynamics::DynamicsError;
+use crate::dynamics::error::Space;
 use crate::spatial::{ArticulatedInertia, add_weighted, shift_twist, shift_wrench};
 use crate::steps::{Motion, PivotFailure};
 use nalgebra::Vector6;
@@ -292,27 +293,9 @@ pub(super) fn combine(
 }
 
 impl crate::mechanism::Mechanism {
-    /// The joint behind a speed whose pivot failed.
-    pub(super) fn singular_speed(&self, speed: usize, pivot: f64, limit: f64) -> DynamicsError {
-        let mut bodies = self.bodies().iter();
-        let body = bodies.position(|body| body.ranges().speeds.contains(&speed));
-        let body = body.unwrap_or(0);
-        let failure = PivotFailure {
-            speed: speed - self.bodies()[body].ranges().speeds.start,
-            pivot,
-            limit,
-        };
-        self.singular(body, &failure)
-    }
-
-    /// The joint and speed behind a pivot that failed.
+    /// The joint and speed behind a pivot that failed in the sweep.
     pub(super) fn singular(&self, body: usize, failure: &PivotFailure) -> DynamicsError {
-        let body = &self.bodies()[body];
-        DynamicsError::SingularMass {
-            joint: body.joint_name().into(),
-            speed: body.joint().speeds().get(failure.speed).unwrap_or(&""),
-            pivot: failure.pivot,
-            limit: failure.limit,
-        }
+        let speed = self.bodies()[body].ranges().speeds.start + failure.speed;
+        self.singular_mass(Space::Speeds, speed, failure.pivot, failure.limit)
     }
 }

@@ -97,7 +97,8 @@ impl Expansion {
         set_gradient_blocks(&mut self.speed_basis_gradient, own, speeds, &slices);
     }
 
-    /// Rotor inertias: constant, and at joints alone whose v are the rates of coordinates.
+    /// Rotor inertias on the diagonal of M. They are constant in Q, so that ∂M/∂ϕ has no part of theirs; where v is no rate of coordinates,
+    /// S and ∂S/∂ϕ bring in what a rotor exerts, as they do for every other part of M.
     fn add_armature(&mut self, mechanism: &Mechanism) {
         for (index, body) in mechanism.bodies().iter().enumerate() {
             let freedoms = body.ranges().freedoms.clone();

@@ -2,8 +2,9 @@
 //!
 //! The same matrices serve nonholonomic joints before their reduction, with v in place of v̄.
 
-use super::factor::{Space, factor};
+use super::factor::factor;
 use super::{DynamicsError, Expansion};
+use crate::dynamics::error::Space;
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 

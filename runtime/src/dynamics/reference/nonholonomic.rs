@@ -3,9 +3,10 @@
 //! Where every S̄ is the identity, these are the equations of Theorem 2.
 
 use super::equipment::hold;
-use super::factor::{Space, factor};
+use super::factor::factor;
 use super::holonomic::{combine, from_columns};
 use super::{DynamicsError, Expansion};
+use crate::dynamics::error::Space;
 use crate::mechanism::Mechanism;
 use nalgebra::{Cholesky, DMatrix, DVector};
 

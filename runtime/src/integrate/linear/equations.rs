@@ -44,8 +44,9 @@ impl Equations {
     ) -> Result<(), DynamicsError> {
         match self {
             Self::Lagrangian(at) => {
-                dynamics.forward_dynamics_derivatives(q, y, efforts, at)?;
                 rates.speeds.copy_from_slice(y);
+                dynamics.complete_speeds(q, &mut rates.speeds)?;
+                dynamics.forward_dynamics_derivatives(q, &rates.speeds, efforts, at)?;
                 rates.y.copy_from_slice(at.rates());
                 Ok(())
             }
@@ -65,26 +66,34 @@ impl Equations {
         faster: &mut Sensitivity,
         slopes: &mut Sensitivity,
     ) {
+        self.hasten(local, y, faster);
         let (by_local, by_y, by_efforts) = match self {
-            Self::Lagrangian(at) => {
-                faster.entries_mut().copy_from_slice(y.entries());
-                (at.by_local(), at.by_speeds(), at.by_efforts())
-            }
-            Self::Hamiltonian(at) => {
-                set_products(
-                    faster,
-                    (at.speeds_by_local(), local),
-                    (at.speeds_by_momenta(), y),
-                );
-                (
-                    at.rates_by_local(),
-                    at.rates_by_momenta(),
-                    at.rates_by_efforts(),
-                )
-            }
+            Self::Lagrangian(at) => (at.by_local(), at.by_speeds(), at.by_efforts()),
+            Self::Hamiltonian(at) => (
+                at.rates_by_local(),
+                at.rates_by_momenta(),
+                at.rates_by_efforts(),
+            ),
         };
         set_products(slopes, (by_local, local), (by_y, y));
         add_efforts(slopes, by_efforts);
+    }
+
+    /// δv̄ into `faster`, of ξ and δy; speeds that depend on others follow them.
+    pub(super) fn hasten(&self, local: &Sensitivity, y: &Sensitivity, faster: &mut Sensitivity) {
+        match self {
+            Self::Lagrangian(at) => match at.completed_speeds() {
+                None => faster.entries_mut().copy_from_slice(y.entries()),
+                Some([by_local, by_speeds]) => {
+                    set_products(faster, (by_local, local), (by_speeds, y));
+                }
+            },
+            Self::Hamiltonian(at) => set_products(
+                faster,
+                (at.speeds_by_local(), local),
+                (at.speeds_by_momenta(), y),
+            ),
+        }
     }
 }
 

@@ -161,7 +161,24 @@ impl LinearStep {
         self.charts.set(&mechanism, q, &self.phi, speeds);
         self.charts.localize(&self.change.phi, &mut self.local);
         self.charts.carry(&mut self.local);
+        self.complete(efforts)?;
         self.store();
+        Ok(())
+    }
+
+    /// Where constraints couple joints, the speeds of the state reached that depend on the others, and how they change.
+    fn complete(&mut self, efforts: &[f64]) -> Result<(), StepFailure> {
+        if self.dynamics.mechanism().constraints().is_empty() {
+            return Ok(());
+        }
+        let rates = &mut self.stages[0].rates;
+        let reached = (&self.configuration[..], &self.y[..], efforts);
+        self.equations
+            .evaluate(&mut self.dynamics, reached, rates)?;
+        self.y.copy_from_slice(&rates.speeds);
+        let Change { y, .. } = &mut self.change;
+        self.equations.hasten(&self.local, y, &mut self.faster);
+        y.entries_mut().copy_from_slice(self.faster.entries());
         Ok(())
     }
 

@@ -4,13 +4,13 @@ mod control;
 mod equip;
 mod forces;
 mod joint;
+mod place;
 mod state;
 
 pub(crate) use control::control;
 pub(crate) use state::{State, state};
 
 use crate::description::SceneDescription;
-use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::scene::Scene;
 use hamel::mechanism::{BodySpec, Mechanism};
@@ -45,13 +45,13 @@ pub(crate) fn scene(
         .and_then(|mechanism| equip::couple(mechanism, description, &configuration))
         .map_err(|errors| {
             let errors = errors.into_iter();
-            errors.for_each(|error| sink.push(Diagnostic::without_place(error.to_string())));
+            errors.for_each(|error| sink.push(place::refused(description, &error)));
         })
         .ok()?;
     let mechanism = Arc::new(mechanism);
     mechanism.set_driven_speeds(0.0, &mut speeds);
     equip::complete(&mechanism, &configuration, &mut speeds)
-        .map_err(|error| sink.push(Diagnostic::without_place(error.to_string())))
+        .map_err(|error| sink.push(place::undetermined(description, &error)))
         .ok()?;
     let control = match &description.controller {
         Some(controller) => {

@@ -77,12 +77,13 @@ impl<'a> Value<'a> {
 
     /// A text in one line.
     pub(crate) fn text(&self, sink: &mut Sink) -> Option<Located<String>> {
-        self.text_without(char::is_control, sink)
+        self.text_where(str::to_owned, char::is_control, sink)
     }
 
-    /// A text that may have several lines.
+    /// A text that may have several lines, and tabs in them. Lines end in `\n`, whichever ends the file has.
     pub(crate) fn prose(&self, sink: &mut Sink) -> Option<Located<String>> {
-        self.text_without(|c| c.is_control() && c != '\n', sink)
+        let refused = |c: char| c.is_control() && c != '\n' && c != '\t';
+        self.text_where(|text| text.replace("\r\n", "\n"), refused, sink)
     }
 
     /// One of `names`.
@@ -103,21 +104,23 @@ impl<'a> Value<'a> {
     }
 
     /// Names and descriptions go to terminals and into tables, where control characters would do harm.
-    fn text_without(
+    fn text_where(
         &self,
+        normal: impl Fn(&str) -> String,
         refused: impl Fn(char) -> bool,
         sink: &mut Sink,
     ) -> Option<Located<String>> {
         let DeValue::String(text) = self.value.get_ref() else {
             return self.wrong_type("a string", sink);
         };
+        let text = normal(text);
         if let Some(character) = text.chars().find(|&c| refused(c)) {
             let path = self.path();
             let message = format!("{path} contains the control character {character:?}");
             sink.push(Diagnostic::new(self.span(), message));
             return None;
         }
-        Some(Located::new(text.clone().into_owned(), self.span()))
+        Some(Located::new(text, self.span()))
     }
 
     /// A list of finite numbers, of any length.

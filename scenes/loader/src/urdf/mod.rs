@@ -139,7 +139,7 @@ fn import(
         return None;
     }
     let mut notices = Notices::default();
-    let version = version(root);
+    let version = version(root, &mut notices);
     let mut audit = Audit {
         sink,
         notices: &mut notices,
@@ -158,11 +158,26 @@ fn import(
     convert::convert(&parsed, version, source, options, notices, sink)
 }
 
-/// Version of URDF: 1.0 where the file does not say.
-fn version(root: Node<'_, '_>) -> (u32, u32) {
-    let text = root.attribute("version").unwrap_or("1.0");
-    let parts = text.trim().split_once('.').unwrap_or((text.trim(), "0"));
-    (parts.0.parse().unwrap_or(1), parts.1.parse().unwrap_or(0))
+/// Versions of URDF, in their order.
+const VERSIONS: [(u32, u32); 3] = [(1, 0), (1, 1), (1, 2)];
+
+/// Version of URDF: 1.0 where the file does not say; the nearest known one before it, with a notice, where what it says is not known.
+fn version(root: Node<'_, '_>, notices: &mut Notices) -> (u32, u32) {
+    let [oldest, ..] = VERSIONS;
+    let Some(text) = root.attribute("version") else {
+        return oldest;
+    };
+    let (major, minor) = text.trim().split_once('.').unwrap_or((text.trim(), "0"));
+    let given = major.parse().ok().zip(minor.parse().ok());
+    let before = |known: &&(u32, u32)| given.is_some_and(|given| **known <= given);
+    let found = *VERSIONS.iter().rfind(before).unwrap_or(&oldest);
+    if given != Some(found) {
+        let (text, (major, minor)) = (audit::safe(text), found);
+        let message =
+            format!("version `{text}` of URDF is not known: it is read as {major}.{minor}");
+        notices.add(message, "<robot>");
+    }
+    found
 }
 
 /// Joins what the parser read with the document.

@@ -1,9 +1,12 @@
-//! Forward dynamics where the motion of some joints is prescribed: the others answer, and the accelerations of the driven ones are inputs.
+//! Forward dynamics and the port-Hamiltonian form where the motion of some joints is prescribed: the others answer, and the accelerations of the
+//! driven ones are inputs.
 
-use super::{BOUND, Equipment, Equipped, Expected, place, relative};
-use hamel::dynamics::{ForwardDerivatives, Recursive};
+use super::{
+    BOUND, Equipment, Equipped, Expected, constants, derivatives, matrix, place, relative,
+};
+use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, Recursive};
 use hamel::elements::{Drive, Law};
-use hamel::nalgebra::DMatrix;
+use hamel::nalgebra::{DMatrix, DVector};
 use hamel_tests::figures::Largest;
 use hamel_tests::random::{Case, cases, library};
 use std::sync::Arc;
@@ -31,14 +34,35 @@ fn all() -> Vec<Equipped> {
     cases(&library(), 12, 48).map(equipped).collect()
 }
 
+/// The speeds of joints that are driven, or of those that are not.
+fn speeds(case: &Case, driven: bool) -> Vec<usize> {
+    let bodies = case.mechanism.bodies().iter().enumerate();
+    let chosen = bodies.filter(|(body, _)| case.mechanism.is_driven(*body) == driven);
+    chosen
+        .flat_map(|(_, body)| body.ranges().speeds.clone())
+        .collect()
+}
+
 /// The rows of free speeds.
 fn of_free(case: &Case, matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let bodies = case.mechanism.bodies().iter().enumerate();
-    let free = bodies.filter(|(body, _)| !case.mechanism.is_driven(*body));
-    let rows: Vec<usize> = free
-        .flat_map(|(_, body)| body.ranges().speeds.clone())
-        .collect();
-    matrix.select_rows(&rows)
+    matrix.select_rows(&speeds(case, false))
+}
+
+/// What the free speeds answer with to forces on all, by M̄ of the free alone; 0 for the others.
+fn answer(case: &Case, mass: &DMatrix<f64>, forces: &DMatrix<f64>) -> DMatrix<f64> {
+    let free = of_free(case, &of_free(case, mass).transpose());
+    let mut all = DMatrix::zeros(forces.nrows(), forces.ncols());
+    if free.is_empty() {
+        return all;
+    }
+    let found = free
+        .cholesky()
+        .expect("positive")
+        .solve(&of_free(case, forces));
+    for (row, speed) in speeds(case, false).into_iter().enumerate() {
+        all.set_row(speed, &found.row(row));
+    }
+    all
 }
 
 /// `∂v̄̇/∂τ` times M̄ of the free: S̄ᵀ, with the accelerations of driven joints in place of their efforts.
@@ -71,7 +95,6 @@ fn free_joints_answer() {
             .expect("covered");
         let [by_local, by_speeds] = oracle.inverse(case, found.rates());
         let [efforts, basis] = oracle.inputs(case);
-        let mass = of_free(case, &of_free(case, &oracle.mass).transpose());
         let sides = [
             efforts - by_local,
             -by_speeds,
@@ -80,12 +103,8 @@ fn free_joints_answer() {
         let condition = oracle.condition();
         let found = [found.by_local(), found.by_speeds(), found.by_efforts()];
         for ((worst, found), side) in worst.iter_mut().zip(found).zip(&sides) {
-            let side = of_free(case, side);
-            let expected = match mass.is_empty() {
-                true => side,
-                false => mass.clone().cholesky().expect("positive").solve(&side),
-            };
             let free = of_free(case, &found.matrix());
+            let expected = of_free(case, &answer(case, &oracle.mass, side));
             worst.meet(relative(&free, &expected) / condition, place(&equipped));
         }
         driven_obey(case, &found.map(|found| found.matrix()));
@@ -106,4 +125,81 @@ fn driven_obey(case: &Case, [by_local, by_speeds, by_efforts]: &[DMatrix<f64>; 3
             }
         }
     }
+}
+
+/// The derivatives of v̄ in ϕ and p̄, of p̄̇ in ϕ, p̄ and τ. Momenta of driven joints are their speeds.
+fn port_hamiltonian(equipped: &Equipped, oracle: &Expected) -> [DMatrix<f64>; 5] {
+    let (case, form, rows) = (&equipped.case, &oracle.form, oracle.rows);
+    let (still, v) = (constants(&vec![0.0; rows]), constants(&case.speeds));
+    let momenta = |k| derivatives(&form.inverse(&form.moved(&case.q, k), &still, &v, false));
+    let by_local = -matrix(rows, (0..oracle.freedoms).map(momenta));
+    let mut by_momenta = DMatrix::identity(rows, rows);
+    for speed in speeds(case, true) {
+        by_momenta.set_column(speed, &-oracle.mass.column(speed));
+    }
+    let by_local = answer(case, &oracle.mass, &by_local);
+    let mut by_momenta = answer(case, &oracle.mass, &by_momenta);
+    for speed in speeds(case, true) {
+        by_momenta[(speed, speed)] = 1.0;
+    }
+    let along = |k: usize| {
+        let rate = by_local.column(k);
+        oracle.momentum_rates(case, form.moved(&case.q, k), rate.as_slice())
+    };
+    let faster = |j: usize| {
+        let rate = by_momenta.column(j);
+        oracle.momentum_rates(case, constants(&case.q), rate.as_slice())
+    };
+    let [_, basis] = oracle.inputs(case);
+    let mut rates = [
+        matrix(rows, (0..oracle.freedoms).map(along)),
+        matrix(rows, (0..rows).map(faster)),
+        basis,
+    ];
+    for (body, owner) in case.mechanism.bodies().iter().enumerate() {
+        if case.mechanism.is_driven(body) {
+            let ranges = owner.ranges();
+            for (speed, effort) in ranges.speeds.clone().zip(ranges.freedoms.clone()) {
+                rates
+                    .iter_mut()
+                    .for_each(|rates| rates.row_mut(speed).fill(0.0));
+                rates[2][(speed, effort)] = 1.0;
+            }
+        }
+    }
+    let [along, faster, forced] = rates;
+    [by_local, by_momenta, along, faster, forced]
+}
+
+#[test]
+fn free_joints_answer_in_the_port_hamiltonian_form() {
+    let laws = ["∂v̄/∂ϕ", "∂v̄/∂p̄", "∂p̄̇/∂ϕ", "∂p̄̇/∂p̄", "∂p̄̇/∂τ"];
+    let mut worst = laws.map(Largest::new);
+    for equipped in all() {
+        let case = &equipped.case;
+        let oracle = Expected::new(&equipped);
+        let mut p = &oracle.mass * DVector::from_column_slice(&case.speeds);
+        for speed in speeds(case, true) {
+            p[speed] = case.speeds[speed];
+        }
+        let mut found = HamiltonianDerivatives::new(&case.mechanism);
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        dynamics
+            .hamiltonian_derivatives(&case.q, p.as_slice(), &case.efforts, &mut found)
+            .expect("covered");
+        let condition = oracle.condition();
+        let expected = port_hamiltonian(&equipped, &oracle);
+        let found = [
+            found.speeds_by_local(),
+            found.speeds_by_momenta(),
+            found.rates_by_local(),
+            found.rates_by_momenta(),
+            found.rates_by_efforts(),
+        ];
+        for ((worst, found), expected) in worst.iter_mut().zip(found).zip(&expected) {
+            let error = relative(&found.matrix(), expected) / condition;
+            worst.meet(error, place(&equipped));
+        }
+    }
+    worst.iter().for_each(|worst| worst.assert_within(BOUND));
 }

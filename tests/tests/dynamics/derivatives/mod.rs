@@ -1,5 +1,6 @@
 //! Derivatives of the dynamics by recursion against dual numbers, on random trees of all joints of the library and on real robots.
 
+mod coupled;
 mod driven;
 mod dual;
 mod refusals;

@@ -3,7 +3,7 @@
 use hamel::dynamics::{
     Dynamics, DynamicsError, HamiltonianDerivatives, InverseDerivatives, Recursive,
 };
-use hamel::elements::{Action, Drive, Element, ElementError, Law, PointConstraint, View};
+use hamel::elements::{Action, Element, ElementError, PointConstraint, View};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::Vector3;
 use hamel_tests::random::{Case, cases, library};
@@ -52,20 +52,14 @@ fn what_is_not_covered_is_refused_by_name() {
     let case = cases(&library(), 2, 2).last().expect("two bodies");
     let mechanism = || (*case.mechanism).clone();
     let silent = mechanism().with_elements(vec![Arc::new(Silent)]);
-    let drive = Drive {
-        name: "shaker".to_owned(),
-        body: 0,
-        laws: vec![Law::default(); case.mechanism.bodies()[0].ranges().speeds.len()],
-    };
     let constraint = PointConstraint {
         name: "wheel".to_owned(),
         body: 1,
         point: Vector3::new(0.1, 0.2, 0.3),
         direction: Vector3::new(0.2, 0.9, 0.4),
     };
-    let driven = mechanism().with_drives(vec![drive]);
     let coupled = mechanism().with_constraints(vec![constraint], &case.q);
-    for (changed, name) in [(silent, "silent"), (driven, "shaker"), (coupled, "wheel")] {
+    for (changed, name) in [(silent, "silent"), (coupled, "wheel")] {
         let message = refusal(&case, changed.expect("it fits"));
         assert!(message.contains(&format!("`{name}`")), "{message}");
     }

@@ -116,7 +116,7 @@ impl Recursive {
         .unwrap_or(Ok(()))
     }
 
-    fn coupling_force_with(
+    pub(in crate::dynamics::recursive) fn coupling_force_with(
         &mut self,
         q: &[f64],
         speeds: &[f64],

@@ -9,6 +9,7 @@ mod lagrangian;
 
 use super::Recursive;
 use crate::dynamics::DynamicsError;
+use crate::dynamics::error::Space;
 use crate::lu::Lu;
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{apply, cross};
@@ -109,6 +110,59 @@ impl Coupling {
             let carried: f64 = terms.map(|(i, &d)| self.basis[(i, j)] * f[d]).sum();
             reduced[j] = f[speed] + carried;
         }
+    }
+
+    /// The constrained bodies, and `(r × d; d)` at the origins of their child frames, world axes: rows of Aᵀ are products with it.
+    pub(super) fn wrenches(&self) -> impl Iterator<Item = (usize, Vector6<f64>)> {
+        self.rows.iter().map(|row| (row.body, row.wrench))
+    }
+
+    /// v̄̇ of the tree, after [`Recursive::coupling_force_with`].
+    pub(super) fn accelerations(&self) -> &[f64] {
+        &self.other
+    }
+
+    /// Column j of B.
+    pub(super) fn copy_basis(&self, j: usize, into: &mut [f64]) {
+        into.copy_from_slice(self.basis.column(j).as_slice());
+    }
+
+    /// `A_dᵀ x = b` in place.
+    pub(super) fn solve_dependent(&mut self, x: &mut [f64]) {
+        self.lu.solve(x);
+    }
+
+    /// x of `S̄ᵀMS̄ x = −S̄ᵀ (r + M p)`, with the dependent entries of p, after [`Recursive::coupled_accelerations`]. Prescribed entries are 0, but for
+    /// `prescribed`, a speed of the tree, which is 1.
+    pub(super) fn answer(&self, r: &[f64], p: &[f64], prescribed: Option<usize>, x: &mut [f64]) {
+        self.reduce(r, x);
+        let given = prescribed.and_then(|speed| self.independent.iter().position(|&i| i == speed));
+        for (j, x) in x.iter_mut().enumerate() {
+            // M S̄ holds S̄ᵀ M as well.
+            let carried = self.dependent.iter().zip(p);
+            let carried: f64 = carried.map(|(&d, p)| self.momenta[(d, j)] * p).sum();
+            let moved = given.map_or(0.0, |given| self.mass[(j, given)]);
+            *x = -(*x + carried + moved);
+        }
+        self.solve_factored(x);
+        if let Some(given) = given {
+            x[given] = 1.0;
+        }
+    }
+
+    /// `(S̄ᵀMS̄)⁻¹ x` in place after [`Coupling::factored`] holds its factor; entries of prescribed speeds become 0.
+    fn solve_factored(&self, x: &mut [f64]) {
+        for (x, _) in x
+            .iter_mut()
+            .zip(&self.driven)
+            .filter(|(_, driven)| **driven)
+        {
+            *x = 0.0;
+        }
+        let mut side = nalgebra::DVectorViewMut::from_slice(x, self.factored.nrows());
+        // The pivots are above zero.
+        _ = self.factored.solve_lower_triangular_mut(&mut side)
+            && self.factored.tr_solve_lower_triangular_mut(&mut side);
     }
 
     /// Entries of independent speeds into their places, 0 elsewhere.
@@ -245,16 +299,14 @@ impl Recursive {
             mass.row_mut(j).fill(0.0);
             mass.column_mut(j).fill(0.0);
             mass[(j, j)] = 1.0;
-            x[j] = 0.0;
         }
         if let Err((row, pivot, limit)) = cholesky(mass) {
             let speed = coupling.independent[row];
-            return Err(self.mechanism.singular_speed(speed, pivot, limit));
+            return Err(self
+                .mechanism
+                .singular_mass(Space::Speeds, speed, pivot, limit));
         }
-        let mut side = nalgebra::DVectorViewMut::from_slice(x, mass.nrows());
-        // The pivots are above zero.
-        _ = mass.solve_lower_triangular_mut(&mut side)
-            && mass.tr_solve_lower_triangular_mut(&mut side);
+        coupling.solve_factored(x);
         Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::acting::{Acting, Yielding, add_response};
 use super::coriolis::{ArticulatedCoriolis, Coriolis};
+use super::coupled::Coupled;
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
 use super::sweep::{LANES, Push, Sweep, Tree};
@@ -20,11 +21,13 @@ use nalgebra::{Vector3, Vector6};
 #[derive(Clone, Debug)]
 pub struct ForwardDerivatives {
     pub(super) rates: Vec<f64>,
-    by_local: Sensitivity,
-    by_speeds: Sensitivity,
-    by_efforts: Sensitivity,
+    pub(super) by_local: Sensitivity,
+    pub(super) by_speeds: Sensitivity,
+    pub(super) by_efforts: Sensitivity,
     /// For mechanisms of few speeds.
     inverse: Option<InverseDerivatives>,
+    /// For constraints that couple joints.
+    pub(super) coupled: Option<Coupled>,
     pub(super) responses: Responses,
     acting: Acting,
     yielding: Yielding,
@@ -112,6 +115,7 @@ impl ForwardDerivatives {
             by_efforts: Sensitivity::new(speeds, freedoms),
             inverse: (speeds <= FEW && speeds == freedoms)
                 .then(|| InverseDerivatives::new(mechanism)),
+            coupled: Coupled::new(mechanism),
             responses: Responses::new(mechanism),
             acting: Acting::new(mechanism),
             yielding: Yielding::new(mechanism),
@@ -137,14 +141,23 @@ impl ForwardDerivatives {
     pub const fn by_efforts(&self) -> &Sensitivity {
         &self.by_efforts
     }
+
+    /// `∂v̄/∂ϕ` and `∂v̄/∂v̄ᵢ = S̄` of the speeds that [`Dynamics::complete_speeds`] completes where constraints couple joints: a row a speed, columns of
+    /// freedoms and of speeds, 0 for the dependent ones. `None` where no constraint does, so that every speed stands for itself.
+    pub fn completed_speeds(&self) -> Option<[&Sensitivity; 2]> {
+        let coupled = self.coupled.as_ref()?;
+        Some(coupled.completed.each_ref())
+    }
 }
 
 impl Recursive {
     /// v̄̇ at (q, v̄, τ) and its derivatives in ϕ, v̄ and τ into `out`. The first efforts of a driven joint are its accelerations, here as in
-    /// [`Dynamics::accelerations`].
+    /// [`Dynamics::accelerations`]. Where constraints couple joints, the speeds that depend on the others follow them, as
+    /// [`Dynamics::complete_speeds`] has it, in ϕ and in the others: their own rows and columns are 0. `speeds` are to obey the constraints.
     ///
     /// # Errors
-    /// A singular mass matrix; a wrong size; something that acts on the mechanism and that derivatives do not cover.
+    /// A singular mass matrix; constraints that no longer determine their speeds; a wrong size; results that were made for another mechanism; an
+    /// element that does not say how what it exerts changes.
     pub fn forward_dynamics_derivatives(
         &mut self,
         q: &[f64],
@@ -153,10 +166,13 @@ impl Recursive {
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
         self.check_differentiable(
-            Equations::Forward,
+            Equations::Lagrangian,
             &[&out.by_local, &out.by_speeds, &out.by_efforts],
         )?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
+        if !self.mechanism.constraints().is_empty() {
+            return self.differentiate_coupled((q, speeds, efforts), out);
+        }
         self.set_accelerations(q, speeds, &out.rates);
         let yields = self.holonomic && self.mechanism.drives().is_empty();
         if let (true, Some(inverse)) = (yields, &mut out.inverse) {
@@ -279,7 +295,7 @@ impl Recursive {
         let link = &self.links[index];
         let (count, q) = (link.speeds.len(), &q[link.configuration.clone()]);
         if link.driven {
-            return self.push_driven(index, forced);
+            return self.push_driven(index, &mut forced[link.freedoms.clone()]);
         }
         for slot in link.freedoms.clone() {
             if self.holonomic {
@@ -314,16 +330,17 @@ impl Recursive {
         push
     }
 
-    /// What one unit of each acceleration of a driven joint pushes, which are the first of its efforts; a driven joint does not yield.
-    fn push_driven(&self, index: usize, forced: &mut [Push]) {
+    /// What one unit of each acceleration of a driven joint pushes, which are the first of its efforts, or of each speed where that is
+    /// prescribed; a driven joint does not yield.
+    pub(super) fn push_driven(&self, index: usize, pushes: &mut [Push]) {
         let link = &self.links[index];
         let inertia = self.articulated(index);
-        forced[link.freedoms.clone()].fill(Push {
+        pushes.fill(Push {
             body: index,
             ..Push::none()
         });
         let columns = &self.columns[link.speeds.clone()];
-        for (push, column) in forced[link.freedoms.clone()].iter_mut().zip(columns) {
+        for (push, column) in pushes.iter_mut().zip(columns) {
             (push.wrench, push.rate) = (inertia.apply(column), *column);
         }
     }

@@ -4,6 +4,9 @@
 //! itself and those above it, `δh = N U − ad_Zᵀ h` and `δf = −N ad_Z g − ad_Zᵀ f`, and p̄̇_j by `X̄_jᵀ δf + X°_jᵀ δh`; for j below k it changes
 //! p̄̇_j by `Uᵀ (N_j X°_j − ad_Xᵀ h_j) − (ad_Z g)ᵀ N_j X̄_j`. The speed does the same with U = X and Z = 0. With `∂v̄/∂ϕ = −M̄⁻¹ ∂(M̄ v̄)/∂ϕ` by
 //! sweeps that of fixed p̄ follow.
+//!
+//! Momenta of a driven joint are its speeds. It does not give way in the sweeps, and its speed enters the others as a rate that is pushed; its own
+//! rates are its inputs.
 
 use super::acting::Acting;
 use super::forward::{Responses, invert, respond};
@@ -101,7 +104,8 @@ impl HamiltonianDerivatives {
 }
 
 impl Recursive {
-    /// v̄ at (q, p̄) and the derivatives of v̄ and p̄̇ in ϕ, p̄ and τ into `out`.
+    /// v̄ at (q, p̄) and the derivatives of v̄ and p̄̇ in ϕ, p̄ and τ into `out`. Momenta of a driven joint are its speeds and its first efforts its
+    /// accelerations, here as in [`Dynamics::momentum_rates`].
     ///
     /// # Errors
     /// A singular mass matrix; a wrong size; something that acts on the mechanism and that derivatives do not cover.
@@ -152,7 +156,20 @@ impl Recursive {
             &out.speeds_by_local,
             &mut out.rates_by_local,
         );
+        self.obey_drives(out);
         Ok(())
+    }
+
+    /// The rates of driven joints are their first efforts, whatever else.
+    fn obey_drives(&self, out: &mut HamiltonianDerivatives) {
+        for link in self.links.iter().filter(|link| link.driven) {
+            for (speed, effort) in link.speeds.clone().zip(link.freedoms.clone()) {
+                out.rates_by_local.row_mut(speed).fill(0.0);
+                out.rates_by_momenta.row_mut(speed).fill(0.0);
+                out.rates_by_efforts.row_mut(speed).fill(0.0);
+                out.rates_by_efforts.set(speed, effort, 1.0);
+            }
+        }
     }
 
     /// What one unit of each ϕ at fixed p̄, and of each momentum, of a joint pushes.
@@ -178,6 +195,10 @@ impl Recursive {
             push.rate = variation.drift;
             out.responses.pushes[slot] = push;
         }
+        if link.driven {
+            self.push_driven(index, &mut out.by_momenta[link.speeds.clone()]);
+            return;
+        }
         for (a, speed) in link.speeds.clone().enumerate() {
             out.by_momenta[speed] = self.pushed_unit(index, a);
         }
@@ -194,7 +215,14 @@ impl Recursive {
         };
         let sweep = &mut responses.sweep;
         respond::<false>(&tree, sweep, &responses.pushes, &mut out.speeds_by_local);
-        invert(&tree, sweep, &out.by_momenta, &mut out.speeds_by_momenta);
+        if self.mechanism.drives().is_empty() {
+            return invert(&tree, sweep, &out.by_momenta, &mut out.speeds_by_momenta);
+        }
+        respond::<false>(&tree, sweep, &out.by_momenta, &mut out.speeds_by_momenta);
+        let driven = self.links.iter().filter(|link| link.driven);
+        for speed in driven.flat_map(|link| link.speeds.clone()) {
+            out.speeds_by_momenta.set(speed, speed, 1.0);
+        }
     }
 
     /// X° of one joint, and `N X° − ad_Xᵀ h`.

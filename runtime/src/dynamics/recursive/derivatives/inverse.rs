@@ -31,7 +31,7 @@ pub struct InverseDerivatives {
     pub(super) by_speeds: Sensitivity,
     branches: Vec<Branch>,
     /// One a freedom.
-    variations: Vec<Variation<f64>>,
+    pub(super) variations: Vec<Variation<f64>>,
     /// One a freedom.
     above: Vec<Above>,
     /// One a freedom: its products with one below.
@@ -85,7 +85,7 @@ impl Recursive {
             ("accelerations", accelerations.len()),
         ];
         self.check(q, &sizes)?;
-        self.check_differentiable(Equations::Inverse, &[&out.by_local, &out.by_speeds])?;
+        self.check_differentiable(Equations::Lagrangian, &[&out.by_local, &out.by_speeds])?;
         self.advance(q, speeds, Some(accelerations));
         self.differentiate_needed(q, speeds, accelerations, out);
         Ok(())

@@ -28,11 +28,12 @@
 //! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them.
 //!
 //! Elements and rotors add what [`acting`] says. Elements of one's own without slopes ([`Element::slope`](crate::elements::Element::slope)) are not
-//! covered; nor are constraints that couple joints, but in inverse dynamics, which is that of the tree; nor, in the port-Hamiltonian form, joints
-//! whose motion is prescribed. Asking for derivatives of such a mechanism is an error.
+//! covered; nor, in the port-Hamiltonian form, are constraints that couple joints. Asking for derivatives of such a mechanism is an error.
+//! Inverse dynamics is that of the tree; forward dynamics under such constraints is in [`coupled`].
 
 mod acting;
 mod coriolis;
+mod coupled;
 mod energy;
 mod forward;
 mod hamiltonian;
@@ -104,6 +105,10 @@ impl Sensitivity {
         &mut self.entries
     }
 
+    fn row_mut(&mut self, row: usize) -> &mut [f64] {
+        &mut self.entries[row * self.columns..(row + 1) * self.columns]
+    }
+
     fn clear(&mut self) {
         self.entries.fill(0.0);
     }
@@ -143,10 +148,8 @@ impl Sensitivity {
 /// What is to be differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Equations {
-    /// Inverse dynamics.
-    Inverse,
-    /// Forward dynamics.
-    Forward,
+    /// Inverse and forward dynamics.
+    Lagrangian,
     /// The port-Hamiltonian form.
     Hamiltonian,
 }
@@ -169,17 +172,11 @@ impl Recursive {
         let element = mechanism.elements().iter().find(|e| e.slope().is_none());
         let element = element.map(|element| ("an element without slopes", element.name()));
         let constraint = match equations {
-            // The tree's own: what constraints exert is no part of it.
-            Equations::Inverse => None,
-            Equations::Forward | Equations::Hamiltonian => mechanism.constraints().first(),
+            Equations::Lagrangian => None,
+            Equations::Hamiltonian => mechanism.constraints().first(),
         };
         let constraint = constraint.map(|c| ("a constraint that couples joints", &c.name[..]));
-        let drive = match equations {
-            Equations::Inverse | Equations::Forward => None,
-            Equations::Hamiltonian => mechanism.drives().first(),
-        };
-        let drive = drive.map(|drive| ("a joint whose motion is prescribed", &drive.name[..]));
-        match element.or(constraint).or(drive) {
+        match element.or(constraint) {
             Some((what, name)) => Err(DynamicsError::NotDifferentiable {
                 what,
                 name: name.into(),

@@ -1,0 +1,89 @@
+//! What the signs of expressions are taken to be.
+
+use crate::domain::Domain;
+use crate::expr::Expr;
+use crate::spec;
+
+fn check(parameters: &str, pose: &str) -> bool {
+    check_with(parameters, "", pose)
+}
+
+fn check_with(parameters: &str, require: &str, pose: &str) -> bool {
+    let source = format!(
+        "hamel = 1;\njoint test{parameters} {{ {require} config q: R1; H = trans_z({pose} + 0 * q); }}"
+    );
+    let joint = spec::parse(&source, "test.joint").expect("a valid spec");
+    let expression: Expr = joint.pose.value.translation.at(2, 0).clone();
+    Domain::new(&joint).is_positive(&expression)
+}
+
+#[test]
+fn constants_outweigh_bounded_terms() {
+    assert!(check("", "2 + sin(q)"));
+    assert!(!check("", "1 + sin(q)"));
+    assert!(!check("", "2 + q"));
+    assert!(check("", "pi - 3"));
+    assert!(!check("", "3 - pi"));
+}
+
+#[test]
+fn even_powers_and_exponentials_are_not_negative() {
+    assert!(check("", "1 + q * q"));
+    assert!(!check("", "q * q"));
+    assert!(check("", "cosh(q)"));
+    assert!(check("(a: m)", "a * a + q * q"));
+    assert!(!check("(a: m)", "a + q * q"));
+    assert!(check(
+        "(a: m > 0)",
+        "1 + a * q * q / sqrt(q * q + a * a) / (q * q + a * a)"
+    ));
+    assert!(check("", "sqrt(1 + q * q)"));
+    assert!(!check("", "sqrt(q * q)"));
+}
+
+#[test]
+fn a_parameter_that_may_vanish_has_squares_that_may() {
+    assert!(!check("(a: m >= 0)", "a * a + q * q"));
+    assert!(check("(a: m >= 0)", "1 + a + a * a * a * q * q"));
+    assert!(!check("(a: m <= 0)", "1 + a"));
+}
+
+#[test]
+fn conditions_between_parameters_are_multiplied_out() {
+    for (parameters, require, pose) in [
+        (
+            "(a: m > 0, b: m > 0)",
+            "require a > b;",
+            "a * a - b * b * sin(q) * sin(q)",
+        ),
+        (
+            "(a: m > 0, b: m > 0)",
+            "require a > b;",
+            "1 - b * b / (a * a) * sin(q) * sin(q)",
+        ),
+        (
+            "(a: m > 0, b: m > 0, c: m > 0)",
+            "require a > b + c;",
+            "a - c * sin(q) + b * cos(q)",
+        ),
+        ("(a: 1 in 0..1)", "", "1 - a * a * cos(q)"),
+        ("(a: m > 2)", "", "a - 2 * sin(q)"),
+    ] {
+        assert!(check_with(parameters, require, pose), "{pose}");
+    }
+    assert!(!check_with("(a: 1 in 0..=1)", "", "1 - a * cos(q)"));
+    assert!(!check_with(
+        "(a: m > 0, b: m > 0)",
+        "require a > b;",
+        "a - b * sin(q) - b * cos(q)"
+    ));
+}
+
+#[test]
+fn functions_of_parameters_have_the_signs_of_their_ranges() {
+    assert!(check("(a: rad > 0 < 1.5)", "cos(a) / sin(a) + q * q"));
+    assert!(check("(a: rad in -1..1)", "cos(3/2 * a)"));
+    assert!(!check("(a: rad in -1..1)", "sin(a)"));
+    assert!(!check("(a: rad > 0 < 1.6)", "cos(a)"));
+    assert!(!check("(a: rad > 0)", "sin(a)"));
+}

@@ -1,0 +1,102 @@
+//! Laws of X, S and the Boltzmann–Hamel terms.
+
+use super::dual::{constant, slopes, twist, unit};
+use super::{At, D2, close};
+use hamel::joint::Joint;
+use hamel::nalgebra::{SMatrix, SVector, Vector6};
+use hamel::scalar::Dual;
+
+impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize>
+    At<'_, J, N, K, S, C>
+{
+    /// Laws of X, S and the Boltzmann–Hamel terms, at ϕ = 0.
+    pub(super) fn velocity_laws(&self, v: &SVector<f64, K>, p: &SVector<f64, K>) {
+        let (joint, q) = (self.joint, &self.q);
+        let x = joint.twist_map(q);
+        let s = joint.velocity_map(q);
+        let inverse = joint.velocity_map_inverse(q);
+        close("S₀ S₀⁻¹ = I", J::NAME, &(s * inverse), &SMatrix::identity());
+        let child = joint.twist_map_child(q);
+        close(
+            "X = Ad X^c",
+            J::NAME,
+            &(joint.pose(q).adjoint() * child),
+            &x,
+        );
+        let gradient = joint.velocity_map_gradient(q);
+        let child_gradient = joint.twist_map_child_gradient(q);
+        for k in 0..K {
+            let moved = self.along(&unit(k));
+            close(
+                "J₀ = X S₀",
+                J::NAME,
+                &twist(&joint.pose(&moved)),
+                &(x * s.column(k)),
+            );
+            close(
+                "∂X^c/∂ϕ",
+                J::NAME,
+                &slopes(&joint.twist_map_child(&moved)),
+                &child_gradient[k],
+            );
+            let left = x * gradient[k] + slopes(&joint.twist_map(&moved)) * s;
+            close("X ∂S + ∂X S = ∂J", J::NAME, &left, &self.jacobian_slope(k));
+        }
+        let rate = inverse * v;
+        close(
+            "Q̇",
+            J::NAME,
+            &joint.configuration_rate(q, v),
+            &slopes(&self.along(&rate)),
+        );
+        self.hamel_laws(v, p, &gradient, &inverse);
+    }
+
+    /// ∂J/∂ϕ_l at ϕ = 0, by nested dual numbers on H(Φ(Q, ϕ)).
+    pub(super) fn jacobian_slope(&self, l: usize) -> SMatrix<f64, 6, K> {
+        let column = |k: usize| {
+            let phi: SVector<D2, K> = SVector::from_fn(|i, _| {
+                let outer = f64::from(u8::from(i == l));
+                let inner = f64::from(u8::from(i == k));
+                Dual::new(Dual::new(0.0, outer), Dual::constant(inner))
+            });
+            let q: SVector<D2, N> = constant(&constant(&self.q));
+            slopes(&twist(&self.joint.pose(&self.joint.retract(&q, &phi))))
+        };
+        let columns: Vec<Vector6<f64>> = (0..K).map(column).collect();
+        SMatrix::from_fn(|i, k| columns[k][i])
+    }
+
+    /// (17) and (28) from S₀⁻¹ and ∂S/∂ϕ.
+    pub(super) fn hamel_laws(
+        &self,
+        v: &SVector<f64, K>,
+        p: &SVector<f64, K>,
+        gradient: &[SMatrix<f64, K, K>; K],
+        inverse: &SMatrix<f64, K, K>,
+    ) {
+        let w = inverse * v;
+        let inner = SMatrix::<f64, K, K>::from_fn(|l, j| {
+            (0..K)
+                .map(|m| (gradient[m][(j, l)] - gradient[l][(j, m)]) * w[m])
+                .sum()
+        });
+        let gamma = self.joint.gamma(&self.q, v);
+        close("γ, (17)", J::NAME, &gamma, &inverse.tr_mul(&inner));
+        let b =
+            SMatrix::<f64, K, K>::from_fn(|i, m| (0..K).map(|l| gradient[m][(l, i)] * p[l]).sum());
+        let j22 = self.joint.j22(&self.q, p);
+        close(
+            "J22, (28)",
+            J::NAME,
+            &j22,
+            &(inverse.tr_mul(&(b.transpose() - b)) * inverse),
+        );
+        close(
+            "Σ γ_k v_k p = −J22 v",
+            J::NAME,
+            &(gamma * p),
+            &(j22 * v * -1.0),
+        );
+    }
+}
