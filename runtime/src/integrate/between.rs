@@ -154,6 +154,7 @@ impl Driver<'_> {
             speeds: instant.speeds,
             momenta: (self.flow.form == Form::Hamiltonian).then_some(instant.y),
             sample: Some(index),
+            is_within: true,
         };
         if observer(&step).is_break() {
             self.end = Some(state.clone());

@@ -365,6 +365,7 @@ impl<'a> Driver<'a> {
             speeds: self.standing.speeds(),
             momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.standing.y),
             sample,
+            is_within: false,
         };
         observer(&step).is_break()
     }

@@ -29,6 +29,8 @@ pub struct Step<'a> {
     pub momenta: Option<&'a [f64]>,
     /// Index of the last sample that falls on this time, if one does.
     pub sample: Option<usize>,
+    /// Whether it lies between the ends of a step: a sample of dense output.
+    pub is_within: bool,
 }
 
 /// The work done.

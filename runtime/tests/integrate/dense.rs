@@ -220,7 +220,7 @@ fn observers_see_samples_within_steps() {
         .sampling(Sampling::Dense)
         .observer(|step| {
             assert!(step.momenta.is_some());
-            seen.push((step.time, step.number, step.sample));
+            seen.push((step.time, step.number, step.sample, step.is_within));
             match step.sample {
                 Some(3) => ControlFlow::Break(()),
                 _ => ControlFlow::Continue(()),
@@ -229,10 +229,10 @@ fn observers_see_samples_within_steps() {
         .run()
         .expect("integrates");
     let expected = [
-        (0.0, 0, Some(0)),
-        (0.05, 1, Some(1)),
-        (0.1, 1, Some(2)),
-        (0.15, 2, Some(3)),
+        (0.0, 0, Some(0), false),
+        (0.05, 1, Some(1), true),
+        (0.1, 1, Some(2), false),
+        (0.15, 2, Some(3), true),
     ];
     assert_eq!(seen, expected);
     assert!(solution.stopped);
