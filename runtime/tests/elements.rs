@@ -8,7 +8,9 @@ use common::readings::{assert_same, readings};
 use common::trees::{configuration, trees};
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
 use hamel::elements::{BodyWrench, Element, JointDamper, WrenchAxes};
-use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
+use hamel::integrate::{
+    Form, Integration, Method, Options, Sampling, State, integrate, no_inputs, no_observer,
+};
 use nalgebra::{DVector, Vector3};
 use std::sync::Arc;
 
@@ -131,27 +133,28 @@ fn driven_joint_follows_its_law() {
         form: Form::Hamiltonian,
         method: Method::dormand_prince(1e-12),
         t_end: 2.0,
-        samples: Vec::new(),
+        samples: (1..30).map(|i| f64::from(i) / 15.7).collect(),
     };
     let mut dynamics = Recursive::new(Arc::clone(&mechanism));
-    let solution = integrate(
-        &mut dynamics,
-        &initial,
-        &options,
-        &mut no_inputs,
-        &mut no_observer,
-    )
-    .expect("runs");
+    let integration = Integration::new(&mut dynamics, &initial, &options);
+    let solution = integration.sampling(Sampling::Dense).run().expect("runs");
     let law = mechanism.drives()[0].laws[0];
     let displacement =
         |t: f64| law.rate * t + law.amplitude * (law.frequency * t + law.phase).sin();
     let own = mechanism.bodies()[mechanism.drives()[0].body]
         .ranges()
         .clone();
-    let turned = solution.state.configuration[own.configuration.start];
-    // Some fifty steps at 1e-12.
-    assert!((turned - (displacement(2.0) - displacement(0.0))).abs() < 1e-10);
-    assert_eq!(solution.state.speeds[own.speeds.start], law.velocity(2.0));
+    // At the end as well as between the ends of steps.
+    for state in solution.samples.iter().chain([&solution.state]) {
+        let turned = state.configuration[own.configuration.start];
+        let exact = displacement(state.time) - displacement(0.0);
+        // Some fifty steps at 1e-12.
+        assert!((turned - exact).abs() < 1e-10);
+        let speed = state.speeds[own.speeds.start];
+        // The speed is that of the law; its momentum is what is kept.
+        assert!((speed - law.velocity(state.time)).abs() < 1e-15);
+    }
+    assert_eq!(solution.samples.len(), 29);
 }
 
 #[test]

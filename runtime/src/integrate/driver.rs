@@ -1,6 +1,7 @@
 //! From the initial time to the last, by accepted steps, over the sample times.
 
 use super::approach::Watch;
+use super::between::Between;
 use super::clock::Clock;
 use super::control::Controller;
 use super::flow::Flow;
@@ -8,8 +9,8 @@ use super::options::Control;
 use super::standing::Standing;
 use super::stepper::{self, Span, Stepper};
 use super::{
-    Form, Inputs, IntegrateError, Method, Near, Observer, Options, Solution, State, Statistics,
-    Step, StepFailure,
+    Crossing, Event, Form, Inputs, IntegrateError, Method, Near, Observer, Options, Sampling,
+    Solution, State, Statistics, Step, StepFailure,
 };
 use crate::dynamics::Dynamics;
 use alloc::boxed::Box;
@@ -47,16 +48,21 @@ impl Hold {
 
 /// An integration under way.
 pub(super) struct Driver<'a> {
-    flow: Flow<'a>,
-    standing: Standing,
-    stepper: Box<dyn Stepper>,
-    options: &'a Options,
+    pub(super) flow: Flow<'a>,
+    pub(super) standing: Standing,
+    pub(super) stepper: Box<dyn Stepper>,
+    pub(super) options: &'a Options,
     hold: Option<Hold>,
-    clock: Clock,
+    pub(super) clock: Clock,
     start: f64,
-    statistics: Statistics,
-    samples: Vec<State>,
+    pub(super) statistics: Statistics,
+    pub(super) samples: Vec<State>,
+    pub(super) crossings: Vec<Crossing>,
     watch: Watch,
+    /// What is wanted between the ends of steps, if anything is.
+    pub(super) between: Option<Between<'a>>,
+    /// Where something within a step has ended the integration.
+    pub(super) end: Option<State>,
 }
 
 /// How the next step is chosen.
@@ -73,6 +79,7 @@ impl<'a> Driver<'a> {
         options: &'a Options,
         period: Option<f64>,
         inputs: &'a mut Inputs<'a>,
+        (sampling, events): (Sampling, Vec<Event<'a>>),
     ) -> Result<Self, IntegrateError> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
         let watch = Watch::new(&flow.mechanism);
@@ -80,12 +87,17 @@ impl<'a> Driver<'a> {
         if period.is_some() {
             flow.hold(time, &initial.configuration, &initial.speeds);
         }
-        let standing = Standing::new(&mut flow, time, &initial.configuration, &initial.speeds)
-            .map_err(|cause| IntegrateError::AtState {
-                time,
-                cause: Box::new(cause),
-                near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
-            })?;
+        let begun = Standing::new(&mut flow, time, &initial.configuration, &initial.speeds)
+            .and_then(|standing| {
+                let order = options.method.scheme().order();
+                let between = Between::new(sampling, events, order, (&flow, &standing, time))?;
+                Ok((standing, between))
+            });
+        let (standing, between) = begun.map_err(|cause| IntegrateError::AtState {
+            time,
+            cause: Box::new(cause),
+            near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
+        })?;
         let tolerance = options.method.control().map(|control| control.tolerance);
         Ok(Self {
             watch,
@@ -102,6 +114,9 @@ impl<'a> Driver<'a> {
             start: time,
             statistics: Statistics::default(),
             samples: Vec::with_capacity(options.samples.len()),
+            crossings: Vec::new(),
+            between,
+            end: None,
         })
     }
 
@@ -110,8 +125,8 @@ impl<'a> Driver<'a> {
         let mut pacing = self.pacing()?;
         let mut stopped = self.report(observer);
         while !stopped && self.clock.time() < self.options.t_end {
-            self.advance(&mut pacing)?;
-            stopped = self.report(observer);
+            self.advance(&mut pacing, observer)?;
+            stopped = self.end.is_some() || self.report(observer);
         }
         let solves = self.stepper.solves();
         self.statistics.evaluations = self.flow.evaluations;
@@ -119,8 +134,9 @@ impl<'a> Driver<'a> {
         self.statistics.jacobians = solves.jacobians;
         self.statistics.factorizations = solves.factorizations;
         Ok(Solution {
-            state: self.state(),
+            state: self.end.take().unwrap_or_else(|| self.state()),
             samples: self.samples,
+            events: self.crossings,
             statistics: self.statistics,
             approaches: self.watch.finish(),
             stopped,
@@ -155,7 +171,12 @@ impl<'a> Driver<'a> {
 
     /// The next sample time, or the end, or the next instant for new inputs.
     fn target(&self) -> f64 {
+        let is_dense = self
+            .between
+            .as_ref()
+            .is_some_and(|between| between.sampling == Sampling::Dense);
         let sample = self.options.samples.get(self.samples.len()).copied();
+        let sample = sample.filter(|_| !is_dense);
         let target = sample.unwrap_or(self.options.t_end);
         match &self.hold {
             Some(hold) if !hold.falls_on(target) => target.min(hold.next()),
@@ -164,12 +185,16 @@ impl<'a> Driver<'a> {
     }
 
     /// One accepted step.
-    fn advance(&mut self, pacing: &mut Pacing) -> Result<(), IntegrateError> {
+    fn advance(
+        &mut self,
+        pacing: &mut Pacing,
+        observer: &mut Observer<'_>,
+    ) -> Result<(), IntegrateError> {
         loop {
             let (step, lands) = self.choose_step(pacing.step);
             let attempt = self.attempt(pacing, step);
             let Err(cause) = attempt else {
-                return self.accept(step, lands);
+                return self.accept(step, lands, observer);
             };
             self.statistics.rejected += 1;
             self.refuse(pacing, step, cause)?;
@@ -268,7 +293,12 @@ impl<'a> Driver<'a> {
         })
     }
 
-    fn accept(&mut self, step: f64, lands: bool) -> Result<(), IntegrateError> {
+    fn accept(
+        &mut self,
+        step: f64,
+        lands: bool,
+        observer: &mut Observer<'_>,
+    ) -> Result<(), IntegrateError> {
         let start = self.clock.time();
         if lands {
             self.clock = Clock::new(self.target());
@@ -277,13 +307,19 @@ impl<'a> Driver<'a> {
         }
         let time = self.clock.time();
         let span = Span { time: start, step };
+        self.leave(span);
         let accepted = self
             .stepper
             .accept(&mut self.standing, &mut self.flow, time, span);
         accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
-        self.renew_inputs(time)
-            .map_err(|cause| self.at_state(cause))
+        // Before the inputs change: what lies within the step moved under those that were held.
+        let passed = self.pass(observer);
+        let renewed = passed.and_then(|()| match self.end {
+            Some(_) => Ok(()),
+            None => self.renew_inputs(time),
+        });
+        renewed.map_err(|cause| self.at_state(cause))
     }
 
     /// Takes new inputs where it is time for them, and the rates that they make.
@@ -329,6 +365,7 @@ impl<'a> Driver<'a> {
             speeds: self.standing.speeds(),
             momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.standing.y),
             sample,
+            is_within: false,
         };
         observer(&step).is_break()
     }

@@ -62,6 +62,14 @@ pub enum StepFailure {
         /// The joint.
         joint: String,
     },
+    /// The function of an event is NaN or infinite.
+    #[error("the function of event `{event}` is {value}: it must be finite")]
+    Event {
+        /// The event.
+        event: String,
+        /// Its value.
+        value: f64,
+    },
     /// NaN or infinity.
     #[error("the motion of joint `{joint}` is not finite")]
     NotFinite {

@@ -129,6 +129,20 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
+    /// The same, with those that constraints couple to the others.
+    pub(super) fn all_speeds_of(
+        &mut self,
+        q: &[f64],
+        y: &[f64],
+        speeds: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.speeds_of(q, y, speeds)?;
+        match self.form {
+            Form::Lagrangian => self.dynamics.complete_speeds(q, speeds),
+            Form::Hamiltonian => Ok(()),
+        }
+    }
+
     /// Rates at time `time`, at `Φ(base, phi)` and `y`.
     pub(super) fn evaluate(
         &mut self,

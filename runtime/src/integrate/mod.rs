@@ -6,22 +6,29 @@
 //! ever added to Q.
 
 mod approach;
+mod between;
 mod clock;
 mod collocation;
 mod commutator_free;
 mod control;
+mod dense;
 mod discrete_gradient;
 mod dop853;
 mod driver;
 mod error;
+mod event;
 mod explicit;
 mod exponential;
 mod flow;
+mod integration;
 mod jacobian;
 mod linear;
+mod lobatto;
+mod lookout;
 mod options;
 mod phi;
 mod residue;
+mod root;
 mod solution;
 mod standing;
 mod stepper;
@@ -31,6 +38,8 @@ mod verner;
 
 pub use approach::{Approach, Near};
 pub use error::{IntegrateError, StepFailure};
+pub use event::{Crossing, Direction, Event};
+pub use integration::{Integration, Sampling};
 pub use linear::LinearStep;
 pub use options::{Control, Form, Method, Options, Scheme};
 pub use solution::{Solution, State, Statistics, Step};
@@ -42,7 +51,7 @@ use core::ops::ControlFlow;
 /// Efforts τ (one entry a freedom) from time, q and v̄; entries are zero when it is called.
 pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
 
-/// Sees the initial state and every accepted step; breaks to end the integration there.
+/// Sees the initial state, every accepted step, and samples of dense output within them; breaks to end the integration there.
 pub type Observer<'a> = dyn FnMut(&Step<'_>) -> ControlFlow<()> + 'a;
 
 /// Inputs of a mechanism that is left alone.
@@ -53,14 +62,12 @@ pub fn no_observer(_step: &Step<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Moves a mechanism from `initial` to [`Options::t_end`].
+/// Moves a mechanism from `initial` to [`Options::t_end`]: [`Integration`] with inputs and an observer.
 ///
-/// Sample times are hit exactly, by shortening steps. The initial state is checked, not projected; speeds of
-/// joints whose motion is prescribed are those of their laws, whatever it says.
+/// Sample times are hit exactly, by shortening steps.
 ///
 /// # Errors
-/// Options out of range; `t_end` before the initial time; an initial state of the wrong size, not finite, or off the
-/// joints' manifolds; a singular mass matrix; a step that fails at fixed size, or shrinks to nothing under step control.
+/// As those of [`Integration::run`].
 pub fn integrate(
     dynamics: &mut dyn Dynamics,
     initial: &State,
@@ -68,14 +75,16 @@ pub fn integrate(
     inputs: &mut Inputs<'_>,
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
-    start(dynamics, initial, options, None, inputs)?.run(observer)
+    Integration::new(dynamics, initial, options)
+        .inputs(inputs)
+        .observer(observer)
+        .run()
 }
 
-/// As [`integrate`], with inputs that are taken at the initial time and after each `period` (s), and held in between: what a digital
-/// controller does. Steps end at these instants.
+/// As [`integrate`], with inputs that are held over `period` (s): [`Integration::held`].
 ///
 /// # Errors
-/// As those of [`integrate`]; a period that is not positive and finite.
+/// As those of [`Integration::run`].
 pub fn integrate_held(
     dynamics: &mut dyn Dynamics,
     initial: &State,
@@ -84,28 +93,9 @@ pub fn integrate_held(
     inputs: &mut Inputs<'_>,
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
-    if !(period > 0.0 && period.is_finite()) {
-        return Err(IntegrateError::Option {
-            option: "period",
-            value: period,
-            requirement: "positive and finite",
-        });
-    }
-    start(dynamics, initial, options, Some(period), inputs)?.run(observer)
-}
-
-/// An integration that has been checked and stands at its initial state.
-fn start<'a>(
-    dynamics: &'a mut dyn Dynamics,
-    initial: &State,
-    options: &'a Options,
-    period: Option<f64>,
-    inputs: &'a mut Inputs<'a>,
-) -> Result<driver::Driver<'a>, IntegrateError> {
-    options.check(initial.time)?;
-    let mechanism = dynamics.mechanism();
-    mechanism.check_configuration(&initial.configuration)?;
-    mechanism.check_speeds("speeds", &initial.speeds)?;
-    options.check_scheme(mechanism)?;
-    driver::Driver::new(dynamics, initial, options, period, inputs)
+    Integration::new(dynamics, initial, options)
+        .inputs(inputs)
+        .held(period)
+        .observer(observer)
+        .run()
 }

@@ -107,6 +107,19 @@ impl Scheme {
         Self::ALL.into_iter().find(|scheme| scheme.name() == name)
     }
 
+    /// The power of the step with which its result's error falls.
+    pub const fn order(&self) -> u32 {
+        match self {
+            Self::Midpoint | Self::DiscreteGradient => 2,
+            Self::Rk4 | Self::CommutatorFree4 | Self::Gauss2 | Self::Exponential => 4,
+            Self::DormandPrince | Self::Radau5 => 5,
+            Self::Gauss3 => 6,
+            Self::DormandPrince8 => 8,
+            Self::Verner9 => 9,
+            Self::Explicit(tableau) => tableau.order,
+        }
+    }
+
     /// Its coefficients, where it is an explicit Runge–Kutta method.
     pub const fn tableau(&self) -> Option<&'static Tableau> {
         match self {

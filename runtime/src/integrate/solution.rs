@@ -1,6 +1,6 @@
 //! What an integration starts from, shows on the way, and returns.
 
-use super::Approach;
+use super::{Approach, Crossing};
 use alloc::vec::Vec;
 
 /// State of a mechanism at one time.
@@ -19,7 +19,7 @@ pub struct State {
 pub struct Step<'a> {
     /// s.
     pub time: f64,
-    /// How many steps were accepted so far; 0 for the initial state.
+    /// How many steps were accepted so far, that in which a sample lies included; 0 for the initial state.
     pub number: usize,
     /// All joints' Q.
     pub configuration: &'a [f64],
@@ -29,6 +29,8 @@ pub struct Step<'a> {
     pub momenta: Option<&'a [f64]>,
     /// Index of the last sample that falls on this time, if one does.
     pub sample: Option<usize>,
+    /// Whether it lies between the ends of a step: a sample of dense output.
+    pub is_within: bool,
 }
 
 /// The work done.
@@ -55,10 +57,12 @@ pub struct Solution {
     pub state: State,
     /// The states at the sample times that were reached, in order.
     pub samples: Vec<State>,
+    /// What crossed zero, in the order of time.
+    pub events: Vec<Crossing>,
     /// The work done.
     pub statistics: Statistics,
     /// How near each joint that has singular sets came to them, in the order of the joints.
     pub approaches: Vec<Approach>,
-    /// Whether the observer ended it before [`Options::t_end`](super::Options::t_end).
+    /// Whether the observer or an event ended it before [`Options::t_end`](super::Options::t_end).
     pub stopped: bool,
 }

@@ -5,9 +5,10 @@ use super::commutator_free::CommutatorFree;
 use super::explicit::Explicit;
 use super::exponential::Exponential;
 use super::flow::Flow;
-use super::standing::Standing;
+use super::standing::{Standing, add};
 use super::{Scheme, StepFailure};
 use alloc::boxed::Box;
+use alloc::vec::Vec;
 
 /// When a step begins, and how long it is, s.
 #[derive(Clone, Copy, Debug)]
@@ -47,9 +48,50 @@ pub(super) trait Stepper {
     /// The power of the step with which its estimated error falls.
     fn order(&self) -> u32;
 
+    /// The polynomial of the stages of the step just accepted, for a scheme that has one.
+    fn stage_polynomial(&self) -> Option<StagePolynomial<'_>> {
+        None
+    }
+
     /// The iterations made so far, for an implicit scheme.
     fn solves(&self) -> Solves {
         Solves::default()
+    }
+}
+
+/// The polynomial in (ϕ, y) through the beginning of a step, all its stages and its end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StagePolynomial<'a> {
+    /// c_i.
+    pub(super) nodes: &'a [f64],
+    /// What the stages add to the state at the beginning: ϕ, then y.
+    pub(super) increments: &'a [Vec<f64>],
+    /// What one unit of each speed adds to y.
+    pub(super) units: &'a [f64],
+}
+
+impl StagePolynomial<'_> {
+    /// Its slope by the part `tau` of the step.
+    pub(super) fn slope(&self, tau: f64, slope: &mut [f64]) {
+        slope.fill(0.0);
+        for (i, increment) in self.increments.iter().enumerate() {
+            add(slope, self.weight(i, tau), increment);
+        }
+    }
+
+    /// The slope at `tau` of the polynomial that is 1 at node i, and 0 at 0 and at the others.
+    fn weight(&self, i: usize, tau: f64) -> f64 {
+        let own = self.nodes[i];
+        // The linear factors: that of 0, and those of the other nodes.
+        let root = |j: usize| if j == i { 0.0 } else { self.nodes[j] };
+        let all = 0..self.nodes.len();
+        let product = |left_out: usize| {
+            let others = all.clone().filter(|j| *j != left_out);
+            others
+                .map(|j| (tau - root(j)) / (own - root(j)))
+                .product::<f64>()
+        };
+        all.clone().map(|j| product(j) / (own - root(j))).sum()
     }
 }
 

@@ -3,7 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod dense;
 mod energy;
+mod events;
 mod motion;
 mod order;
 mod requests;

@@ -16,7 +16,7 @@ use super::StepFailure;
 use super::discrete_gradient::Correction;
 use super::flow::{Flow, Rates};
 use super::standing::{Standing, add};
-use super::stepper::{Solves, Span, Stepper};
+use super::stepper::{Solves, Span, StagePolynomial, Stepper};
 use alloc::vec;
 use alloc::vec::Vec;
 use newton::Newton;
@@ -428,6 +428,14 @@ impl Stepper for Collocation {
         } else {
             self.method.order
         }
+    }
+
+    fn stage_polynomial(&self) -> Option<StagePolynomial<'_>> {
+        Some(StagePolynomial {
+            nodes: self.method.nodes,
+            increments: &self.before.increments,
+            units: &self.units,
+        })
     }
 
     fn solves(&self) -> Solves {

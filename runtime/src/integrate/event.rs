@@ -1,0 +1,98 @@
+//! Instants at which a function of the state crosses zero.
+
+use super::State;
+use alloc::boxed::Box;
+use alloc::string::String;
+use core::fmt::{Debug, Formatter};
+
+/// Time, q and v̄ of all joints to a number that is positive on one side and negative on the other.
+pub(super) type Function<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
+
+/// Which crossings count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+    /// Both.
+    #[default]
+    Any,
+}
+
+/// A function g(t, q, v̄) whose zeros are wanted, where it changes its sign.
+///
+/// It must be continuous along the motion. It is evaluated at the initial state, at both ends of every step and at three points between them, so that of
+/// crossings that undo each other within a quarter of a step both may be missed, and a zero that is touched but not crossed is none. A state at
+/// which g is exactly 0 belongs to neither side: a motion that starts there crosses nothing.
+pub struct Event<'a> {
+    pub(super) name: String,
+    pub(super) function: Box<Function<'a>>,
+    pub(super) direction: Direction,
+    pub(super) stops: bool,
+}
+
+impl<'a> Event<'a> {
+    /// Crossings in both directions, that are recorded and nothing else.
+    pub fn new(
+        name: impl Into<String>,
+        function: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            function: Box::new(function),
+            direction: Direction::Any,
+            stops: false,
+        }
+    }
+
+    /// Only crossings in that direction.
+    #[must_use]
+    pub const fn towards(mut self, direction: Direction) -> Self {
+        self.direction = direction;
+        self
+    }
+
+    /// Only crossings from negative to positive.
+    #[must_use]
+    pub const fn rising(self) -> Self {
+        self.towards(Direction::Rising)
+    }
+
+    /// Only crossings from positive to negative.
+    #[must_use]
+    pub const fn falling(self) -> Self {
+        self.towards(Direction::Falling)
+    }
+
+    /// The first of them ends the integration.
+    #[must_use]
+    pub const fn stopping(mut self) -> Self {
+        self.stops = true;
+        self
+    }
+}
+
+impl Debug for Event<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Event")
+            .field("name", &self.name)
+            .field("direction", &self.direction)
+            .field("stops", &self.stops)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What became of an event.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    /// Which event, in the order in which they were given.
+    pub event: usize,
+    /// Its name.
+    pub name: String,
+    /// Whether the function rises there.
+    pub rising: bool,
+    /// The state, at the first time at which the function is known to be on the other side: the zero, but for the rounding of time. It lies on the dense
+    /// output, and has its accuracy.
+    pub state: State,
+}
