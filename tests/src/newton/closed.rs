@@ -177,8 +177,8 @@ impl Oscillator {
         (&exact(self.angle) + &(&mean * time), rate + &gain)
     }
 
-    /// Angle and rate with a spring: about its rest under the effort, `e^(−dt) (x C + (ẋ + d x) S)` with C and S the cosine and sine of what is
-    /// left of the frequency, or the hyperbolic ones.
+    /// Angle and rate with a spring: about its rest under the effort, `e^(−dt) (x C + (ẋ + d x) S)` with C and S the cosine of what is
+    /// left of the frequency and its sine over it, or the hyperbolic ones.
     fn swung(&self, time: &Precise, rate: &Precise) -> (Precise, Precise) {
         let inertia = exact(self.inertia);
         let rest = &exact(self.effort) / &exact(self.stiffness);
@@ -187,18 +187,16 @@ impl Oscillator {
         let stiffness = &exact(self.stiffness) / &inertia;
         let square = &stiffness - &(&decay * &decay);
         let frequency = square.abs().sqrt();
-        let phase = &frequency * time;
         let (even, odd) = match square.is_negative() {
-            true => (phase.cosh(), phase.sinh()),
-            false => (phase.cos(), phase.sin()),
+            true => faded_hyperbolic(&decay, &frequency, time),
+            false => faded_circular(&decay, &frequency, time),
         };
         let odd = &odd / &frequency;
-        let fade = (-(&decay * time)).exp();
         let lead = rate + &(&decay * &start);
         let angle = &(&start * &even) + &(&lead * &odd);
         let fall = &(&decay * rate) + &(&stiffness * &start);
         let change = &(rate * &even) - &(&fall * &odd);
-        (&rest + &(&fade * &angle), &fade * &change)
+        (&rest + &angle, change)
     }
 }
 
@@ -259,6 +257,28 @@ impl SymmetricBody {
             rotation,
         }
     }
+}
+
+/// `e^(−dt) cos ωt` and `e^(−dt) sin ωt`.
+fn faded_circular(decay: &Precise, frequency: &Precise, time: &Precise) -> (Precise, Precise) {
+    let phase = frequency * time;
+    let fade = (-(decay * time)).exp();
+    (&fade * &phase.cos(), &fade * &phase.sin())
+}
+
+/// `e^(−dt) cosh ωt` and `e^(−dt) sinh ωt`, each exponential by itself: their parts are out of range.
+fn faded_hyperbolic(decay: &Precise, frequency: &Precise, time: &Precise) -> (Precise, Precise) {
+    // Below e^-10⁶ nothing is left of a number next to others.
+    let power = |rate: Precise| {
+        let exponent = -(&rate * time);
+        match exponent.to_f64() < -1e6 {
+            true => exact(0.0),
+            false => exponent.exp(),
+        }
+    };
+    let (slow, fast) = (power(decay - frequency), power(decay + frequency));
+    let half = exact(0.5);
+    (&(&slow + &fast) * &half, &(&slow - &fast) * &half)
 }
 
 /// `exp(t a~)`, by Rodrigues' formula.
