@@ -31,8 +31,8 @@ impl Budget {
     };
     /// For a first look.
     pub const SHORT: Self = Self {
-        run: Duration::from_millis(250),
-        point: Duration::from_millis(12),
+        run: Duration::from_millis(150),
+        point: Duration::from_millis(10),
         repetitions: 30,
     };
 }

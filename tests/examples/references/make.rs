@@ -99,9 +99,14 @@ fn by_integration(scene: &SceneDescription) -> Result<Motion, String> {
         motion(&world, start, method, &times)
             .ok_or_else(|| format!("{}: steps shrink to nothing", scene.name))
     };
-    let samples = motion(world.state.clone(), &MAIN)?;
-    let other = motion(world.state.clone(), &CHECK)?;
-    let faster = motion(world.faster(CHANGE), &CHECK)?;
+    let lost = rounding(scene);
+    let [main, check] = [MAIN, CHECK].map(|method| Extrapolation {
+        tolerance: method.tolerance * lost,
+        ..method
+    });
+    let samples = motion(world.state.clone(), &main)?;
+    let other = motion(world.state.clone(), &check)?;
+    let faster = motion(world.faster(CHANGE), &check)?;
     let pairs = samples.iter().zip(&other);
     Ok(Motion {
         source: "Newton's and Euler's equations of free bodies with multipliers, in double-double numbers, by extrapolated midpoint steps of \
@@ -114,6 +119,16 @@ fn by_integration(scene: &SceneDescription) -> Result<Motion, String> {
         names: world.names.clone(),
         samples,
     })
+}
+
+/// What multipliers lose of their digits where a heavy body hangs on a light one: the square root of the largest ratio, a mean of what accelerations
+/// of the one and of the other lose.
+fn rounding(scene: &SceneDescription) -> f64 {
+    let ratios = scene.bodies.iter().filter_map(|body| {
+        let parent = &scene.bodies[body.parent?];
+        Some(body.mass.mass / parent.mass.mass)
+    });
+    ratios.fold(1.0, f64::max).sqrt()
 }
 
 fn motion(

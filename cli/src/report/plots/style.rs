@@ -3,8 +3,9 @@
 use hamel::integrate::Scheme;
 use plotters::prelude::*;
 
-/// Okabe and Ito's colours, which colour-blind readers can tell apart, without the yellow that paper swallows, and two greys.
-const COLOURS: [RGBColor; 9] = [
+/// Okabe and Ito's colours, which colour-blind readers can tell apart, without the yellow that paper swallows, and four
+/// more that differ from them in lightness; marks differ as well.
+const COLOURS: [RGBColor; 11] = [
     RGBColor(0, 0, 0),
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
@@ -14,6 +15,8 @@ const COLOURS: [RGBColor; 9] = [
     RGBColor(204, 121, 167),
     RGBColor(120, 120, 120),
     RGBColor(120, 78, 40),
+    RGBColor(106, 61, 154),
+    RGBColor(150, 150, 40),
 ];
 
 /// Of lines that are no curve.
@@ -23,8 +26,8 @@ pub const GRID: RGBColor = RGBColor(225, 225, 225);
 
 pub const FONT: &str = "Helvetica, Arial, sans-serif";
 /// Sizes of letters, px.
-pub const LABEL: u32 = 14;
-pub const TITLE: u32 = 15;
+pub const LABEL: u32 = 15;
+pub const TITLE: u32 = 16;
 
 /// Shape of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
