@@ -21,7 +21,10 @@ fn main() -> io::Result<()> {
     )?;
     fs::write(folder.join("cases.rs"), cases()?)?;
     println!("cargo::rustc-env=HAMEL_COMPILER={}", compiler());
-    for (variable, meaning) in [("OPT_LEVEL", "HAMEL_OPTIMISATION"), ("TARGET", "HAMEL_TARGET")] {
+    for (variable, meaning) in [
+        ("OPT_LEVEL", "HAMEL_OPTIMISATION"),
+        ("TARGET", "HAMEL_TARGET"),
+    ] {
         let value = env::var(variable).unwrap_or_default();
         println!("cargo::rustc-env={meaning}={value}");
     }

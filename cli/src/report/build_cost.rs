@@ -28,12 +28,11 @@ pub fn costs() -> Result<Vec<Cost>, Failure> {
     let costs = hamel_joints::specs().map(|(name, text)| {
         let file = format!("{name}.joint");
         let start = Instant::now();
-        let derived = hamel_codegen::derive(text, &file)
-            .map_err(|errors| Failure::Spec(Box::new(errors)))?;
+        let derived =
+            hamel_codegen::derive(text, &file).map_err(|errors| Failure::Spec(Box::new(errors)))?;
         let derive = start.elapsed();
         let start = Instant::now();
-        let code =
-            rust::file(&derived, &file).map_err(|error| Failure::Page(error.to_string()))?;
+        let code = rust::file(&derived, &file).map_err(|error| Failure::Page(error.to_string()))?;
         let milliseconds = |seconds: f64| format!("{:.1}", 1e3 * seconds);
         Ok(Cost {
             joint: name.into(),

@@ -92,7 +92,10 @@ impl Case {
     /// # Errors
     /// A scene with mistakes.
     pub fn description(&self) -> Result<SceneDescription, Failure> {
-        Ok(Scene::from_toml(self.scene, &format!("{}.toml", self.name))?)
+        Ok(Scene::from_toml(
+            self.scene,
+            &format!("{}.toml", self.name),
+        )?)
     }
 
     /// What is known of its motion.

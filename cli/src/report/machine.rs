@@ -50,7 +50,9 @@ impl Machine {
 /// The name of the processor, where the system has a file that tells it.
 fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let line = text.lines().find_map(|line| line.strip_prefix("model name"));
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("model name"));
     let name = line.and_then(|line| line.split_once(':'));
     name.map_or_else(
         || format!("unknown {}", std::env::consts::ARCH),

@@ -97,11 +97,7 @@ pub fn render(figures: &Figures) -> Result<String, Failure> {
     context.insert("asked", &ASKED.map(|error| format!("{error:.0e}")));
     context.insert(
         "drift",
-        &drawings(
-            &figures.drift,
-            |row| &row.scene,
-            |rows| plots::drift(rows),
-        )?,
+        &drawings(&figures.drift, |row| &row.scene, |rows| plots::drift(rows))?,
     );
     context.insert(
         "stability",
@@ -174,7 +170,9 @@ fn section(name: String, rows: &[&Work]) -> Result<Section, Failure> {
         false => String::new(),
     };
     Ok(Section {
-        floor: rows.first().map_or(String::new(), |row| format!("{:.1e}", row.floor)),
+        floor: rows
+            .first()
+            .map_or(String::new(), |row| format!("{:.1e}", row.floor)),
         conditioning: rows
             .first()
             .map_or(String::new(), |row| format!("{:.1e}", row.conditioning)),
@@ -220,7 +218,9 @@ fn best(rows: &[&Work]) -> Vec<Best> {
     let curves = curves(rows).into_iter().map(|(_, curve)| {
         let error = least(&curve);
         let within = |asked: f64| {
-            let times = curve.iter().filter(|row| row.error_worst.is_some_and(|e| e <= asked));
+            let times = curve
+                .iter()
+                .filter(|row| row.error_worst.is_some_and(|e| e <= asked));
             let least = times.filter_map(|row| row.seconds_least).reduce(f64::min);
             least.map_or("—".into(), |seconds| format!("{:.3}", 1e3 * seconds))
         };
@@ -277,7 +277,9 @@ fn overview(rows: &[Work], methods: &[String]) -> Vec<Line> {
         };
         Line {
             cells: methods.iter().map(cell).collect(),
-            floor: own.first().map_or(String::new(), |row| format!("{:.1e}", row.floor)),
+            floor: own
+                .first()
+                .map_or(String::new(), |row| format!("{:.1e}", row.floor)),
             scene,
         }
     });
@@ -285,7 +287,9 @@ fn overview(rows: &[Work], methods: &[String]) -> Vec<Line> {
 }
 
 fn cell(rows: &[&Work]) -> Cell {
-    let factor = least(rows).zip(rows.first()).map(|(error, row)| error / row.floor);
+    let factor = least(rows)
+        .zip(rows.first())
+        .map(|(error, row)| error / row.floor);
     let class = match factor {
         _ if rows.is_empty() => "none",
         None => "failed",

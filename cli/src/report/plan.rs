@@ -99,7 +99,11 @@ impl Plan {
         Ok(Self {
             cases,
             schemes,
-            budget: if args.short { Budget::SHORT } else { Budget::FULL },
+            budget: if args.short {
+                Budget::SHORT
+            } else {
+                Budget::FULL
+            },
             budget_name: if args.short { "short" } else { "full" },
             drift: Drift::new(args.short, wanted),
             stiff: STIFF.into_iter().filter(|(name, _)| wanted(name)).collect(),

@@ -98,7 +98,10 @@ impl Row for Drift {
 
     /// Of the run: its lines belong together.
     fn key(&self) -> String {
-        format!("{} {} {} {}", self.scene, self.form, self.method, self.budget)
+        format!(
+            "{} {} {} {}",
+            self.scene, self.form, self.method, self.budget
+        )
     }
 
     fn machine(&self) -> &str {

@@ -43,7 +43,11 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     output::print(&format!(
         "{} points of work and precision, {} of them failures\npage      {}\nfigures   {}\n",
         figures.work.len(),
-        figures.work.iter().filter(|row| !row.failure.is_empty()).count(),
+        figures
+            .work
+            .iter()
+            .filter(|row| !row.failure.is_empty())
+            .count(),
         page.display(),
         args.output.join("*.csv").display()
     ))

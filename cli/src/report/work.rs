@@ -46,9 +46,7 @@ pub fn measure(
                     continue;
                 }
                 let measured = match &scene {
-                    Ok(scene) => {
-                        measure::point(scene, &reference, curve.form, method, plan.budget)
-                    }
+                    Ok(scene) => measure::point(scene, &reference, curve.form, method, plan.budget),
                     Err(errors) => Err(Failed {
                         reason: first_line(&errors.to_string()),
                         seconds: 0.0,
@@ -94,7 +92,9 @@ fn curves<'a>(plan: &Plan, case: &'a Case, scene: &SceneDescription) -> Vec<Curv
 /// A tolerance each, or a step each.
 fn methods(scheme: Scheme, coarse: f64) -> Vec<Method> {
     match scheme.has_estimate() {
-        true => TOLERANCES.map(|tol| Method::controlled(scheme, tol)).to_vec(),
+        true => TOLERANCES
+            .map(|tol| Method::controlled(scheme, tol))
+            .to_vec(),
         false => (0..HALVINGS)
             .map(|i| Method::fixed(scheme, coarse * 0.5_f64.powi(i)))
             .collect(),
@@ -189,4 +189,3 @@ fn filled(row: Work, measured: Result<Point, Failed>) -> Work {
         },
     }
 }
-

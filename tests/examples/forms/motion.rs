@@ -19,11 +19,7 @@ pub fn scene(name: &str) -> Scene {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     let file = format!("{name}.toml");
     let own = root.join("report").join(&file);
-    let path: PathBuf = if own.exists() {
-        own
-    } else {
-        root.join(&file)
-    };
+    let path: PathBuf = if own.exists() { own } else { root.join(&file) };
     Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 

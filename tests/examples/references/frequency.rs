@@ -10,7 +10,11 @@ const STEPS: usize = 400;
 /// The square root of the largest eigenvalue of M⁻¹K at the initial configuration, rad/s, for springs of one stiffness a joint; 0 without springs.
 pub fn highest(description: &SceneDescription) -> Result<f64, String> {
     let stiffness = description.bodies.iter().map(|body| {
-        let spring = body.forces.spring.as_ref().map(|spring| &spring.value.energy);
+        let spring = body
+            .forces
+            .spring
+            .as_ref()
+            .map(|spring| &spring.value.energy);
         match spring {
             Some(SpringEnergy::Trace(stiffness)) => *stiffness,
             _ => 0.0,
@@ -28,7 +32,9 @@ pub fn highest(description: &SceneDescription) -> Result<f64, String> {
         return Err(format!("{}: not all joints are ball joints", scene.name));
     }
     let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
-    let mut shape: Vec<f64> = (0..per_speed.len()).map(|i| (1.0 + i as f64).sin()).collect();
+    let mut shape: Vec<f64> = (0..per_speed.len())
+        .map(|i| (1.0 + i as f64).sin())
+        .collect();
     let mut forces = vec![0.0; shape.len()];
     let mut square = 0.0;
     for _ in 0..STEPS {

@@ -7,6 +7,7 @@
 
 mod frequency;
 mod make;
+mod nudge;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -1,7 +1,8 @@
 //! One reference: the motion in extended precision, what it is known to, and what it magnifies.
 
 use super::frequency;
-use hamel_scene::{Scene, SceneDescription};
+use super::nudge::nudged;
+use hamel_scene::{Scene, SceneDescription, SpringEnergy};
 use hamel_tests::newton::closed::Closed;
 use hamel_tests::newton::{Extrapolation, Real, Record, World, decimal, distance};
 use std::fmt::Write;
@@ -17,8 +18,13 @@ const CHECK: Extrapolation = Extrapolation {
     columns: 8,
     tolerance: 1e-25,
 };
-/// Part by which initial velocities are changed to see what a motion magnifies.
+/// Part by which initial velocities are changed to see what a motion magnifies: all alike…
 const CHANGE: f64 = 1e-12;
+/// …and in directions aside, by a part of the length of their vector that doubles can tell.
+const NUDGE: f64 = 1e-10;
+const DIRECTIONS: u32 = 2;
+/// Energies below this part of a stiffness are not told.
+const RESOLVED: f64 = 1e-6;
 /// A reference must be known to this, in floors.
 const KNOWN: f64 = 1e-3;
 
@@ -78,13 +84,16 @@ fn times(scene: &SceneDescription) -> Vec<f64> {
 fn by_closed_form(scene: &SceneDescription, closed: &Closed) -> Motion {
     let times = times(scene);
     let motion = |faster: f64| -> Vec<Record> {
-        times.iter().map(|&time| closed.record(time, faster)).collect()
+        times
+            .iter()
+            .map(|&time| closed.record(time, faster))
+            .collect()
     };
     let (samples, faster) = (motion(0.0), motion(CHANGE));
     Motion {
         source: "closed form in 256 bits".into(),
         names: vec![scene.bodies[0].name.value.clone()],
-        conditioning: magnified(&samples, &faster),
+        conditioning: magnified(&samples, &faster, CHANGE),
         energy: closed.energy(),
         samples,
         crosscheck: 0.0,
@@ -107,12 +116,18 @@ fn by_integration(scene: &SceneDescription) -> Result<Motion, String> {
     let samples = motion(world.state.clone(), &main)?;
     let other = motion(world.state.clone(), &check)?;
     let faster = motion(world.faster(CHANGE), &check)?;
+    let mut conditioning = magnified(&other, &faster, CHANGE);
+    for number in 0..DIRECTIONS {
+        let aside = World::new(&nudged(scene, NUDGE, number)).map_err(|error| error.0)?;
+        let moved = motion(aside.state, &check)?;
+        conditioning = conditioning.max(magnified(&other, &moved, NUDGE));
+    }
     let pairs = samples.iter().zip(&other);
     Ok(Motion {
         source: "Newton's and Euler's equations of free bodies with multipliers, in double-double numbers, by extrapolated midpoint steps of \
                  order 20, against order 16"
             .into(),
-        conditioning: magnified(&other, &faster),
+        conditioning,
         crosscheck: pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max),
         energy: energy(scene, &world),
         frequency: frequency::highest(scene)?,
@@ -146,10 +161,10 @@ fn motion(
     Some(samples)
 }
 
-/// Change of the final state per unit relative change of the initial velocities.
-fn magnified(samples: &[Record], faster: &[Record]) -> f64 {
-    let ends = samples.last().zip(faster.last());
-    ends.map_or(0.0, |(a, b)| distance(b, a) / CHANGE)
+/// Change of the final state per unit change of the initial velocities.
+fn magnified(samples: &[Record], changed: &[Record], change: f64) -> f64 {
+    let ends = samples.last().zip(changed.last());
+    ends.map_or(0.0, |(a, b)| distance(b, a) / change)
 }
 
 /// The energy, where it stays.
@@ -159,12 +174,32 @@ fn energy(scene: &SceneDescription, world: &World) -> Option<Real> {
         forces.damping.is_none() && forces.effort.is_none() && forces.motion.is_none()
     });
     let (kinetic, potential) = world.energies(&world.state);
-    kept.then(|| kinetic + potential)
+    let energy = kinetic + potential;
+    // Doubles round the energy of a spring by its stiffness: next to its rest they cannot tell it.
+    let told = f64::from(energy).abs() > RESOLVED * stiffest(scene);
+    (kept && told).then_some(energy)
+}
+
+/// The largest stiffness of a spring at a ball joint, N m/rad; 0 without springs.
+fn stiffest(scene: &SceneDescription) -> f64 {
+    let springs = scene
+        .bodies
+        .iter()
+        .filter_map(|body| body.forces.spring.as_ref());
+    let stiffnesses = springs.map(|spring| match spring.value.energy {
+        SpringEnergy::Trace(stiffness) => stiffness,
+        _ => 0.0,
+    });
+    stiffnesses.fold(0.0, f64::max)
 }
 
 fn json(motion: &Motion) -> String {
     let mut text = String::from("{\n");
-    let names: Vec<String> = motion.names.iter().map(|name| format!("{name:?}")).collect();
+    let names: Vec<String> = motion
+        .names
+        .iter()
+        .map(|name| format!("{name:?}"))
+        .collect();
     let energy = motion.energy.map_or("null".into(), decimal);
     let samples: Vec<String> = motion.samples.iter().map(Record::json).collect();
     let lines = [

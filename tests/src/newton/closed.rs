@@ -204,7 +204,8 @@ impl SymmetricBody {
     fn new(scene: &SceneDescription, body: &BodyDescription) -> Result<Self, Unsupported> {
         let inertia = &body.mass.inertia_com;
         let free = scene.gravity == Vector3::zeros() && body.forces.is_empty();
-        let symmetric = inertia[(0, 0)] == inertia[(1, 1)] && inertia.map(|x| x != 0.0).iter().filter(|&&x| x).count() == 3;
+        let symmetric = inertia[(0, 0)] == inertia[(1, 1)]
+            && inertia.map(|x| x != 0.0).iter().filter(|&&x| x).count() == 3;
         let centred = body.mass.com == Vector3::zeros() && body.initial.position == Position::Home;
         let rate = match &body.initial.motion {
             Motion::Twist(twist) => twist.value.twist.fixed_rows::<3>(0).into_owned(),

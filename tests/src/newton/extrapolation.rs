@@ -100,7 +100,11 @@ fn midpoint(
     let step = length / real(count as f64);
     let twice = step * real(2.0);
     let mut before = state.to_vec();
-    let mut now: Vec<Real> = state.iter().zip(start).map(|(&y, &f)| y + step * f).collect();
+    let mut now: Vec<Real> = state
+        .iter()
+        .zip(start)
+        .map(|(&y, &f)| y + step * f)
+        .collect();
     let mut slope = vec![real(0.0); state.len()];
     for _ in 1..count {
         rates(&now, &mut slope);

@@ -32,8 +32,7 @@ impl Load {
         let carried = self
             .base
             .map_or(Vector::zeros(), |base| r.transpose() * motions[base].rate);
-        let moment =
-            -axis * (self.stiffness * real(0.5)) - (moving.rate - carried) * self.damping;
+        let moment = -axis * (self.stiffness * real(0.5)) - (moving.rate - carried) * self.damping;
         moments[self.body] += moment;
         if let Some(base) = self.base {
             moments[base] -= r * moment;

@@ -80,23 +80,18 @@ pub fn quaternion(rotation: &Matrix) -> [Real; 4] {
         one - r(0, 0) - r(1, 1) + r(2, 2),
     ];
     let largest = (0..4).fold(0, |m, i| if squares[i] > squares[m] { i } else { m });
-    let (x, y, z) = (
-        r(2, 1) - r(1, 2),
-        r(0, 2) - r(2, 0),
-        r(1, 0) - r(0, 1),
-    );
-    let (xy, yz, zx) = (
-        r(0, 1) + r(1, 0),
-        r(1, 2) + r(2, 1),
-        r(2, 0) + r(0, 2),
-    );
+    let (x, y, z) = (r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
+    let (xy, yz, zx) = (r(0, 1) + r(1, 0), r(1, 2) + r(2, 1), r(2, 0) + r(0, 2));
     let mut quaternion = match largest {
         0 => [squares[0], x, y, z],
         1 => [x, squares[1], xy, zx],
         2 => [y, xy, squares[2], yz],
         _ => [z, zx, yz, squares[3]],
     };
-    let length = quaternion.iter().fold(real(0.0), |sum, &q| sum + q * q).sqrt();
+    let length = quaternion
+        .iter()
+        .fold(real(0.0), |sum, &q| sum + q * q)
+        .sqrt();
     quaternion.iter_mut().for_each(|q| *q = *q / length);
     quaternion
 }

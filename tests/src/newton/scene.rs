@@ -114,7 +114,10 @@ impl World {
         let (kinetic, potential) = self.system.energies(state);
         let masses = self.system.bodies.iter().map(|body| body.mass);
         let mass = masses.fold(real(0.0), |sum, mass| sum + mass);
-        (kinetic, potential - mass * self.system.gravity.dot(&self.origin))
+        (
+            kinetic,
+            potential - mass * self.system.gravity.dot(&self.origin),
+        )
     }
 
     /// The record of the state at `time`.
@@ -167,7 +170,8 @@ impl World {
         self.state.extend(centre.origin.iter());
         self.state.extend(quaternion(&centre.axes));
         self.state.extend(centre.velocity.iter());
-        self.state.extend((centre.axes.transpose() * centre.turning).iter());
+        self.state
+            .extend((centre.axes.transpose() * centre.turning).iter());
         let joint = Joint {
             parent,
             body: index,
@@ -274,7 +278,11 @@ fn triple(values: &[f64]) -> Vector {
 }
 
 fn parameter(body: &BodyDescription, name: &str) -> Result<Real, Unsupported> {
-    let found = body.joint.parameters.iter().find(|(key, _)| key.value == name);
+    let found = body
+        .joint
+        .parameters
+        .iter()
+        .find(|(key, _)| key.value == name);
     let found = found.ok_or_else(|| unknown(body, &format!("no {name}")))?;
     Ok(real(found.1))
 }

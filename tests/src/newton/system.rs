@@ -85,8 +85,7 @@ impl System {
         let motions = self.motions(state);
         let accelerations = self.accelerations(&motions);
         let bodies = rates.chunks_mut(STATE).zip(state.chunks(STATE));
-        for (((rate, state), motion), (linear, angular)) in
-            bodies.zip(&motions).zip(&accelerations)
+        for (((rate, state), motion), (linear, angular)) in bodies.zip(&motions).zip(&accelerations)
         {
             rate[..3].copy_from_slice(motion.velocity.as_slice());
             rate[3..7].copy_from_slice(&quaternion_rate(&state[3..7], &motion.rate));

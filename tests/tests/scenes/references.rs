@@ -21,7 +21,11 @@ fn scenes() -> PathBuf {
 fn description(name: &str) -> SceneDescription {
     let file = format!("{name}.toml");
     let own = scenes().join("report").join(&file);
-    let path = if own.exists() { own } else { scenes().join(&file) };
+    let path = if own.exists() {
+        own
+    } else {
+        scenes().join(&file)
+    };
     let text = fs::read_to_string(&path).expect("a scene");
     Scene::from_toml(&text, &file).unwrap_or_else(|errors| panic!("{errors}"))
 }
@@ -43,13 +47,22 @@ fn real(text: &str) -> Real {
     }
     let mut scale = Real::from(1.0);
     (0..exponent.unsigned_abs()).for_each(|_| scale = scale * Real::from(10.0));
-    let size = if exponent < 0 { value / scale } else { value * scale };
-    if mantissa.starts_with('-') { -size } else { size }
+    let size = if exponent < 0 {
+        value / scale
+    } else {
+        value * scale
+    };
+    if mantissa.starts_with('-') {
+        -size
+    } else {
+        size
+    }
 }
 
 /// The lists that stand under a key in a text of JSON, in their order, with all their digits.
 fn lists(text: &str, key: &str) -> Vec<Vec<Real>> {
-    let after = text.split(&format!("\"{key}\": [")).skip(1);
+    let opening = format!("\"{key}\": [");
+    let after = text.split(&opening).skip(1);
     let inside = after.map(|rest| rest.split(']').next().expect("an end"));
     let lists = inside.map(|list| list.split(',').map(|number| real(number.trim())).collect());
     lists.collect()
@@ -57,8 +70,14 @@ fn lists(text: &str, key: &str) -> Vec<Vec<Real>> {
 
 /// The largest difference, relative to max(1, size).
 fn gap(found: &[Real], expected: &[Real]) -> f64 {
-    let size = expected.iter().map(|&x| f64::from(x).abs()).fold(1.0, f64::max);
-    let gaps = found.iter().zip(expected).map(|(&a, &b)| f64::from(a - b).abs() / size);
+    let size = expected
+        .iter()
+        .map(|&x| f64::from(x).abs())
+        .fold(1.0, f64::max);
+    let gaps = found
+        .iter()
+        .zip(expected)
+        .map(|(&a, &b)| f64::from(a - b).abs() / size);
     gaps.fold(0.0, |m, x| if x <= m { m } else { x })
 }
 
@@ -80,7 +99,8 @@ fn motion(world: &World, times: &[f64]) -> Vec<Record> {
 
 /// What initial states of a scene and of its reference differ by, since each rounds where the other does not; the motion magnifies it.
 fn check(name: &str) {
-    let text = fs::read_to_string(scenes().join(format!("report/{name}.json"))).expect("a reference");
+    let text =
+        fs::read_to_string(scenes().join(format!("report/{name}.json"))).expect("a reference");
     let reference: Value = serde_json::from_str(&text).expect("JSON");
     let samples = reference["samples"].as_array().expect("samples");
     let times: Vec<f64> = samples
@@ -115,26 +135,43 @@ fn check(name: &str) {
             }
         }
     }
-    let conditioning = reference["conditioning"].as_f64().expect("a number").max(1.0);
+    let conditioning = reference["conditioning"]
+        .as_f64()
+        .expect("a number")
+        .max(1.0);
     println!("{name}: {start:.1e} at the start, {end:.1e} later, conditioning {conditioning:.1e}");
     // Differences of the start, and of the last digits given, grow by the conditioning, which is a lower bound of what can grow.
     let allowed = 100.0 * conditioning * (start + GIVEN);
     assert!(end <= allowed, "{name}: {end:e} exceeds {allowed:e}");
     // A scene rounds its attitude to doubles, no more.
-    assert!(start <= 4.0 * f64::EPSILON, "{name}: {start:e} at the start");
+    assert!(
+        start <= 4.0 * f64::EPSILON,
+        "{name}: {start:e} at the start"
+    );
 }
 
 #[test]
 fn free_bodies_with_multipliers_move_as_references_of_24_digits_say() {
-    ["gimbal_top", "chaplygin_sleigh", "rolling_disk", "double_ball_pendulum"]
-        .into_iter()
-        .for_each(check);
+    [
+        "gimbal_top",
+        "chaplygin_sleigh",
+        "rolling_disk",
+        "double_ball_pendulum",
+    ]
+    .into_iter()
+    .for_each(check);
 }
 
 #[test]
 #[ignore = "minutes of extended precision"]
 fn the_longer_references_as_well() {
-    ["heavy_top", "torque_free_top", "ball_on_turntable", "plate_cart_arm_level", "ball_spring"]
-        .into_iter()
-        .for_each(check);
+    [
+        "heavy_top",
+        "torque_free_top",
+        "ball_on_turntable",
+        "plate_cart_arm_level",
+        "ball_spring",
+    ]
+    .into_iter()
+    .for_each(check);
 }

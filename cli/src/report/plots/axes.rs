@@ -145,7 +145,11 @@ fn count(range: &Range<f64>) -> usize {
 
 fn nothing(area: &Area<'_>, panel: &Panel) -> Result<(), Failure> {
     let letters = (FONT, LABEL).into_font().color(&QUIET);
-    let note = Text::new(format!("{}: no run came to its end", panel.title), (20, 40), letters);
+    let note = Text::new(
+        format!("{}: no run came to its end", panel.title),
+        (20, 40),
+        letters,
+    );
     area.draw(&note).map_err(refused)
 }
 
@@ -158,7 +162,8 @@ fn shape<'a, DB: DrawingBackend + 'a, C: Clone + 'a>(at: C, look: &Look) -> DynE
     let outline = |points: Vec<(i32, i32)>| match look.dashed {
         true => {
             let closed = points.iter().chain(points.first()).copied();
-            (EmptyElement::at(at.clone()) + PathElement::new(closed.collect::<Vec<_>>(), style)).into_dyn()
+            (EmptyElement::at(at.clone()) + PathElement::new(closed.collect::<Vec<_>>(), style))
+                .into_dyn()
         }
         false => (EmptyElement::at(at.clone()) + Polygon::new(points, style)).into_dyn(),
     };

@@ -8,7 +8,7 @@ use crate::report::row::Drift;
 const WIDTH: u32 = 1180;
 const HEIGHT: u32 = 420;
 
-/// The error of the energy over the number of steps, in each form.
+/// The largest error of the energy so far over the number of steps, in each form.
 pub fn drawing(rows: &[&Drift]) -> Result<String, Failure> {
     let panels = ["lagrangian", "hamiltonian"].map(|form| {
         let own: Vec<&&Drift> = rows.iter().filter(|row| row.form == form).collect();
@@ -42,8 +42,10 @@ fn curves(rows: &[&&Drift]) -> Vec<Curve> {
             continue;
         };
         let steps = row.steps as f64;
+        // The largest so far: an error that crosses zero says nothing there.
+        let before = curve.points.last().map_or(1e-17, |point| point.1);
         match row.failure.is_empty() {
-            true => curve.points.push((steps, row.drift.max(1e-17))),
+            true => curve.points.push((steps, row.drift.max(before))),
             false => curve.failures.push(steps.max(1.0)),
         }
     }

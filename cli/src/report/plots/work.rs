@@ -12,7 +12,9 @@ const HEIGHT: u32 = 400;
 type Axis = (&'static str, fn(&Work) -> Option<f64>);
 
 const AXES: [Axis; 2] = [
-    ("run time, s", |row| row.seconds_least.or(row.seconds_median)),
+    ("run time, s", |row| {
+        row.seconds_least.or(row.seconds_median)
+    }),
     ("evaluations of the equations", |row| {
         row.evaluations.map(|count| count as f64)
     }),
@@ -45,7 +47,11 @@ pub fn representations(rows: &[&Work]) -> Result<String, Failure> {
         }
     }
     let key = |row: &Work| (row.method.clone(), row.representation.clone());
-    let place = |row: &Work| distinct.iter().position(|name| **name == row.representation);
+    let place = |row: &Work| {
+        distinct
+            .iter()
+            .position(|name| **name == row.representation)
+    };
     // The second method is dashed.
     let look = |row: &Work| Look {
         dashed: methods.first() != Some(&row.method.as_str()),
