@@ -5,6 +5,7 @@
 mod import;
 mod joints;
 mod output;
+mod report;
 mod simulate;
 
 use clap::{Parser, Subcommand};
@@ -24,6 +25,7 @@ enum Command {
     Simulate(simulate::Args),
     Import(import::Args),
     Joints(joints::Args),
+    Report(report::Args),
 }
 
 fn main() -> ExitCode {
@@ -32,6 +34,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args, &registry),
         Command::Import(args) => import::run(&args, &registry),
         Command::Joints(args) => joints::run(&args),
+        Command::Report(args) => report::run(&args, &registry),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

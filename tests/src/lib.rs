@@ -7,6 +7,7 @@ pub mod figures;
 pub mod fuzz;
 pub mod laws;
 pub mod motion;
+pub mod newton;
 pub mod oracle;
 #[cfg(doctest)]
 mod pages;

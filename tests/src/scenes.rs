@@ -24,12 +24,12 @@ pub fn load(name: &str) -> Scene {
 }
 
 /// Every scene of the folder on which gravity alone acts, in the order of their names: a new file enters by itself. Not those with a
-/// reference of their own in `data/motions`, which the test `motions` holds to that, nor those of the test `coupled_scenes`.
+/// reference of their own in `scenes/report`, which the test `motions` holds to that, nor those of the test `coupled_scenes`.
 ///
 /// # Panics
 /// Where one does not load.
 pub fn all() -> Vec<Scene> {
-    let references = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/motions");
+    let references = folder().join("report");
     let entries = std::fs::read_dir(folder()).expect("the scenes are beside this crate");
     let paths = entries.map(|entry| entry.expect("a folder entry").path());
     let scenes = paths.filter(|path| {

@@ -94,7 +94,7 @@ impl Curve {
 }
 
 fn reference(name: &str) -> Value {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/motions");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/report");
     let text = fs::read_to_string(folder.join(format!("{name}.json"))).expect("a reference");
     serde_json::from_str(&text).expect("JSON")
 }

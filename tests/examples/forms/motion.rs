@@ -16,14 +16,10 @@ pub const MOST_STEPS: usize = 10_000_000;
 
 /// A scene of the project, or one beside the references of motions.
 pub fn scene(name: &str) -> Scene {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     let file = format!("{name}.toml");
-    let own = root.join("data/motions").join(&file);
-    let path: PathBuf = if own.exists() {
-        own
-    } else {
-        root.join("../scenes").join(&file)
-    };
+    let own = root.join("report").join(&file);
+    let path: PathBuf = if own.exists() { own } else { root.join(&file) };
     Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 

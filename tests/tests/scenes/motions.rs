@@ -1,8 +1,8 @@
 //! Motions from scene files against reference values of 24 digits, in both forms, to a multiple of what doubles allow.
 //!
-//! A new case is a scene file with a reference beside it, in `data/motions/`. The floor of a case is `max(1, c) ε/2`: c, its
-//! `conditioning`, is the change of the final state per unit relative change of the initial velocities, and ε/2 what one rounding does
-//! to them. No method in doubles can be expected to fall below it.
+//! A new case is a scene file with a reference beside it, in `scenes/report/`. The floor of a case is `max(1, c, ω t) ε/2`: c, its
+//! `conditioning`, is the change of the final state per unit relative change of the initial velocities, ε/2 what one rounding does
+//! to them, and ω its `frequency`, where a stiff spring swings. No method in doubles can be expected to fall below it.
 
 use hamel::dynamics::Recursive;
 use hamel::integrate::{Form, Options, Solution, State, integrate, no_inputs, no_observer};
@@ -22,54 +22,69 @@ const ALLOWED: f64 = 100.0;
 const TURNS: &str = "million_turns";
 
 /// Cases that do not meet it yet, and are run only on demand (`--ignored`).
-const OPEN: [(&str, Form); 2] = [
-    // 116 radians of the spring's frequency go by, of which the floor knows nothing.
-    ("ball_spring", Form::Lagrangian),
-    ("ball_spring", Form::Hamiltonian),
+const OPEN: [(&str, Form); 4] = [
+    // What one rounding of the momenta does to the speeds of long chains is more than the tolerance: steps shrink, and the end is far.
+    ("chain_8", Form::Hamiltonian),
+    ("chain_64_springs", Form::Hamiltonian),
+    // What one rounding of a tip does to a body 1e8 times as light is far above a floor that knows of velocities alone.
+    ("ratio_heavy_tip", Form::Lagrangian),
+    ("ratio_heavy_tip", Form::Hamiltonian),
 ];
+
+/// A case of 1e8 steps, which is run only on demand.
+const LONG: &str = "spin_long";
 
 const FORMS: [Form; 2] = [Form::Lagrangian, Form::Hamiltonian];
 
-fn folder() -> PathBuf {
+pub(super) fn scenes() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
+}
+
+pub(super) fn folder() -> PathBuf {
+    scenes().join("report")
+}
+
+/// The table of turns, with its own scenes.
+fn turns() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/motions")
 }
 
 /// The scene of a case: beside its reference, or among the scenes of the project.
-fn scene(name: &str) -> Scene {
+pub(super) fn scene(name: &str) -> Scene {
     let file = format!("{name}.toml");
-    let own = folder().join(&file);
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    let path = if own.exists() {
-        own
-    } else {
-        shared.join(&file)
-    };
+    let mut places = [folder(), turns()].into_iter().map(|path| path.join(&file));
+    let path = places.find(|path| path.exists());
+    let path = path.unwrap_or_else(|| scenes().join(&file));
     Scene::load(path, &hamel_joints::registry()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-fn reference(name: &str) -> Value {
-    let text = fs::read_to_string(folder().join(format!("{name}.json"))).expect("a reference");
+pub(super) fn reference(name: &str) -> Value {
+    read(&folder().join(format!("{name}.json")))
+}
+
+fn read(path: &Path) -> Value {
+    let text = fs::read_to_string(path).expect("a reference");
     serde_json::from_str(&text).expect("the file is JSON")
 }
 
 /// Names of all references of motions.
-fn cases() -> Vec<String> {
+pub(super) fn cases() -> Vec<String> {
     let entries = fs::read_dir(folder()).expect("the references are beside this test");
     let paths = entries.map(|entry| entry.expect("a folder entry").path());
     let json = paths.filter(|path| path.extension().is_some_and(|end| end == "json"));
     let mut names: Vec<String> = json
         .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
-        .filter(|name| name != TURNS)
+        .filter(|name| name != LONG)
         .collect();
     names.sort();
     names
 }
 
-fn list(value: &Value) -> &[Value] {
+pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().expect("a list")
 }
 
-fn number(value: &Value) -> f64 {
+pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
@@ -101,8 +116,15 @@ fn run(scene: &Scene, form: Form, samples: Vec<f64>) -> Solution {
     .unwrap_or_else(|error| panic!("{}: {error}", scene.name))
 }
 
+/// What a motion makes of a relative error of its initial velocities, or of its frequency: max(1, c, ω t).
+pub(super) fn growth(reference: &Value) -> f64 {
+    let end = list(&reference["samples"]).last().expect("a sample");
+    let phase = reference["frequency"].as_f64().unwrap_or(0.0) * number(&end["t"]);
+    number(&reference["conditioning"]).max(phase).max(1.0)
+}
+
 /// Errors of a body in attitude, position, velocity and angular velocity: an angle, and parts of max(1, size).
-fn errors(found: &BodyState, expected: &Value) -> [f64; 4] {
+pub(super) fn errors(found: &BodyState, expected: &Value) -> [f64; 4] {
     let rotation = list(&expected["rotation_body_to_world_rowmajor"]);
     let rotation = Matrix3::from_row_iterator(rotation.iter().map(number));
     [
@@ -177,7 +199,7 @@ fn check(name: &str, form: Form) {
     let samples = list(&reference["samples"]);
     let times = samples.iter().map(|sample| number(&sample["t"])).collect();
     let solution = run(&scene, form, times);
-    let floor = number(&reference["conditioning"]).max(1.0) * 0.5 * f64::EPSILON;
+    let floor = growth(&reference) * 0.5 * f64::EPSILON;
     println!(
         "{name}, {form:?}: {:?}, floor {floor:.1e}; errors in floors:",
         solution.statistics
@@ -198,7 +220,7 @@ fn check(name: &str, form: Form) {
 /// Cases are tried, all of them before the first that fails is told, so that the figures of all are seen.
 fn check_all(form: Form, open: bool) {
     let mut names = cases();
-    assert!(names.len() >= 11, "only {names:?}");
+    assert!(names.len() >= 39, "only {names:?}");
     names.retain(|name| OPEN.contains(&(name.as_str(), form)) == open);
     let failed: Vec<String> = names
         .into_iter()
@@ -227,7 +249,7 @@ fn open_cases_reach_the_references() {
 /// An angle that counts turns is held to a rounding of itself.
 #[test]
 fn angles_stay_exact_over_millions_of_turns() {
-    let table = reference(TURNS);
+    let table = read(&turns().join(format!("{TURNS}.json")));
     let scenes = ["turns_0", "turns_1", "million_turns", "turns_3"];
     for (name, row) in scenes.iter().zip(list(&table["rows"])) {
         let scene = scene(name);

@@ -1,0 +1,59 @@
+//! The options of `hamel report`.
+
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  hamel report --short
+      a minute: some scenes and methods, to report/index.html and CSV files beside it
+  hamel report
+      everything: each scene, form, method, representation and tolerance; an hour or two. What has been measured stays in the CSV files:
+      stopped and called again, it goes on where it was
+  hamel report --scenes heavy_top,torsion_1e8 --methods verner9,exponential,radau5 -o stiff
+      these scenes and methods alone, to the folder `stiff`
+  hamel report --page-only
+      the page anew from the CSV files
+
+How to read the page: an error is the largest over bodies of attitude (rad) and of position, velocity and angular velocity relative to
+max(1, size), against references of 24 digits and more. `final` is at the last sample, `worst` over all of them. The floor of a scene is what
+one rounding of its initial state grows to: max(1, conditioning, frequency × time) × 1.1e-16. No method in doubles can be expected below it.
+
+Representations: `matrix` and `quaternion` are this library's ball joints, `euler` its gimbal, the classic that they replace; `declared` is
+the joint that the scene names. A run that fails is a row with its reason, and a cross at the upper edge of its plot.
+
+work.csv, drift.csv and stability.csv hold the figures; docs/report.md tells their columns.
+
+Exit codes: 0 success, also where runs failed; 1 a file that cannot be read or written; 2 wrong options.";
+
+/// Measure error against run time on scenes whose motions are known, and make a page of it.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Folder for the page and its CSV files; made if it is not there
+    #[arg(short, long, value_name = "FOLDER", default_value = "report")]
+    pub output: PathBuf,
+
+    /// Some scenes, methods and repetitions, in less than a minute
+    #[arg(long)]
+    pub short: bool,
+
+    /// Only these scenes [default: all that have references]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub scenes: Vec<String>,
+
+    /// Only these methods [default: all]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub methods: Vec<String>,
+
+    /// Measure anew what the CSV files have
+    #[arg(long)]
+    pub fresh: bool,
+
+    /// Make the page from the CSV files and measure nothing
+    #[arg(long, conflicts_with_all = ["fresh", "short"])]
+    pub page_only: bool,
+
+    /// No progress bar
+    #[arg(long)]
+    pub quiet: bool,
+}

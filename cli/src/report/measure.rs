@@ -1,0 +1,167 @@
+//! One run, timed, with its error.
+
+use super::case::Reference;
+use super::score::{Errors, errors};
+use hamel::dynamics::Recursive;
+use hamel::integrate::{
+    Form, Method, Options, Solution, State, Statistics, Step, integrate, no_inputs,
+};
+use hamel_scene::Scene;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long and how often.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// A run that takes longer is stopped, and fails.
+    pub run: Duration,
+    /// Runs end when this has been spent on a point…
+    pub point: Duration,
+    /// …or when they are so many.
+    pub repetitions: usize,
+}
+
+impl Budget {
+    /// For figures that are to be told.
+    pub const FULL: Self = Self {
+        run: Duration::from_secs(3),
+        point: Duration::from_millis(200),
+        repetitions: 30,
+    };
+    /// For a first look.
+    pub const SHORT: Self = Self {
+        run: Duration::from_millis(150),
+        point: Duration::from_millis(10),
+        repetitions: 30,
+    };
+}
+
+/// Run times of one point, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// How many runs.
+    pub repetitions: usize,
+    /// The least.
+    pub least: f64,
+    /// In the middle.
+    pub median: f64,
+    /// Between the first and the third quarter.
+    pub spread: f64,
+}
+
+/// What a point of a diagram is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Against the reference.
+    pub errors: Errors,
+    /// The work of one run.
+    pub statistics: Statistics,
+    /// How long it took.
+    pub times: Times,
+}
+
+/// A run that did not come to its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failed {
+    /// Why.
+    pub reason: String,
+    /// How long it took to fail, s.
+    pub seconds: f64,
+}
+
+/// The motion of a scene to the samples of its reference, as often as the budget says.
+pub fn point(
+    scene: &Scene,
+    reference: &Reference,
+    form: Form,
+    method: Method,
+    budget: Budget,
+) -> Result<Point, Failed> {
+    let samples: Vec<f64> = reference.samples.iter().map(|sample| sample.t).collect();
+    let start = Instant::now();
+    let (solution, first) = run(scene, form, method, &samples, budget.run)?;
+    let errors = errors(&scene.mechanism, reference, &solution);
+    let errors = errors.filter(|errors| errors.worst.is_finite());
+    let errors = errors.ok_or_else(|| Failed {
+        reason: "the result is not finite".into(),
+        seconds: first,
+    })?;
+    let mut seconds = vec![first];
+    while seconds.len() < budget.repetitions && start.elapsed() < budget.point {
+        seconds.push(run(scene, form, method, &samples, budget.run)?.1);
+    }
+    Ok(Point {
+        errors,
+        statistics: solution.statistics,
+        times: times(seconds),
+    })
+}
+
+fn times(mut seconds: Vec<f64>) -> Times {
+    seconds.sort_by(f64::total_cmp);
+    let at = |part: f64| seconds[((seconds.len() - 1) as f64 * part).round() as usize];
+    Times {
+        repetitions: seconds.len(),
+        least: at(0.0),
+        median: at(0.5),
+        spread: at(0.75) - at(0.25),
+    }
+}
+
+/// The state at the beginning of a scene.
+pub fn initial(scene: &Scene) -> State {
+    State {
+        time: 0.0,
+        configuration: scene.configuration.clone(),
+        speeds: scene.speeds.clone(),
+    }
+}
+
+/// One run to the last of the sample times, and its run time, s: integration alone, without construction.
+pub fn run(
+    scene: &Scene,
+    form: Form,
+    method: Method,
+    samples: &[f64],
+    limit: Duration,
+) -> Result<(Solution, f64), Failed> {
+    let options = Options {
+        form,
+        method,
+        t_end: samples.last().copied().unwrap_or(0.0),
+        samples: samples.to_vec(),
+    };
+    let initial = initial(scene);
+    let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+    let start = Instant::now();
+    let mut observer = |_: &Step<'_>| match start.elapsed() < limit {
+        true => ControlFlow::Continue(()),
+        false => ControlFlow::Break(()),
+    };
+    let result = integrate(
+        &mut dynamics,
+        &initial,
+        &options,
+        &mut no_inputs,
+        &mut observer,
+    );
+    let seconds = start.elapsed().as_secs_f64();
+    match result {
+        Ok(solution) if !solution.stopped => Ok((solution, seconds)),
+        Ok(solution) => Err(Failed {
+            reason: format!(
+                "at {:.3e} of {:.3e} s after {:.2} s of run time and {} steps",
+                solution.state.time,
+                options.t_end,
+                limit.as_secs_f64(),
+                solution.statistics.steps
+            ),
+            seconds,
+        }),
+        Err(error) => Err(Failed {
+            reason: error.to_string(),
+            seconds,
+        }),
+    }
+}

@@ -1,0 +1,22 @@
+//! `hamel report`: error against run time, on scenes whose motions are known.
+
+mod args;
+mod build_cost;
+mod case;
+mod drift;
+mod machine;
+mod measure;
+mod page;
+mod plan;
+mod plots;
+mod progress;
+mod representation;
+mod row;
+mod run;
+mod score;
+mod stability;
+mod store;
+mod work;
+
+pub use args::Args;
+pub use run::run;

@@ -1,0 +1,306 @@
+//! The page: figures, and tables of what they show.
+
+use super::build_cost::Cost;
+use super::case::Case;
+use super::machine::Machine;
+use super::plots;
+use super::row::{Drift, Stability, Work};
+use crate::output::Failure;
+use serde::Serialize;
+use tera::{Context, Tera};
+
+const TEMPLATE: &str = include_str!("page.html");
+
+/// Methods whose representations are compared: one for usual and one for tight tolerances.
+const COMPARED: [&str; 2] = ["dopri5", "verner9"];
+/// Accuracies that run times are told for.
+const ASKED: [f64; 2] = [1e-6, 1e-9];
+
+/// All that the page is made of.
+#[derive(Debug)]
+pub struct Figures {
+    pub work: Vec<Work>,
+    pub drift: Vec<Drift>,
+    pub stability: Vec<Stability>,
+    pub costs: Vec<Cost>,
+    pub machine: Machine,
+}
+
+/// One scene's part of the page.
+#[derive(Serialize)]
+struct Section {
+    name: String,
+    description: String,
+    source: String,
+    floor: String,
+    conditioning: String,
+    /// The work–precision diagram of both forms.
+    forms: String,
+    /// That of the representations; empty where there is one.
+    representations: String,
+    best: Vec<Best>,
+    failures: Vec<Failing>,
+}
+
+/// The best of one method on a scene.
+#[derive(Serialize)]
+struct Best {
+    method: String,
+    form: String,
+    error: String,
+    floors: String,
+    /// Least run times, ms, at the accuracies asked.
+    times: Vec<String>,
+}
+
+/// Runs that failed for one reason.
+#[derive(Serialize)]
+struct Failing {
+    curve: String,
+    accuracies: String,
+    reason: String,
+}
+
+#[derive(Serialize)]
+struct Drawing {
+    name: String,
+    svg: String,
+}
+
+/// A line of the overview: by method, the least error in floors.
+#[derive(Serialize)]
+struct Line {
+    scene: String,
+    floor: String,
+    cells: Vec<Cell>,
+}
+
+#[derive(Serialize)]
+struct Cell {
+    text: String,
+    /// `reached` to 10 floors, `near` to 100, `far`, or `failed`.
+    class: &'static str,
+}
+
+/// The whole page as text.
+///
+/// # Errors
+/// Figures or texts that cannot be made.
+pub fn render(figures: &Figures) -> Result<String, Failure> {
+    let mut context = Context::new();
+    let sections = sections(&figures.work)?;
+    let methods = distinct(figures.work.iter().map(|row| row.method.as_str()));
+    context.insert("machine", &figures.machine);
+    context.insert("lines", &overview(&figures.work, &methods));
+    context.insert("methods", &methods);
+    context.insert("sections", &sections);
+    context.insert("asked", &ASKED.map(|error| format!("{error:.0e}")));
+    context.insert(
+        "drift",
+        &drawings(&figures.drift, |row| &row.scene, |rows| plots::drift(rows))?,
+    );
+    context.insert(
+        "stability",
+        &drawings(
+            &figures.stability,
+            |row| &row.scene,
+            |rows| plots::stability(rows),
+        )?,
+    );
+    context.insert("costs", &figures.costs);
+    context.insert("points", &figures.work.len());
+    let mut tera = Tera::new();
+    let name = "page.html";
+    let added = tera.add_raw_template(name, TEMPLATE);
+    let page = added.and_then(|()| tera.render(name, &context));
+    page.map_err(|error| Failure::Page(error.to_string()))
+}
+
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut known: Vec<String> = Vec::new();
+    for name in names {
+        if !known.iter().any(|other| other == name) {
+            known.push(name.to_owned());
+        }
+    }
+    known
+}
+
+fn drawings<R>(
+    rows: &[R],
+    name: impl Fn(&R) -> &String,
+    draw: impl Fn(&[&R]) -> Result<String, Failure>,
+) -> Result<Vec<Drawing>, Failure> {
+    let names = distinct(rows.iter().map(|row| name(row).as_str()));
+    let drawings = names.into_iter().map(|scene| {
+        let own: Vec<&R> = rows.iter().filter(|row| *name(row) == scene).collect();
+        Ok(Drawing {
+            svg: draw(&own)?,
+            name: scene,
+        })
+    });
+    drawings.collect()
+}
+
+fn sections(rows: &[Work]) -> Result<Vec<Section>, Failure> {
+    let names = distinct(rows.iter().map(|row| row.scene.as_str()));
+    let sections = names.into_iter().map(|name| {
+        let own: Vec<&Work> = rows.iter().filter(|row| row.scene == name).collect();
+        section(name, &own)
+    });
+    sections.collect()
+}
+
+fn section(name: String, rows: &[&Work]) -> Result<Section, Failure> {
+    let (description, source) = told(&name)?;
+    let first = rows.first().map(|row| row.representation.clone());
+    let main: Vec<&Work> = rows
+        .iter()
+        .copied()
+        .filter(|row| Some(&row.representation) == first.as_ref())
+        .collect();
+    let compared: Vec<&Work> = rows
+        .iter()
+        .copied()
+        .filter(|row| row.form == "lagrangian" && COMPARED.contains(&row.method.as_str()))
+        .collect();
+    let several = distinct(compared.iter().map(|row| row.representation.as_str())).len() > 1;
+    let representations = match several {
+        true => plots::representations(&compared)?,
+        false => String::new(),
+    };
+    Ok(Section {
+        floor: rows
+            .first()
+            .map_or(String::new(), |row| format!("{:.1e}", row.floor)),
+        conditioning: rows
+            .first()
+            .map_or(String::new(), |row| format!("{:.1e}", row.conditioning)),
+        forms: plots::forms(&main)?,
+        representations,
+        best: best(&main),
+        failures: failures(rows),
+        name,
+        description,
+        source,
+    })
+}
+
+/// What a scene shows, and where its reference is from; empty where this program does not know the scene.
+fn told(name: &str) -> Result<(String, String), Failure> {
+    let known = Case::chosen(&[name.to_owned()]).unwrap_or_default();
+    match known.first() {
+        Some(case) => Ok((case.description()?.description, case.reference()?.source)),
+        None => Ok((String::new(), String::new())),
+    }
+}
+
+/// The curves of some rows, each with its rows.
+fn curves<'a>(rows: &[&'a Work]) -> Vec<(String, Vec<&'a Work>)> {
+    let label = |row: &Work| format!("{} {} {}", row.method, row.form, row.representation);
+    let mut curves: Vec<(String, Vec<&Work>)> = Vec::new();
+    for row in rows {
+        let label = label(row);
+        match curves.iter_mut().find(|(known, _)| *known == label) {
+            Some((_, curve)) => curve.push(row),
+            None => curves.push((label, vec![row])),
+        }
+    }
+    curves
+}
+
+fn least(rows: &[&Work]) -> Option<f64> {
+    let errors = rows.iter().filter_map(|row| row.error_worst);
+    errors.reduce(f64::min)
+}
+
+fn best(rows: &[&Work]) -> Vec<Best> {
+    let curves = curves(rows).into_iter().map(|(_, curve)| {
+        let error = least(&curve);
+        let within = |asked: f64| {
+            let times = curve
+                .iter()
+                .filter(|row| row.error_worst.is_some_and(|e| e <= asked));
+            let least = times.filter_map(|row| row.seconds_least).reduce(f64::min);
+            least.map_or("—".into(), |seconds| format!("{:.3}", 1e3 * seconds))
+        };
+        Best {
+            method: curve[0].method.clone(),
+            form: curve[0].form.clone(),
+            error: error.map_or("fails".into(), |error| format!("{error:.1e}")),
+            floors: error.map_or("—".into(), |error| multiple(error / curve[0].floor)),
+            times: ASKED.map(within).to_vec(),
+        }
+    });
+    curves.collect()
+}
+
+fn multiple(factor: f64) -> String {
+    match factor < 1000.0 {
+        true => format!("{factor:.1}"),
+        false => format!("{factor:.0e}"),
+    }
+}
+
+fn failures(rows: &[&Work]) -> Vec<Failing> {
+    let mut failing: Vec<Failing> = Vec::new();
+    for (label, curve) in curves(rows) {
+        for row in curve.iter().filter(|row| !row.failure.is_empty()) {
+            let accuracy = format!("{:.1e}", row.accuracy);
+            match failing.last_mut() {
+                // One reason with other figures in it is one line: that of the coarsest run.
+                Some(last) if last.curve == label => {
+                    last.accuracies = format!("{}, {accuracy}", last.accuracies);
+                }
+                _ => failing.push(Failing {
+                    curve: label.clone(),
+                    accuracies: accuracy,
+                    reason: row.failure.clone(),
+                }),
+            }
+        }
+    }
+    failing
+}
+
+fn overview(rows: &[Work], methods: &[String]) -> Vec<Line> {
+    let scenes = distinct(rows.iter().map(|row| row.scene.as_str()));
+    let lines = scenes.into_iter().map(|scene| {
+        let own: Vec<&Work> = rows.iter().filter(|row| row.scene == scene).collect();
+        let cell = |method: &String| {
+            let of_method: Vec<&Work> = own
+                .iter()
+                .copied()
+                .filter(|row| row.method == *method && row.representation != "euler")
+                .collect();
+            cell(&of_method)
+        };
+        Line {
+            cells: methods.iter().map(cell).collect(),
+            floor: own
+                .first()
+                .map_or(String::new(), |row| format!("{:.1e}", row.floor)),
+            scene,
+        }
+    });
+    lines.collect()
+}
+
+fn cell(rows: &[&Work]) -> Cell {
+    let factor = least(rows)
+        .zip(rows.first())
+        .map(|(error, row)| error / row.floor);
+    let class = match factor {
+        _ if rows.is_empty() => "none",
+        None => "failed",
+        Some(factor) if factor <= 10.0 => "reached",
+        Some(factor) if factor <= 100.0 => "near",
+        Some(_) => "far",
+    };
+    let text = match factor {
+        Some(factor) => multiple(factor),
+        None if rows.is_empty() => String::new(),
+        None => "fails".into(),
+    };
+    Cell { text, class }
+}

@@ -1,0 +1,191 @@
+//! Work–precision: every scene with every method, at tolerances or steps from coarse to fine.
+
+use super::case::{Case, Reference, accuracy};
+use super::measure::{self, Failed, Point};
+use super::plan::{Plan, TOLERANCES};
+use super::representation::Representation;
+use super::row::{Row, Work, form_name};
+use super::store::Store;
+use crate::output::Failure;
+use hamel::integrate::{Form, Method, Scheme};
+use hamel::registry::JointRegistry;
+use hamel_scene::SceneDescription;
+
+/// Steps of a method without step control, from that at which the scene is resolved coarsely to this power of two below it.
+const HALVINGS: i32 = 9;
+
+/// One curve to be measured.
+#[derive(Clone, Copy, Debug)]
+struct Curve<'a> {
+    case: &'a Case,
+    form: Form,
+    scheme: Scheme,
+    representation: Representation,
+}
+
+/// Measures what the store has not.
+///
+/// # Errors
+/// Scenes or references that cannot be read; a file that cannot be written.
+pub fn measure(
+    plan: &Plan,
+    registry: &JointRegistry,
+    machine: &str,
+    store: &mut Store<Work>,
+    mut tick: impl FnMut(&str),
+) -> Result<(), Failure> {
+    for case in &plan.cases {
+        let (description, reference) = (case.description()?, case.reference()?);
+        let coarse = coarse_step(&description, &reference, registry, plan);
+        for curve in curves(plan, case, &description) {
+            tick(&format!("{} {}", case.name, curve.scheme.name()));
+            let scene = curve.representation.apply(&description).build(registry);
+            for method in methods(curve.scheme, coarse) {
+                let empty = row(plan, &curve, method, &reference, machine);
+                if store.has(&empty.key()) {
+                    continue;
+                }
+                let measured = match &scene {
+                    Ok(scene) => measure::point(scene, &reference, curve.form, method, plan.budget),
+                    Err(errors) => Err(Failed {
+                        reason: first_line(&errors.to_string()),
+                        seconds: 0.0,
+                    }),
+                };
+                store.add(&[filled(empty, measured)])?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How many curves there are, for the bar.
+///
+/// # Errors
+/// Scenes that cannot be read.
+pub fn count(plan: &Plan) -> Result<usize, Failure> {
+    let counts = plan.cases.iter().map(|case| {
+        let description = case.description()?;
+        Ok(curves(plan, case, &description).len())
+    });
+    counts.sum()
+}
+
+/// Both forms in the first representation, the Lagrangian one in the others.
+fn curves<'a>(plan: &Plan, case: &'a Case, scene: &SceneDescription) -> Vec<Curve<'a>> {
+    let representations = Representation::of(scene);
+    let mut curves = Vec::new();
+    for &scheme in &plan.schemes {
+        for (i, &representation) in representations.iter().enumerate() {
+            let forms = plan.forms(scheme).iter();
+            curves.extend(forms.take(if i == 0 { 2 } else { 1 }).map(|&form| Curve {
+                case,
+                form,
+                scheme,
+                representation,
+            }));
+        }
+    }
+    curves
+}
+
+/// A tolerance each, or a step each.
+fn methods(scheme: Scheme, coarse: f64) -> Vec<Method> {
+    match scheme.has_estimate() {
+        true => TOLERANCES
+            .map(|tol| Method::controlled(scheme, tol))
+            .to_vec(),
+        false => (0..HALVINGS)
+            .map(|i| Method::fixed(scheme, coarse * 0.5_f64.powi(i)))
+            .collect(),
+    }
+}
+
+/// The mean step, s, with which step control resolves a scene to 1e-4: the longest over an explicit and an implicit method, rounded to a power of two.
+fn coarse_step(
+    description: &SceneDescription,
+    reference: &Reference,
+    registry: &JointRegistry,
+    plan: &Plan,
+) -> f64 {
+    let Ok(scene) = description.build(registry) else {
+        return reference.end();
+    };
+    let samples: Vec<f64> = reference.samples.iter().map(|sample| sample.t).collect();
+    let steps = [Scheme::DormandPrince, Scheme::Radau5].map(|scheme| {
+        let method = Method::controlled(scheme, 1e-4);
+        let run = measure::run(&scene, Form::Lagrangian, method, &samples, plan.budget.run);
+        run.map_or(0.0, |(solution, _)| {
+            reference.end() / solution.statistics.steps as f64
+        })
+    });
+    match steps.into_iter().fold(0.0, f64::max) {
+        0.0 => reference.end() / 1024.0,
+        step => step.log2().floor().exp2(),
+    }
+}
+
+fn first_line(text: &str) -> String {
+    text.lines().next().unwrap_or_default().to_owned()
+}
+
+fn row(
+    plan: &Plan,
+    curve: &Curve<'_>,
+    method: Method,
+    reference: &Reference,
+    machine: &str,
+) -> Work {
+    Work {
+        scene: curve.case.name.into(),
+        form: form_name(curve.form).into(),
+        method: curve.scheme.name().into(),
+        representation: curve.representation.name().into(),
+        implementation: "tree".into(),
+        knob: match method {
+            Method::Fixed { .. } => "step_s".into(),
+            Method::Controlled { .. } => "tolerance".into(),
+        },
+        accuracy: accuracy(&method),
+        error_final: None,
+        error_worst: None,
+        floor: reference.floor(),
+        conditioning: reference.conditioning,
+        steps: None,
+        rejected: None,
+        evaluations: None,
+        jacobians: None,
+        factorizations: None,
+        repetitions: 0,
+        seconds_least: None,
+        seconds_median: None,
+        seconds_spread: None,
+        failure: String::new(),
+        budget: plan.budget_name.into(),
+        machine: machine.into(),
+    }
+}
+
+fn filled(row: Work, measured: Result<Point, Failed>) -> Work {
+    match measured {
+        Ok(point) => Work {
+            error_final: Some(point.errors.last),
+            error_worst: Some(point.errors.worst),
+            steps: Some(point.statistics.steps),
+            rejected: Some(point.statistics.rejected),
+            evaluations: Some(point.statistics.evaluations),
+            jacobians: Some(point.statistics.jacobians),
+            factorizations: Some(point.statistics.factorizations),
+            repetitions: point.times.repetitions,
+            seconds_least: Some(point.times.least),
+            seconds_median: Some(point.times.median),
+            seconds_spread: Some(point.times.spread),
+            ..row
+        },
+        Err(failed) => Work {
+            seconds_median: Some(failed.seconds),
+            failure: failed.reason,
+            ..row
+        },
+    }
+}

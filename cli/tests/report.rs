@@ -1,0 +1,64 @@
+//! `hamel report` as a user runs it, on one scene and two methods.
+
+mod common;
+
+use common::{hamel, stdout};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A folder that is not there yet.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    // What an earlier run left must not count as measured.
+    let _ = fs::remove_dir_all(&folder);
+    folder
+}
+
+fn report(folder: &Path, more: &[&str]) -> String {
+    let place = folder.display().to_string();
+    let mut arguments = vec!["report", "--short", "-o", &place];
+    arguments.extend(["--scenes", "top_lock", "--methods", "verner9,radau5"]);
+    arguments.extend(more);
+    stdout(&arguments)
+}
+
+#[test]
+fn a_report_measures_each_curve_once() {
+    let folder = folder("report");
+    let told = report(&folder, &[]);
+    assert!(told.contains("points of work and precision"), "{told}");
+    let work = fs::read_to_string(folder.join("work.csv")).expect("a file");
+    let rows: Vec<&str> = work.lines().skip(1).collect();
+    // Two methods: matrices in both forms, quaternions and Euler angles in one, at eleven tolerances each.
+    assert_eq!(rows.len(), 2 * 4 * 11);
+    let euler: Vec<&&str> = rows.iter().filter(|row| row.contains(",euler,")).collect();
+    assert!(
+        euler
+            .iter()
+            .all(|row| row.contains("singular") || row.contains("run time")),
+        "Euler angles pass where they are singular: {euler:#?}"
+    );
+    let page = fs::read_to_string(folder.join("index.html")).expect("a page");
+    for expected in ["<svg", "top_lock", "radau5", "in floors"] {
+        assert!(page.contains(expected), "{expected}");
+    }
+    assert!(
+        !page.contains("http://") || page.contains("http://www.w3.org"),
+        "the page asks for a network"
+    );
+    // Called again, it has nothing to measure, and changes no figure.
+    report(&folder, &[]);
+    let again = fs::read_to_string(folder.join("work.csv")).expect("a file");
+    assert_eq!(work, again);
+}
+
+#[test]
+fn unknown_scenes_and_methods_are_named() {
+    let folder = folder("report_refused").display().to_string();
+    for (option, name) in [("--scenes", "no_such_scene"), ("--methods", "euler7")] {
+        let output = hamel(&["report", "-o", &folder, option, name]);
+        assert_eq!(output.status.code(), Some(2));
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(told.contains(name) && told.contains("there are"), "{told}");
+    }
+}
