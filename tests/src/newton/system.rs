@@ -68,10 +68,11 @@ impl Motion {
 /// Bodies under gravity, loads and constraints.
 #[derive(Clone, Debug)]
 pub struct System {
-    pub gravity: Vector,
-    pub bodies: Vec<Inertia>,
-    pub constraints: Vec<Constraint>,
-    pub loads: Vec<Load>,
+    /// Acceleration of free fall, world axes, m/s².
+    pub(super) gravity: Vector,
+    pub(super) bodies: Vec<Inertia>,
+    pub(super) constraints: Vec<Constraint>,
+    pub(super) loads: Vec<Load>,
 }
 
 impl System {
