@@ -9,6 +9,7 @@ pub mod closed;
 mod constraint;
 mod double;
 mod extrapolation;
+mod joint;
 mod load;
 mod number;
 mod record;

@@ -68,14 +68,11 @@ impl Motion {
 /// Bodies under gravity, loads and constraints.
 #[derive(Clone, Debug)]
 pub struct System {
-    /// Acceleration of free fall, m/s².
-    pub gravity: Vector,
-    /// Mass and inertia of each.
-    pub bodies: Vec<Inertia>,
-    /// What holds them.
-    pub constraints: Vec<Constraint>,
-    /// What acts on them beside gravity.
-    pub loads: Vec<Load>,
+    /// Acceleration of free fall, world axes, m/s².
+    pub(super) gravity: Vector,
+    pub(super) bodies: Vec<Inertia>,
+    pub(super) constraints: Vec<Constraint>,
+    pub(super) loads: Vec<Load>,
 }
 
 impl System {
