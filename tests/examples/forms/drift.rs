@@ -23,7 +23,10 @@ pub fn table() {
                 let drifts = drifts.map(|state| format!("{:.1e}", energy_error(&scene, state)));
                 let drifts = drifts.collect::<Vec<_>>().join(" | ");
                 let letter = letter(form);
-                println!("| {name} | {} | {letter} | {drifts} |", method.name());
+                println!(
+                    "| {name} | {} | {letter} | {drifts} |",
+                    method.scheme().name()
+                );
             }
         }
     }
