@@ -33,7 +33,7 @@ fn frames_stand_where_their_bodies_carry_them() {
     assert_eq!(marks.len(), 6);
     for (name, body, [x, y, z, w, i, j, k]) in marks {
         let own = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
-        for row in 0..csv["t_s"].len() {
+        for (row, _) in csv["t_s"].iter().enumerate() {
             let read = |ends: [&str; 3], of: &str| {
                 Vector3::from(ends.map(|end| csv[&format!("{of}.{end}")][row]))
             };
