@@ -1,9 +1,19 @@
-//! Lie-group Runge–Kutta integration of Munthe-Kaas type, through the joints' own Φ (§V of the paper, (31)).
+//! Integration on the joints' manifolds, through their own Φ (§V of the paper, (31)).
 //!
 //! Steps live in the flat space of (ϕ, y) with y = v̄ or p̄, where each joint's ϕ is measured from a base point Q_b: stage i has
-//! `Q_i = Φ(Q_b, ϕ_i)` and `ϕ̇_i = S(Q_b, ϕ_i)⁻¹ S̄(Q_i) v̄_i`, so that any explicit tableau keeps its order. A joint that has moved
-//! by half a radian gets `Φ(Q_b, ϕ)`, projected onto the manifold against rounding, for its base point, where ϕ begins at 0 again. Nothing is
+//! `Q_i = Φ(Q_b, ϕ_i)` and `ϕ̇_i = S(Q_b, ϕ_i)⁻¹ S̄(Q_i) v̄_i`, so that any tableau keeps its order, explicit or implicit (H. Munthe-Kaas). A
+//! joint that has moved by half a radian gets `Φ(Q_b, ϕ)`, projected onto the manifold against rounding, for its base point, where ϕ begins at 0 again. Nothing is
 //! ever added to Q.
+//!
+//! What a scheme does to go from one state to the next is a `Stepper`; all of them share the state and its charts (`Standing`), the equations as a
+//! vector field (`Flow`), the control of steps and the way over the samples (`Driver`), and dense output with the events on it.
+//!
+//! | mechanism | scheme |
+//! |---|---|
+//! | most | [`Scheme::DormandPrince`]; [`Scheme::DormandPrince8`] below 1e-8 or so, [`Scheme::Verner9`] near rounding |
+//! | stiff and damped | [`Scheme::Radau5`]: its steps do not depend on the stiffness |
+//! | stiff and undamped | [`Scheme::Exponential`], which follows the oscillation; [`Scheme::Gauss2`] and [`Scheme::Midpoint`] step over it |
+//! | long runs | [`Scheme::Gauss3`], or [`Scheme::DiscreteGradient`] where the balance of energy shall hold to rounding |
 
 mod approach;
 mod between;
