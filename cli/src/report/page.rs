@@ -97,15 +97,11 @@ pub fn render(figures: &Figures) -> Result<String, Failure> {
     context.insert("asked", &ASKED.map(|error| format!("{error:.0e}")));
     context.insert(
         "drift",
-        &drawings(&figures.drift, |row| &row.scene, |rows| plots::drift(rows))?,
+        &drawings(&figures.drift, |row| &row.scene, plots::drift)?,
     );
     context.insert(
         "stability",
-        &drawings(
-            &figures.stability,
-            |row| &row.scene,
-            |rows| plots::stability(rows),
-        )?,
+        &drawings(&figures.stability, |row| &row.scene, plots::stability)?,
     );
     context.insert("costs", &figures.costs);
     context.insert("points", &figures.work.len());

@@ -48,7 +48,7 @@ impl Extrapolation {
             if error <= self.tolerance {
                 time += length;
                 *state = next;
-            } else if !(step > LEAST * duration) {
+            } else if step.is_nan() || step <= LEAST * duration {
                 return None;
             }
         }

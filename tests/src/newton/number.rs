@@ -92,7 +92,7 @@ pub fn quaternion(rotation: &Matrix) -> [Real; 4] {
         .iter()
         .fold(real(0.0), |sum, &q| sum + q * q)
         .sqrt();
-    quaternion.iter_mut().for_each(|q| *q = *q / length);
+    quaternion.iter_mut().for_each(|q| *q /= length);
     quaternion
 }
 

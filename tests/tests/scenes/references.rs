@@ -46,7 +46,7 @@ fn real(text: &str) -> Real {
         }
     }
     let mut scale = Real::from(1.0);
-    (0..exponent.unsigned_abs()).for_each(|_| scale = scale * Real::from(10.0));
+    (0..exponent.unsigned_abs()).for_each(|_| scale *= Real::from(10.0));
     let size = if exponent < 0 {
         value / scale
     } else {
