@@ -42,10 +42,9 @@ fn a_report_measures_each_curve_once() {
     for expected in ["<svg", "top_lock", "radau5", "in floors"] {
         assert!(page.contains(expected), "{expected}");
     }
-    assert!(
-        !page.contains("http://") || page.contains("http://www.w3.org"),
-        "the page asks for a network"
-    );
+    // Names of formats are no addresses.
+    let addresses = page.replace("http://www.w3.org/", "");
+    assert!(!addresses.contains("http"), "the page asks for a network");
     // Called again, it has nothing to measure, and changes no figure.
     report(&folder, &[]);
     let again = fs::read_to_string(folder.join("work.csv")).expect("a file");
