@@ -125,7 +125,7 @@ impl World {
         let mut state = self.state.clone();
         for body in state.chunks_mut(STATE) {
             for value in &mut body[7..] {
-                *value = *value + *value * real(part);
+                *value *= real(1.0) + real(part);
             }
         }
         state
