@@ -125,7 +125,7 @@ fn is_close(a: &str, b: &str) -> bool {
 
 /// All that a description says, without where in its text it stands.
 fn said(scene: &SceneDescription) -> String {
-    let parts: [&dyn Debug; 11] = [
+    let parts: [&dyn Debug; 12] = [
         &scene.name,
         &scene.description,
         &scene.gravity,
@@ -134,6 +134,7 @@ fn said(scene: &SceneDescription) -> String {
         &scene.springs,
         &scene.wrenches,
         &scene.constraints,
+        &scene.events,
         &scene.shapes,
         &scene.controller,
         &scene.settings,

@@ -78,7 +78,7 @@ pub struct Args {
     )]
     pub tol: Option<f64>,
 
-    /// Length of all steps, s, shorter where samples are closer; implies rk4 where the method has step control
+    /// Length of all steps, s, shorter where samples are landed on; implies rk4 where the method has step control
     #[arg(
         long,
         value_name = "SECONDS",
@@ -91,9 +91,13 @@ pub struct Args {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub t_end: Option<f64>,
 
-    /// Time between two samples of the trajectory, s; every method steps onto each of them
+    /// Time between two samples of the trajectory, s; every method steps onto each of them, unless --sampling is dense
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub sample_step: Option<f64>,
+
+    /// Where samples come from
+    #[arg(long, value_enum)]
+    pub sampling: Option<SamplingName>,
 
     /// Sample at these times only, s, ascending; without --t-end the simulation ends at the last
     #[arg(
@@ -133,6 +137,15 @@ pub enum FormName {
     Lagrangian,
     /// State (Q, p), port-Hamiltonian, Theorem 3
     Hamiltonian,
+}
+
+/// Names of the places that samples come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SamplingName {
+    /// Steps that are shortened to land on them
+    Landing,
+    /// Polynomials between the ends of steps, so that samples have no influence on the steps
+    Dense,
 }
 
 /// Every method by its name.

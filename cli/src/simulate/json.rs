@@ -3,6 +3,7 @@
 use super::control::Outcome;
 use super::sample::Sample;
 use crate::output::Failure;
+use hamel::integrate::Crossing;
 use serde::Serialize;
 use serde_json::Serializer;
 use serde_json::ser::Formatter;
@@ -19,11 +20,36 @@ pub struct Report<'a> {
     pub method: &'a str,
     /// The states asked for.
     pub samples: &'a [Sample<'a>],
+    /// What the scene's events came to, in the order of time; absent where there is none.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub events: &'a [Event<'a>],
     /// What the controller did, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub control: Option<&'a Outcome>,
     /// What the simulation took.
     pub statistics: Statistics,
+}
+
+/// One crossing of an event of the scene.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Event<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// When, s.
+    pub t: f64,
+    /// Whether the quantity rises there.
+    pub rising: bool,
+}
+
+impl<'a> Event<'a> {
+    /// What is told of a crossing.
+    pub fn of(crossing: &'a Crossing) -> Self {
+        Self {
+            name: &crossing.name,
+            t: crossing.state.time,
+            rising: crossing.rising,
+        }
+    }
 }
 
 /// What the simulation took.
@@ -87,6 +113,7 @@ mod tests {
             form: "lagrangian",
             method: "rk4",
             samples: &samples,
+            events: &[],
             control: None,
             statistics,
         };

@@ -3,7 +3,7 @@
 use super::args::Args;
 use super::{settings, times};
 use crate::output::{Failure, refuse_overwriting, tell};
-use hamel::integrate::{Method, Options};
+use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
 use hamel_scene::{Control, Scene, Settings, urdf};
 use std::path::{Path, PathBuf};
@@ -82,7 +82,8 @@ impl Plan {
         match self.settings.method {
             Method::Fixed { dt, .. } => {
                 let shorter = self.times.windows(2).any(|pair| pair[1] - pair[0] < dt);
-                let note = if shorter {
+                let lands = self.settings.sampling == Sampling::Landing;
+                let note = if shorter && lands {
                     ", shorter where samples are closer"
                 } else {
                     ""

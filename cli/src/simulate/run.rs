@@ -12,9 +12,7 @@ use super::sample::Sample;
 use super::table::Summary;
 use crate::output::Failure;
 use hamel::dynamics::Recursive;
-use hamel::integrate::{
-    IntegrateError, Observer, Solution, State, Step, integrate, integrate_held, no_inputs,
-};
+use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State, Step};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::io::Write;
@@ -93,19 +91,21 @@ fn move_on(
 ) -> Result<Solution, IntegrateError> {
     let mut dynamics = Recursive::new(Arc::clone(&plan.scene.mechanism));
     let (initial, options) = (initial(plan), plan.options());
-    let Some(control) = control else {
-        return integrate(&mut dynamics, &initial, &options, &mut no_inputs, observer);
-    };
-    let mut inputs = |time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]| {
-        control.fill(time, q, speeds, efforts);
-    };
-    match control.period() {
-        None => integrate(&mut dynamics, &initial, &options, &mut inputs, observer),
-        Some(period) => {
-            let (dynamics, inputs) = (&mut dynamics, &mut inputs);
-            integrate_held(dynamics, &initial, &options, period, inputs, observer)
+    let mut integration = Integration::new(&mut dynamics, &initial, &options)
+        .sampling(plan.settings.sampling)
+        .observer(observer);
+    for event in &plan.scene.events {
+        integration = integration.event(event.event(&plan.scene.mechanism));
+    }
+    if let Some(control) = control {
+        integration = integration.inputs(|time, q, speeds, efforts| {
+            control.fill(time, q, speeds, efforts);
+        });
+        if let Some(period) = control.period() {
+            integration = integration.held(period);
         }
     }
+    integration.run()
 }
 
 fn stopped(plan: &Plan, error: &dyn std::fmt::Display) -> Failure {
@@ -166,7 +166,9 @@ impl<'a> Recorder<'a> {
     /// Takes the end of a step, where it is a sample; `efforts` are the controller's, empty without one.
     fn see(&mut self, step: &Step<'_>, efforts: &[f64]) -> ControlFlow<()> {
         self.progress.at(step.time);
-        if let Some(page) = &mut self.page {
+        if let Some(page) = &mut self.page
+            && !step.is_within
+        {
             page.step(step.time);
         }
         if step.sample.is_none() {
@@ -217,11 +219,13 @@ fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
         .zip(efforts)
         .map(|(state, efforts)| sample(&plan.scene.mechanism, state, efforts))
         .collect::<Result<_, _>>()?;
+    let events: Vec<_> = run.solution.events.iter().map(json::Event::of).collect();
     json::print(&Report {
         scene: &plan.scene.name,
         form: plan.settings.form_name(),
         method: plan.settings.method.scheme().name(),
         samples: &samples,
+        events: &events,
         control: run.outcome.as_ref(),
         statistics: run.statistics,
     })
@@ -249,6 +253,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         outcome: run.outcome.as_ref(),
         statistics: run.statistics,
         approaches: &solution.approaches,
+        events: &solution.events,
     };
     write!(std::io::stdout().lock(), "{summary}").map_err(Failure::stdout)
 }

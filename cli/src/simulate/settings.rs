@@ -1,8 +1,8 @@
 //! The settings of a scene with the options of the command line laid over them.
 
-use super::args::{Args, FormName};
+use super::args::{Args, FormName, SamplingName};
 use crate::output::Failure;
-use hamel::integrate::{Control, Form, Method, Scheme};
+use hamel::integrate::{Control, Form, Method, Sampling, Scheme};
 use hamel_scene::Settings;
 
 /// The settings that `args` and the scene's `settings` make together.
@@ -18,11 +18,16 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
         FormName::Lagrangian => Form::Lagrangian,
         FormName::Hamiltonian => Form::Hamiltonian,
     });
+    let sampling = args.sampling.map(|sampling| match sampling {
+        SamplingName::Landing => Sampling::Landing,
+        SamplingName::Dense => Sampling::Dense,
+    });
     Ok(Settings {
         t_end: t_end.transpose()?.unwrap_or(settings.t_end),
         method: method(settings.method, args)?,
         form: form.unwrap_or(settings.form),
         sample_step: sample_step.unwrap_or(settings.sample_step),
+        sampling: sampling.unwrap_or(settings.sampling),
     })
 }
 
@@ -93,7 +98,7 @@ fn refuse<T>(message: String) -> Result<T, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Args, Method, Scheme, Settings, overridden};
+    use super::{Args, Method, Sampling, Scheme, Settings, overridden};
     use clap::Parser;
 
     #[derive(Parser)]
@@ -167,6 +172,17 @@ mod tests {
         ] {
             assert_eq!(method(scene, options), Some(wanted), "{options}");
         }
+    }
+
+    #[test]
+    fn sampling_is_that_of_the_scene_unless_named() {
+        let sampling = |options: &str| {
+            let settings = settings(Method::rk4(0.5), options);
+            settings.map(|settings| settings.sampling)
+        };
+        assert_eq!(sampling(""), Some(Sampling::Landing));
+        assert_eq!(sampling("--sampling dense --at 1"), Some(Sampling::Dense));
+        assert_eq!(sampling("--sampling thin"), None);
     }
 
     #[test]

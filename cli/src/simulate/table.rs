@@ -5,11 +5,14 @@ use super::json::Statistics;
 use super::plan::Plan;
 use super::sample::{BodySample, Sample};
 use comfy_table::{Cell, CellAlignment, Table, presets};
-use hamel::integrate::Approach;
+use hamel::integrate::{Approach, Crossing};
 use std::fmt;
 
 /// Numbers from here on are written with an exponent.
 const LARGEST_DECIMAL: f64 = 1e7;
+
+/// As many events are told.
+const MOST_EVENTS: usize = 12;
 
 /// What a simulation came to.
 #[derive(Debug)]
@@ -28,6 +31,8 @@ pub struct Summary<'a> {
     pub outcome: Option<&'a Outcome>,
     /// What the simulation took.
     pub statistics: Statistics,
+    /// What the scene's events came to.
+    pub events: &'a [Crossing],
     /// How near joints came to singular sets.
     pub approaches: &'a [Approach],
 }
@@ -37,6 +42,7 @@ impl fmt::Display for Summary<'_> {
         self.scene(f)?;
         writeln!(f, "{}", bodies(self.last).trim_fmt())?;
         self.energy(f)?;
+        self.crossings(f)?;
         if let Some(outcome) = self.outcome {
             write!(f, "{outcome}")?;
         }
@@ -82,6 +88,19 @@ impl Summary<'_> {
         let method = self.plan.method();
         writeln!(f, "{bodies}, {freedoms}, {speeds}; {form} form; {method}")?;
         writeln!(f, "state at {} s:", self.last.t)
+    }
+
+    /// The first events, and how many follow.
+    fn crossings(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for crossing in self.events.iter().take(MOST_EVENTS) {
+            let direction = if crossing.rising { "rising" } else { "falling" };
+            let (name, time) = (&crossing.name, crossing.state.time);
+            writeln!(f, "event       {name} at {time:.9} s, {direction}")?;
+        }
+        match self.events.len().saturating_sub(MOST_EVENTS) {
+            0 => Ok(()),
+            more => writeln!(f, "            and {more} more; --json tells all"),
+        }
     }
 
     fn energy(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

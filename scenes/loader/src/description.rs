@@ -1,6 +1,7 @@
 //! What a scene file says, checked as far as that goes without knowing the joints.
 
 use crate::control::ControllerDescription;
+use crate::event::EventDescription;
 use crate::forces::{
     ConstraintDescription, FrameDescription, JointForces, PointSpring, WrenchDescription,
 };
@@ -29,6 +30,8 @@ pub struct SceneDescription {
     pub wrenches: Vec<WrenchDescription>,
     /// Forbidden velocities of points.
     pub constraints: Vec<ConstraintDescription>,
+    /// What is to be noticed on the way.
+    pub events: Vec<EventDescription>,
     /// What stands for bodies in pictures.
     pub shapes: Vec<ShapeDescription>,
     /// What controls the mechanism, if anything does.
@@ -50,6 +53,7 @@ impl SceneDescription {
             springs: Vec::new(),
             wrenches: Vec::new(),
             constraints: Vec::new(),
+            events: Vec::new(),
             shapes: Vec::new(),
             controller: None,
             settings: Settings::default(),

@@ -10,6 +10,7 @@ mod build;
 mod control;
 mod description;
 mod diagnostics;
+mod event;
 mod forces;
 mod notice;
 mod parse;
@@ -31,6 +32,7 @@ pub use description::{
     TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};
+pub use event::{EventDescription, PointAlong, Quantity, QuantityDescription, SceneEvent};
 pub use forces::{
     BodyPoint, ConstraintDescription, FrameDescription, JointForces, JointSpring, PerFreedom,
     PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,

@@ -4,6 +4,7 @@ use crate::build::{self, State};
 use crate::control::Control;
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::event::SceneEvent;
 use crate::notice::Notice;
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
@@ -47,6 +48,8 @@ pub struct Scene {
     pub configuration: Vec<f64>,
     /// Speeds v̄ of all joints at time 0, one joint after the other.
     pub speeds: Vec<f64>,
+    /// What is to be noticed on the way.
+    pub events: Vec<SceneEvent>,
     /// What stands for bodies in pictures.
     pub shapes: Vec<ShapeDescription>,
     /// What controls the mechanism, if anything does.
@@ -166,6 +169,7 @@ fn describe(
             springs: draft.elements.springs,
             wrenches: draft.elements.wrenches,
             constraints: draft.elements.constraints,
+            events: draft.elements.events,
             shapes: draft.elements.shapes,
             controller: draft.controller,
             settings: draft.settings,

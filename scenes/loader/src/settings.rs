@@ -1,9 +1,12 @@
 //! How a scene wants to be simulated: defaults that a caller may override.
 
-use hamel::integrate::{Form, Method, Scheme};
+use hamel::integrate::{Form, Method, Sampling, Scheme};
 
 /// Names of the forms of the equations of motion, as scene files and the command line write them.
 pub(crate) const FORM_NAMES: [&str; 2] = ["lagrangian", "hamiltonian"];
+
+/// Names of the places that samples come from, as scene files and the command line write them.
+pub(crate) const SAMPLING_NAMES: [&str; 2] = ["landing", "dense"];
 
 /// Names of the integration methods, as scene files and the command line write them.
 pub(crate) const METHOD_NAMES: [&str; Scheme::ALL.len()] = {
@@ -27,6 +30,8 @@ pub struct Settings {
     pub form: Form,
     /// Time between two samples of the trajectory, s; above 0.
     pub sample_step: f64,
+    /// Where samples come from.
+    pub sampling: Sampling,
 }
 
 impl Settings {
@@ -65,6 +70,14 @@ impl Settings {
             Form::Hamiltonian => "hamiltonian",
         }
     }
+
+    /// Where samples come from, as scene files and the command line write it.
+    pub const fn sampling_name(&self) -> &'static str {
+        match self.sampling {
+            Sampling::Landing => "landing",
+            Sampling::Dense => "dense",
+        }
+    }
 }
 
 impl Default for Settings {
@@ -74,7 +87,17 @@ impl Default for Settings {
             method: Method::dormand_prince(Self::DEFAULT_TOL),
             form: Form::Lagrangian,
             sample_step: Self::DEFAULT_SAMPLE_STEP,
+            sampling: Sampling::Landing,
         }
+    }
+}
+
+/// The sampling of that name.
+pub(crate) fn sampling_named(name: &str) -> Option<Sampling> {
+    match name {
+        "landing" => Some(Sampling::Landing),
+        "dense" => Some(Sampling::Dense),
+        _ => None,
     }
 }
 

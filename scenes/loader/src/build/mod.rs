@@ -2,6 +2,7 @@
 
 mod control;
 mod equip;
+mod event;
 mod forces;
 mod joint;
 mod place;
@@ -60,12 +61,14 @@ pub(crate) fn scene(
         }
         None => None,
     };
+    let events = event::events(&description.events, &mechanism, sink)?;
     Some(Scene {
         name: description.name.clone(),
         description: description.description.clone(),
         mechanism,
         configuration,
         speeds,
+        events,
         shapes: description.shapes.clone(),
         control,
         settings: description.settings,

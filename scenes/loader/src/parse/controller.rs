@@ -257,7 +257,11 @@ fn joint(fields: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Optio
 }
 
 /// The name of a joint that there is.
-fn known(value: &Value<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option<Located<String>> {
+pub(super) fn known(
+    value: &Value<'_>,
+    joints: &Joints<'_>,
+    sink: &mut Sink,
+) -> Option<Located<String>> {
     let name = value.text(sink)?;
     let Some(joints) = joints else {
         return Some(name);

@@ -1,9 +1,12 @@
-//! Elements of a scene beside its bodies: `[[frame]]`, `[[spring]]`, `[[wrench]]`, `[[constraint]]`, `[[shape]]`.
+//! Elements of a scene beside its bodies: `[[frame]]`, `[[spring]]`, `[[wrench]]`, `[[constraint]]`, `[[event]]`, `[[shape]]`.
 
 use super::body::WORLD;
+use super::controller::Joints;
+use super::event::event;
 use super::shape::shape;
 use super::{BodyDraft, Tree, placement, rotation};
 use crate::diagnostics::Diagnostic;
+use crate::event::EventDescription;
 use crate::forces::{
     BodyPoint, ConstraintDescription, FrameDescription, PointSpring, WrenchAxes, WrenchDescription,
 };
@@ -22,13 +25,14 @@ pub(crate) struct Elements {
     pub(crate) springs: Vec<PointSpring>,
     pub(crate) wrenches: Vec<WrenchDescription>,
     pub(crate) constraints: Vec<ConstraintDescription>,
+    pub(crate) events: Vec<EventDescription>,
     pub(crate) shapes: Vec<ShapeDescription>,
 }
 
 /// Reads all of them.
 pub(super) fn elements(
     fields: &mut Fields<'_>,
-    drafts: &[BodyDraft],
+    (drafts, joints): (&[BodyDraft], &Joints<'_>),
     tree: Option<&Tree>,
     sink: &mut Sink,
 ) -> Elements {
@@ -38,6 +42,7 @@ pub(super) fn elements(
         springs: each(fields, "spring", |f, s| spring(f, &bodies, s), sink),
         wrenches: each(fields, "wrench", |f, s| wrench(f, &bodies, s), sink),
         constraints: each(fields, "constraint", |f, s| constraint(f, &bodies, s), sink),
+        events: each(fields, "event", |f, s| event(f, &bodies, joints, s), sink),
         shapes: each(fields, "shape", |f, s| shape(f, &bodies, s), sink),
     };
     unique(&elements, drafts, sink);
@@ -108,7 +113,12 @@ impl<'a> Bodies<'a> {
     }
 
     /// As [`Bodies::find`], and not the world, to which `what` is of no use.
-    fn find_moving(&self, value: &Value<'_>, what: &str, sink: &mut Sink) -> Option<usize> {
+    pub(super) fn find_moving(
+        &self,
+        value: &Value<'_>,
+        what: &str,
+        sink: &mut Sink,
+    ) -> Option<usize> {
         let found = self.find(value, sink)?;
         if found.is_none() {
             let message = format!("{} is the world: {what}", value.path());
@@ -138,7 +148,11 @@ fn frame(
 }
 
 /// The name of an element, by which messages call it from then on.
-fn name(fields: &mut Fields<'_>, element: &str, sink: &mut Sink) -> Option<Located<String>> {
+pub(super) fn name(
+    fields: &mut Fields<'_>,
+    element: &str,
+    sink: &mut Sink,
+) -> Option<Located<String>> {
     let name = fields.required("name", sink)?.text(sink)?;
     if name.value.is_empty() || name.value == WORLD {
         let message = format!("{}`name` may not be {:?}", fields.owner(), name.value);
@@ -234,7 +248,11 @@ fn constraint(
 }
 
 /// A vector, 0 where it is absent.
-fn vector(fields: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<Vector3<f64>> {
+pub(super) fn vector(
+    fields: &mut Fields<'_>,
+    key: &'static str,
+    sink: &mut Sink,
+) -> Option<Vector3<f64>> {
     match fields.optional(key) {
         Some(value) => Some(value.vector(sink)?.value),
         None => Some(Vector3::zeros()),
@@ -249,13 +267,15 @@ fn not_negative(fields: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> 
     }
 }
 
-/// Refuses two frames, or a frame and a body, of one name; and two constraints of one name.
+/// Refuses two frames, or a frame and a body, of one name; and two constraints or events of one name.
 fn unique(elements: &Elements, drafts: &[BodyDraft], sink: &mut Sink) {
     let bodies = drafts.iter().filter_map(|draft| draft.name.as_ref());
     let frames = elements.frames.iter().map(|frame| &frame.name);
     let constraints = elements.constraints.iter().map(|c| &c.name);
     unique_among(bodies, frames, "frame", sink);
     unique_among([].into_iter(), constraints, "constraint", sink);
+    let events = elements.events.iter().map(|event| &event.name);
+    unique_among([].into_iter(), events, "event", sink);
 }
 
 fn unique_among<'a>(

@@ -3,6 +3,7 @@
 mod body;
 mod controller;
 mod elements;
+mod event;
 mod forces;
 mod initial;
 mod joint;
@@ -123,7 +124,7 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
     let gravity = gravity(fields, sink);
     let bodies = bodies(fields, sink);
     let tree = tree::tree(&bodies, sink);
-    let elements = elements::elements(fields, &bodies, tree.as_ref(), sink);
+    let elements = elements::elements(fields, (&bodies, &joints(&bodies)), tree.as_ref(), sink);
     Draft {
         name: name.map(|name| name.value),
         description: description

@@ -2,7 +2,9 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink};
-use crate::settings::{FORM_NAMES, METHOD_NAMES, Settings, form_named};
+use crate::settings::{
+    FORM_NAMES, METHOD_NAMES, SAMPLING_NAMES, Settings, form_named, sampling_named,
+};
 use hamel::integrate::{Control, Method, Scheme};
 
 /// Reads the settings; the defaults where the table or a key of it is absent or in error.
@@ -23,6 +25,11 @@ pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
             .and_then(form_named)
             .unwrap_or(defaults.form),
         sample_step: positive(&mut table, "sample_step", sink).unwrap_or(defaults.sample_step),
+        sampling: table
+            .optional("sampling")
+            .and_then(|sampling| sampling.choice(&SAMPLING_NAMES, sink))
+            .and_then(sampling_named)
+            .unwrap_or(defaults.sampling),
     };
     table.finish(sink);
     settings

@@ -4,8 +4,12 @@ use super::body::{name_of, position};
 use super::value::{list, number, rows, table, text};
 use super::{entry, pose};
 use crate::description::SceneDescription;
+use crate::event::{
+    CONSEQUENCE_NAMES, DIRECTION_NAMES, EventDescription, PointAlong, QuantityDescription,
+};
 use crate::forces::{BodyPoint, JointForces, JointSpring, PerFreedom, SpringEnergy, WrenchAxes};
 use hamel::elements::Law;
+use hamel::integrate::Direction;
 
 /// Appends the keys of a body that say what acts at its joint.
 pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
@@ -69,7 +73,7 @@ pub(super) fn speed(speed: &Law) -> String {
     ])
 }
 
-/// Appends frames, springs, wrenches and constraints.
+/// Appends frames, springs, wrenches, constraints and events.
 pub(super) fn elements(out: &mut String, scene: &SceneDescription) {
     let bodies = &scene.bodies;
     for frame in &scene.frames {
@@ -111,4 +115,37 @@ pub(super) fn elements(out: &mut String, scene: &SceneDescription) {
         entry(out, "point", &list(&constraint.point));
         entry(out, "direction", &list(&constraint.direction));
     }
+    for event in &scene.events {
+        out.push_str("\n[[event]]\n");
+        self::event(out, event, scene);
+    }
+}
+
+fn event(out: &mut String, event: &EventDescription, scene: &SceneDescription) {
+    entry(out, "name", &text(&event.name.value));
+    match &event.quantity {
+        QuantityDescription::Point(PointAlong { body, point, along }) => {
+            entry(out, "body", &text(name_of(Some(*body), &scene.bodies)));
+            entry(out, "point", &list(point));
+            entry(out, "along", &list(along));
+        }
+        QuantityDescription::Coordinate { joint, name } => {
+            entry(out, "joint", &text(&joint.value));
+            entry(out, "coordinate", &text(&name.value));
+        }
+        QuantityDescription::Speed { joint, name } => {
+            entry(out, "joint", &text(&joint.value));
+            entry(out, "speed", &text(&name.value));
+        }
+    }
+    entry(out, "value", &number(event.value));
+    let [any, rising, falling] = DIRECTION_NAMES;
+    let direction = match event.direction {
+        Direction::Any => any,
+        Direction::Rising => rising,
+        Direction::Falling => falling,
+    };
+    entry(out, "direction", &text(direction));
+    let [record, stop] = CONSEQUENCE_NAMES;
+    entry(out, "then", &text(if event.stops { stop } else { record }));
 }

@@ -9,7 +9,7 @@ mod value;
 
 use crate::description::SceneDescription;
 use crate::settings::Settings;
-use hamel::integrate::Method;
+use hamel::integrate::{Method, Sampling};
 use value::{list, number, text};
 
 impl SceneDescription {
@@ -62,6 +62,9 @@ fn settings(out: &mut String, settings: &Settings) {
     out.push_str(&format!(
         "\n[simulation]\nt_end = {t_end}\nmethod = {method}\n{accuracy}\nform = {form}\nsample_step = {step}\n"
     ));
+    if settings.sampling != Sampling::default() {
+        entry(out, "sampling", &text(settings.sampling_name()));
+    }
 }
 
 /// Appends `key = value`.

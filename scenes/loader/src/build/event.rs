@@ -1,0 +1,80 @@
+//! The events of a scene, fitted to its mechanism.
+
+use crate::diagnostics::Diagnostic;
+use crate::event::{EventDescription, Quantity, QuantityDescription, SceneEvent};
+use crate::read::Sink;
+use crate::source::Located;
+use crate::suggest::{nearest, one_of};
+use hamel::mechanism::{Body, Mechanism};
+use std::ops::Range;
+
+/// Looks the joints up in the mechanism; every error is noted.
+pub(super) fn events(
+    descriptions: &[EventDescription],
+    mechanism: &Mechanism,
+    sink: &mut Sink,
+) -> Option<Vec<SceneEvent>> {
+    let found: Vec<_> = descriptions
+        .iter()
+        .map(|description| {
+            Some(SceneEvent {
+                name: description.name.value.clone(),
+                quantity: quantity(&description.quantity, mechanism, sink)?,
+                value: description.value,
+                direction: description.direction,
+                stops: description.stops,
+            })
+        })
+        .collect();
+    found.into_iter().collect()
+}
+
+fn quantity(
+    description: &QuantityDescription,
+    mechanism: &Mechanism,
+    sink: &mut Sink,
+) -> Option<Quantity> {
+    let find = |joint: &Located<String>| {
+        let mut bodies = mechanism.bodies().iter();
+        // The parser has seen to it that there is one.
+        bodies.find(|body| body.joint_name() == joint.value)
+    };
+    match description {
+        QuantityDescription::Point(point) => Some(Quantity::Point(*point)),
+        QuantityDescription::Coordinate { joint, name } => {
+            let body = find(joint)?;
+            let own = (body.joint().coordinates(), &body.ranges().configuration);
+            entry(body, "coordinate", name, own, sink).map(Quantity::Coordinate)
+        }
+        QuantityDescription::Speed { joint, name } => {
+            let body = find(joint)?;
+            let own = (body.joint().speeds(), &body.ranges().speeds);
+            entry(body, "speed", name, own, sink).map(Quantity::Speed)
+        }
+    }
+}
+
+/// The index, among those of all joints, of the entry called `name`.
+fn entry(
+    body: &Body,
+    key: &str,
+    name: &Located<String>,
+    (names, range): (&[&str], &Range<usize>),
+    sink: &mut Sink,
+) -> Option<usize> {
+    if let Some(place) = names.iter().position(|known| *known == name.value) {
+        return Some(range.start + place);
+    }
+    let joint = body.joint_name();
+    let message = format!(
+        "`{key}` is {:?}, which joint `{joint}` does not have",
+        name.value
+    );
+    let error = Diagnostic::new(name.span.clone(), message);
+    let known = names.iter().copied();
+    sink.push(match nearest(&name.value, known.clone()) {
+        Some(near) => error.label(format!("did you mean `{near}`?")),
+        None => error.help(format!("a {key} of it is {}", one_of(known))),
+    });
+    None
+}
