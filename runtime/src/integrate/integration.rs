@@ -123,7 +123,8 @@ impl<'a> Integration<'a> {
         let mechanism = self.dynamics.mechanism();
         mechanism.check_configuration(&initial.configuration)?;
         mechanism.check_speeds("speeds", &initial.speeds)?;
-        options.check_scheme(mechanism)
+        let looks_between = self.sampling == Sampling::Dense || !self.events.is_empty();
+        options.check_scheme(mechanism, looks_between)
     }
 }
 
