@@ -31,7 +31,7 @@ impl Budget {
     };
     /// For a first look.
     pub const SHORT: Self = Self {
-        run: Duration::from_millis(150),
+        run: Duration::from_millis(100),
         point: Duration::from_millis(10),
         repetitions: 30,
     };
