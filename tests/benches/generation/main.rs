@@ -49,15 +49,24 @@ fn library(root: &Path, scratch: &Path) -> Result<PathBuf, Box<dyn Error>> {
     Ok(script)
 }
 
+/// What a crate with joints of its own needs.
+const BUILD_SCRIPT: &str = "fn main() -> Result<(), Box<dyn std::error::Error>> {
+    Ok(hamel_codegen::Build::new().specs(\"joints\").compile()?)
+}
+";
+
+/// The same.
+const LIBRARY: &str = "include!(concat!(env!(\"OUT_DIR\"), \"/joints.rs\"));\n";
+
 /// A crate outside the workspace with one spec and cargo's default profile, so that its build script is unoptimised.
 fn downstream(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
     let package = scratch.join("package");
     fs::create_dir_all(package.join("src"))?;
     fs::create_dir_all(package.join("joints"))?;
-    let own = root.join("tests/downstream");
-    for file in ["build.rs", "src/lib.rs", "joints/bead.joint"] {
-        fs::copy(own.join(file), package.join(file))?;
-    }
+    let spec = "joints/bead.joint";
+    fs::copy(root.join("tests/downstream").join(spec), package.join(spec))?;
+    fs::write(package.join("build.rs"), BUILD_SCRIPT)?;
+    fs::write(package.join("src/lib.rs"), LIBRARY)?;
     fs::write(package.join("Cargo.toml"), manifest(root))?;
     let target = scratch.join("downstream");
     cargo(&package, &target, &["build"])?;
