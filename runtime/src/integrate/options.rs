@@ -294,20 +294,9 @@ pub struct Options {
 }
 
 impl Options {
-    /// Whether the scheme can take the mechanism in this form, and say what is between steps where that is asked for.
-    pub(super) fn check_scheme(
-        &self,
-        mechanism: &Mechanism,
-        looks_between: bool,
-    ) -> Result<(), IntegrateError> {
+    /// Whether the scheme can take the mechanism in this form.
+    pub(super) fn check_scheme(&self, mechanism: &Mechanism) -> Result<(), IntegrateError> {
         let scheme = self.method.scheme();
-        if *scheme == Scheme::Exponential && looks_between {
-            return Err(IntegrateError::Scheme {
-                scheme: scheme.name(),
-                reason: "has no dense output for samples and events between steps, which may be many periods long: let steps land on the samples"
-                    .into(),
-            });
-        }
         if *scheme != Scheme::DiscreteGradient {
             return Ok(());
         }

@@ -3,11 +3,11 @@
 use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::{GRAVITY, body, tree};
-use crate::support::{distance, fixed_steps, mixed, options, run, start};
+use crate::support::{distance, fixed_steps, options, run, start};
 use hamel::dynamics::{Dynamics, DynamicsError, Reference};
 use hamel::integrate::{
-    Control, Form, IntegrateError, Integration, Method, Options, Sampling, Scheme, State,
-    StepFailure, integrate, no_inputs, no_observer,
+    Control, Form, IntegrateError, Method, Options, Scheme, State, StepFailure, integrate,
+    no_inputs, no_observer,
 };
 use hamel::mechanism::Mechanism;
 use hamel::spatial::{MassProperties, Pose};
@@ -116,37 +116,6 @@ fn work_is_counted() {
         statistics.evaluations,
         1 + 6 * (statistics.steps + statistics.rejected)
     );
-}
-
-#[test]
-fn schemes_say_what_they_do_not_take() {
-    let mechanism = mixed();
-    let initial = start(&mechanism, 5);
-    let refusal = |form, scheme, sampling| {
-        let options = options(form, Method::fixed(scheme, 0.01), 0.1);
-        let mut dynamics = Reference::new(Arc::clone(&mechanism));
-        let outcome = Integration::new(&mut dynamics, &initial, &options)
-            .sampling(sampling)
-            .run();
-        outcome.expect_err("refused").to_string()
-    };
-    let message = refusal(Form::Hamiltonian, Scheme::Exponential, Sampling::Dense);
-    assert!(message.contains("has no dense output"), "{message}");
-    let message = refusal(
-        Form::Lagrangian,
-        Scheme::DiscreteGradient,
-        Sampling::Landing,
-    );
-    assert!(message.contains("choose that form"), "{message}");
-    let tolerated = options(
-        Form::Lagrangian,
-        Method::controlled(Scheme::Gauss2, 1e-6),
-        0.1,
-    );
-    let mut dynamics = Reference::new(Arc::clone(&mechanism));
-    let outcome = Integration::new(&mut dynamics, &initial, &tolerated).run();
-    let message = outcome.expect_err("refused").to_string();
-    assert!(message.contains("instead of a tolerance"), "{message}");
 }
 
 #[test]
