@@ -183,16 +183,6 @@ impl Stepper for CommutatorFree {
         Ok((0.0, 0))
     }
 
-    fn accept(
-        &mut self,
-        standing: &mut Standing,
-        flow: &mut Flow<'_>,
-        time: f64,
-        _span: Span,
-    ) -> Result<(), StepFailure> {
-        standing.accept(flow, time, None)
-    }
-
     fn order(&self) -> u32 {
         4
     }

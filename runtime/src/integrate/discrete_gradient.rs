@@ -41,7 +41,6 @@ pub(super) struct Correction {
     end: Vec<f64>,
     phi: Vec<f64>,
     momenta: Vec<f64>,
-    efforts: Vec<f64>,
     /// T M̄⁻¹Δp̄ and J̄22 M̄⁻¹Δp̄.
     moved: Rates,
     composites: Vec<Vector6<f64>>,
@@ -74,9 +73,8 @@ impl Correction {
             faster: speeds.clone(),
             middle: configuration.clone(),
             end: configuration,
-            phi: freedoms.clone(),
+            phi: freedoms,
             momenta: speeds,
-            efforts: freedoms,
             moved: flow.new_rates(),
             composites: vec![Vector6::zeros(); mechanism.bodies().len()],
             matrices: Matrices {
@@ -121,7 +119,7 @@ impl Correction {
         self.change.fill(0.0);
         add(&mut self.change, 2.0, pushed);
         flow.speeds_of(&self.middle, &self.change, &mut self.faster)?;
-        let power = self.power(flow, span.time + 0.5 * span.step, &rates.speeds);
+        let power = self.power(flow, &rates.speeds);
         self.work = span.step * power;
         let twice = standing
             .next_y
@@ -167,15 +165,14 @@ impl Correction {
     }
 
     /// The power of inputs and elements half-way, W.
-    fn power(&mut self, flow: &mut Flow<'_>, time: f64, speeds: &[f64]) -> f64 {
-        flow.efforts(time, &self.middle, speeds, &mut self.efforts);
+    fn power(&mut self, flow: &Flow<'_>, speeds: &[f64]) -> f64 {
         self.dynamics
             .composite_momenta(&self.middle, speeds, &mut self.composites);
         let elements = self.dynamics.element_power_here(&self.middle, speeds);
         let bodies = flow.mechanism.bodies().iter();
         let inputs = bodies.map(|body| {
             self.matrices
-                .power(body, &self.middle, speeds, &self.efforts)
+                .power(body, &self.middle, speeds, flow.last_efforts())
         });
         elements + inputs.sum::<f64>()
     }

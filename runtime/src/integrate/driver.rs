@@ -257,14 +257,8 @@ impl<'a> Driver<'a> {
     }
 
     fn inaccurate(&self, joint: usize, ratio: f64) -> StepFailure {
-        let name = self
-            .flow
-            .mechanism
-            .bodies()
-            .get(joint)
-            .map_or("", |body| body.joint_name());
         StepFailure::Inaccurate {
-            joint: name.into(),
+            joint: self.flow.joint_name(joint),
             ratio,
         }
     }

@@ -1,7 +1,7 @@
 //! One step of an explicit method in (ϕ, y).
 
 use super::flow::{Flow, Rates};
-use super::standing::{Standing, add};
+use super::standing::Standing;
 use super::stepper::{Span, Stepper};
 use super::{Estimate, StepFailure, Tableau};
 use alloc::vec::Vec;
@@ -34,8 +34,7 @@ impl Explicit {
             let stages = core::iter::once(first).chain(&self.stages);
             for (&weight, rates) in weights.iter().zip(stages) {
                 if weight != 0.0 {
-                    add(phi, step * weight, &rates.phi);
-                    add(y, step * weight, &rates.y);
+                    rates.add_to(step * weight, phi, y);
                 }
             }
         })

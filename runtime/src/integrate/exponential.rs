@@ -17,7 +17,6 @@ use num_traits::Float;
 
 /// The method at work. Vectors have ϕ first, then y.
 pub(super) struct Exponential {
-    freedoms: usize,
     jacobian: Jacobian,
     phi: Phi,
     /// The matrix for which φ was evaluated last, by rows, and the step.
@@ -42,7 +41,6 @@ impl Exponential {
         let size = jacobian.size();
         let vector = vec![0.0; size];
         Self {
-            freedoms: flow.mechanism.layout().freedoms,
             phi: Phi::new(size),
             of: (vec![f64::NAN; size * size], f64::NAN),
             at: f64::NAN,
@@ -84,25 +82,18 @@ impl Exponential {
             self.solves.jacobians += 1;
             self.at = time;
         }
-        let size = self.jacobian.size();
-        let entry = |i: usize, j: usize| self.jacobian.entry(i, j);
         let (known, of_step) = &mut self.of;
-        let same = known
-            .iter()
-            .enumerate()
-            .all(|(n, known)| *known == entry(n / size, n % size));
-        if same && *of_step == step {
+        let entries = self.jacobian.entries();
+        if known.as_slice() == entries && *of_step == step {
             return Ok(());
         }
-        for (n, known) in known.iter_mut().enumerate() {
-            *known = entry(n / size, n % size);
-        }
+        known.copy_from_slice(entries);
         *of_step = step;
         self.solves.factorizations += 1;
-        if !self.phi.evaluate(|i, j| step * entry(i, j)) {
+        if !self.phi.evaluate(|i, j| step * self.jacobian.entry(i, j)) {
             *of_step = f64::NAN;
             return Err(StepFailure::SingularIteration {
-                joint: flow.mechanism.bodies()[0].joint_name().into(),
+                joint: flow.joint_name(0),
             });
         }
         Ok(())
@@ -110,11 +101,7 @@ impl Exponential {
 
     /// Moves to the increment.
     fn move_on(&self, standing: &mut Standing, flow: &Flow<'_>) -> Result<(), StepFailure> {
-        let (turned, pushed) = self.increment.split_at(self.freedoms);
-        standing.move_by(flow, |_, phi, y| {
-            add(phi, 1.0, turned);
-            add(y, 1.0, pushed);
-        })
+        standing.move_by_increments(flow, core::iter::once((1.0, &*self.increment)))
     }
 
     /// D of a stage at `time`, where `standing` has come to after `later` seconds: `f − f₀ − J Z − later · ∂f/∂t`.
@@ -209,24 +196,8 @@ impl Stepper for Exponential {
         _span: Span,
         tolerance: f64,
     ) -> Result<(f64, usize), StepFailure> {
-        let (errors, _) = standing.errors();
-        let (turned, pushed) = self.error.split_at(self.freedoms);
-        for (errors, found) in [(&mut errors.phi, turned), (&mut errors.y, pushed)] {
-            errors.fill(0.0);
-            add(errors, 1.0 / tolerance, found);
-        }
+        standing.set_errors(1.0 / tolerance, &self.error);
         standing.largest_error(flow, Some(&self.rates.speeds))
-    }
-
-    fn accept(
-        &mut self,
-        standing: &mut Standing,
-        flow: &mut Flow<'_>,
-        time: f64,
-        _span: Span,
-    ) -> Result<(), StepFailure> {
-        self.at = f64::NAN;
-        standing.accept(flow, time, None)
     }
 
     fn order(&self) -> u32 {

@@ -1,8 +1,10 @@
 //! The vector field in (ϕ, y) around a base point, for both forms.
 
+use super::standing::add;
 use super::{Form, Inputs};
 use crate::dynamics::{Dynamics, DynamicsError};
 use crate::mechanism::{CONSTRAINT_TOLERANCE, Mechanism};
+use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,6 +18,19 @@ pub(super) struct Rates {
 }
 
 impl Rates {
+    /// Becomes a copy of others of the same mechanism, in its own room.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        self.phi.copy_from_slice(&other.phi);
+        self.y.copy_from_slice(&other.y);
+        self.speeds.copy_from_slice(&other.speeds);
+    }
+
+    /// Adds `weight` times ϕ̇ and ẏ.
+    pub(super) fn add_to(&self, weight: f64, phi: &mut [f64], y: &mut [f64]) {
+        add(phi, weight, &self.phi);
+        add(y, weight, &self.y);
+    }
+
     /// Room for those of a mechanism.
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let layout = mechanism.layout();
@@ -159,9 +174,20 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
+    /// The name of the joint under a body.
+    pub(super) fn joint_name(&self, body: usize) -> String {
+        let bodies = self.mechanism.bodies();
+        bodies.get(body).map_or("", |body| body.joint_name()).into()
+    }
+
     /// Q at which the equations were evaluated last.
     pub(super) fn configuration(&self) -> &[f64] {
         &self.configuration
+    }
+
+    /// τ as the equations were evaluated with it last.
+    pub(super) fn last_efforts(&self) -> &[f64] {
+        &self.efforts
     }
 
     /// H at `q` and y, the momenta, J.

@@ -63,6 +63,11 @@ impl Jacobian {
         self.entries[i * self.size + j]
     }
 
+    /// All entries, row by row.
+    pub(super) fn entries(&self) -> &[f64] {
+        &self.entries
+    }
+
     /// Number of rows.
     pub(super) const fn size(&self) -> usize {
         self.size

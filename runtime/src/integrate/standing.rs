@@ -107,6 +107,31 @@ impl Standing {
         self.turns.check(&flow.mechanism, &self.phi, &self.next_y)
     }
 
+    /// Moves the point to the state and a weighted sum of increments, ϕ first and then y.
+    pub(super) fn move_by_increments<'a>(
+        &mut self,
+        flow: &Flow<'_>,
+        terms: impl Iterator<Item = (f64, &'a [f64])>,
+    ) -> Result<(), StepFailure> {
+        self.move_by(flow, |_, phi, y| {
+            for (weight, increment) in terms {
+                let (turned, pushed) = increment.split_at(phi.len());
+                add(phi, weight, turned);
+                add(y, weight, pushed);
+            }
+        })
+    }
+
+    /// Makes `weight` times `found`, ϕ first and then y, the estimate of the errors.
+    pub(super) fn set_errors(&mut self, weight: f64, found: &[f64]) {
+        let (turned, pushed) = found.split_at(self.offset.len());
+        let Rates { phi, y, .. } = &mut self.errors;
+        phi.fill(0.0);
+        y.fill(0.0);
+        add(phi, weight, turned);
+        add(y, weight, pushed);
+    }
+
     /// Room for an estimate of the errors of ϕ and y, and the rates at the state.
     pub(super) fn errors(&mut self) -> (&mut Rates, &Rates) {
         (&mut self.errors, &self.rates)

@@ -42,8 +42,10 @@ pub(super) trait Stepper {
         standing: &mut Standing,
         flow: &mut Flow<'_>,
         time: f64,
-        span: Span,
-    ) -> Result<(), StepFailure>;
+        _span: Span,
+    ) -> Result<(), StepFailure> {
+        standing.accept(flow, time, None)
+    }
 
     /// The power of the step with which its estimated error falls.
     fn order(&self) -> u32;

@@ -52,6 +52,8 @@ pub(super) struct Collocation {
     /// How the last iteration contracted.
     contraction: f64,
     estimate: Vec<f64>,
+    /// The rates that the estimate is made with.
+    probe: Rates,
     solves: Solves,
     /// What makes the midpoint rule keep the energy.
     correction: Option<Correction>,
@@ -87,6 +89,7 @@ impl Collocation {
             },
             contraction: 0.0,
             estimate: vec![0.0; size],
+            probe: flow.new_rates(),
             increments,
             solves: Solves::default(),
             correction: None,
@@ -204,13 +207,9 @@ impl Collocation {
         span: Span,
     ) -> Result<(), StepFailure> {
         let Span { time, step } = span;
-        let freedoms = self.freedoms;
         let stages = self.stages.iter_mut().zip(&self.increments);
         for ((rates, increment), node) in stages.zip(self.method.nodes) {
-            standing.move_by(flow, |_, phi, y| {
-                add(phi, 1.0, &increment[..freedoms]);
-                add(y, 1.0, &increment[freedoms..]);
-            })?;
+            standing.move_by_increments(flow, core::iter::once((1.0, &**increment)))?;
             standing.evaluate_there(flow, time + step * node, rates)?;
             if let Some(correction) = &mut self.correction {
                 correction.apply(standing, flow, span, increment, rates)?;
@@ -226,8 +225,7 @@ impl Collocation {
             change.fill(0.0);
             let (phi, y) = change.split_at_mut(self.freedoms);
             for (weight, rates) in row.iter().zip(&self.stages) {
-                add(phi, step * weight, &rates.phi);
-                add(y, step * weight, &rates.y);
+                rates.add_to(step * weight, phi, y);
             }
             add(change, -1.0, increment);
         }
@@ -266,20 +264,16 @@ impl Collocation {
             ends,
             ..
         } = self.method;
-        let freedoms = self.freedoms;
+        if self.newton.is_some() {
+            // F of a stiff mechanism is its increments' rounding, many times over.
+            let terms = ends.iter().zip(&self.increments);
+            return standing
+                .move_by_increments(flow, terms.map(|(weight, own)| (*weight, own.as_slice())));
+        }
         standing.move_by(flow, |_, phi, y| {
-            if self.newton.is_some() {
-                // F of a stiff mechanism is its increments' rounding, many times over.
-                for (weight, increment) in ends.iter().zip(&self.increments) {
-                    add(phi, *weight, &increment[..freedoms]);
-                    add(y, *weight, &increment[freedoms..]);
-                }
-                return;
-            }
             for ((weight, rest), rates) in weights.iter().zip(*rests).zip(&self.stages) {
                 for part in [rest, weight] {
-                    add(phi, step * part, &rates.phi);
-                    add(y, step * part, &rates.y);
+                    rates.add_to(step * part, phi, y);
                 }
             }
         })
@@ -307,7 +301,7 @@ impl Collocation {
                 false => worst,
             });
         StepFailure::NoConvergence {
-            joint: joint_name(flow, worst.0),
+            joint: flow.joint_name(worst.0),
             change: worst.1,
             contraction: self.contraction,
         }
@@ -320,26 +314,20 @@ impl Collocation {
         }
     }
 
-    /// `h f + Σ e_i Z_i`, filtered, into the errors of `standing`.
-    fn estimate(&mut self, standing: &mut Standing, step: f64, rates: &Rates, tolerance: f64) {
+    /// `h f + Σ e_i Z_i` with the f of the probe, filtered, into the errors of `standing`.
+    fn estimate(&mut self, standing: &mut Standing, step: f64, tolerance: f64) {
         let (Some(newton), Some(weights)) = (&mut self.newton, self.method.estimate) else {
             return;
         };
         let estimate = &mut self.estimate;
         estimate.fill(0.0);
         let (phi, y) = estimate.split_at_mut(self.freedoms);
-        add(phi, step, &rates.phi);
-        add(y, step, &rates.y);
+        self.probe.add_to(step, phi, y);
         for (weight, increment) in weights.iter().zip(&self.increments) {
             add(estimate, *weight, increment);
         }
         newton.filter(estimate);
-        let (errors, _) = standing.errors();
-        let (phi, y) = estimate.split_at(self.freedoms);
-        for (errors, found) in [(&mut errors.phi, phi), (&mut errors.y, y)] {
-            errors.fill(0.0);
-            add(errors, 1.0 / tolerance, found);
-        }
+        standing.set_errors(1.0 / tolerance, estimate);
     }
 }
 
@@ -380,19 +368,18 @@ impl Stepper for Collocation {
         tolerance: f64,
     ) -> Result<(f64, usize), StepFailure> {
         let tolerance = of_estimate(tolerance);
-        let first = standing.rates.clone();
-        self.estimate(standing, span.step, &first, tolerance);
+        self.probe.copy_from(&standing.rates);
+        self.estimate(standing, span.step, tolerance);
         let found = self.judge(standing, flow)?;
         if found.0 <= 1.0 {
             return Ok(found);
         }
         // Where the first estimate is of what is stiff alone, the second is not.
-        let (mut phi, mut y) = (standing.offset.clone(), standing.y.clone());
-        add(&mut phi, 1.0, &self.estimate[..self.freedoms]);
-        add(&mut y, 1.0, &self.estimate[self.freedoms..]);
-        let mut rates = first;
-        flow.evaluate(span.time, &standing.base, &phi, &y, &mut rates)?;
-        self.estimate(standing, span.step, &rates, tolerance);
+        let (phi, y) = self.estimate.split_at_mut(self.freedoms);
+        add(phi, 1.0, &standing.offset);
+        add(y, 1.0, &standing.y);
+        flow.evaluate(span.time, &standing.base, phi, y, &mut self.probe)?;
+        self.estimate(standing, span.step, tolerance);
         self.judge(standing, flow)
     }
 
@@ -473,11 +460,6 @@ fn lagrange(nodes: &[f64], i: usize, at: f64) -> f64 {
     let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
     let factors = others.map(|(_, node)| (at - node) / (nodes[i] - node));
     factors.product::<f64>() * at / nodes[i]
-}
-
-fn joint_name(flow: &Flow<'_>, body: usize) -> alloc::string::String {
-    let bodies = flow.mechanism.bodies();
-    bodies.get(body).map_or("", |body| body.joint_name()).into()
 }
 
 /// The matrix of the iteration is singular in a row.
