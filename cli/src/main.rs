@@ -1,7 +1,8 @@
-//! `hamel`: simulates scenes and robots, and explains joints, from the command line.
+//! `hamel`: simulates and compiles scenes and robots, and explains joints, from the command line.
 //!
 //! Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood.
 
+mod compile;
 mod import;
 mod joints;
 mod output;
@@ -23,6 +24,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Simulate(simulate::Args),
+    Compile(compile::Args),
     Import(import::Args),
     Joints(joints::Args),
     Report(report::Args),
@@ -32,6 +34,7 @@ fn main() -> ExitCode {
     let registry = hamel_joints::registry();
     let result = match Cli::parse().command {
         Command::Simulate(args) => simulate::run(&args, &registry),
+        Command::Compile(args) => compile::run(&args, &registry),
         Command::Import(args) => import::run(&args, &registry),
         Command::Joints(args) => joints::run(&args),
         Command::Report(args) => report::run(&args, &registry),

@@ -20,6 +20,9 @@ pub enum Failure {
     /// A page that its template cannot show.
     #[error("the page cannot be rendered: {0}")]
     Page(String),
+    /// A scene that cannot be compiled, told in full.
+    #[error("{0}")]
+    Refused(String),
     /// Options that contradict each other or the scene.
     #[error("{0}")]
     Options(String),

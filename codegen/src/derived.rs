@@ -1,6 +1,7 @@
 //! What is derived from a spec: kernels in symbols, and the claims that were proved. The border between derivation and output.
 
 use crate::emit::formula::Program;
+use crate::emit::names::Names;
 use crate::expr::{Expr, Rational, Symbol};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
@@ -93,7 +94,7 @@ pub enum Structure {
 }
 
 /// A function of the runtime that a kernel calls where no formula serves at every argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Primitive {
     /// 3×3 rotation matrix to its rotation vector (3 outputs): `Scalar::rotation_vector`.
     RotationVector,
@@ -117,6 +118,16 @@ pub enum Step {
         /// Its results.
         outputs: Vec<Symbol>,
     },
+}
+
+impl Step {
+    /// The symbols that it binds.
+    pub fn bound(&self) -> &[Symbol] {
+        match self {
+            Self::Let(symbol, _) => std::slice::from_ref(symbol),
+            Self::Call { outputs, .. } => outputs,
+        }
+    }
 }
 
 /// How a kernel gets its value.
@@ -271,6 +282,16 @@ impl Programs {
 }
 
 impl Derived {
+    /// The formulas of one of its kernels, as they are written everywhere.
+    pub fn program(&self, kernel: &Kernel) -> Arc<Program> {
+        self.programs.get(kernel, || {
+            let mut names = Names::new(self);
+            let bound = kernel.steps.iter().flat_map(Step::bound);
+            bound.for_each(|symbol| names.claim(symbol));
+            Program::new(kernel, names.taken())
+        })
+    }
+
     /// The kernel of that kind.
     pub fn kernel(&self, kind: KernelKind) -> Option<&Kernel> {
         self.kernels.iter().find(|kernel| kernel.kind == kind)

@@ -19,7 +19,11 @@ pub mod model;
 mod pipeline;
 pub mod precise;
 pub mod prove;
+#[cfg(feature = "scene")]
+pub mod scene;
 pub mod spec;
 
 pub use build::{Build, BuildError, GENERATE_VARIABLE};
 pub use pipeline::{WORK_LIMIT, derive};
+#[cfg(feature = "scene")]
+pub use scene::scene;

@@ -17,6 +17,8 @@ pub use nalgebra;
 #[cfg(feature = "alloc")]
 pub mod chart;
 #[cfg(feature = "alloc")]
+pub mod compiled;
+#[cfg(feature = "alloc")]
 pub mod control;
 #[cfg(feature = "alloc")]
 pub mod dynamics;

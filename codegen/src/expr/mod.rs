@@ -217,10 +217,16 @@ impl Expr {
         self.leading().is_some_and(|(_, c)| c.is_negative())
     }
 
-    /// Term operations that a pass over the terms takes: long monomials take longer to multiply and to compare.
+    /// Term operations that a pass over the terms takes: long monomials take longer to multiply and to compare, and so do long numbers.
     fn work(&self) -> u64 {
         let longest = self.leading().map_or(0, |(monomial, _)| monomial.len());
-        self.terms.len() as u64 * (1 + longest as u64 / 4)
+        let ends = self
+            .terms
+            .first_key_value()
+            .into_iter()
+            .chain(self.leading());
+        let excess = ends.map(|(_, coefficient)| coefficient.excess()).max();
+        self.terms.len() as u64 * (1 + longest as u64 / 4 + 4 * excess.unwrap_or(0))
     }
 
     fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {

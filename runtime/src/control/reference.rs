@@ -15,8 +15,8 @@ use num_traits::Float;
 /// that is exact to 1e-17 (0.1¹⁰ times the method's error constant).
 const REACH: f64 = 0.1;
 
-/// A reference has no more knots than this: they are kept.
-const MOST_KNOTS: f64 = 1e6;
+/// A reference has no more knots than this, summed over its joints: they are kept, and each takes some 2 µs to find.
+const MOST_KNOTS: f64 = 1e5;
 
 /// A motion of holonomic joints: `v_ref(t)` by one law a speed, and the `Q_ref(t)` that it leads to from a start.
 ///
@@ -65,7 +65,7 @@ impl Reference {
             end >= 0.0,
             "at least 0 and finite",
         )?;
-        let count = knots(&laws, end)?;
+        let count = knots(&laws, mechanism.bodies().len(), end)?;
         let spacing = match count {
             0 => 1.0,
             count => end / count as f64,
@@ -141,7 +141,7 @@ impl Reference {
 }
 
 /// How many stretches the motion is cut into.
-fn knots(laws: &[Law], end: f64) -> Result<usize, ControlError> {
+fn knots(laws: &[Law], joints: usize, end: f64) -> Result<usize, ControlError> {
     let mut pace = 0.0_f64;
     for law in laws {
         let numbers = [law.rate, law.amplitude, law.frequency, law.phase];
@@ -152,11 +152,12 @@ fn knots(laws: &[Law], end: f64) -> Result<usize, ControlError> {
         pace = pace.max(speed).max(law.frequency.abs());
     }
     let count = Float::ceil(end * pace / REACH);
+    let all = count * joints as f64;
     require(
-        "the way of the reference, in steps of 0.1 rad or m,",
-        count,
-        count <= MOST_KNOTS,
-        "at most 1e6",
+        "the way of the reference, in steps of 0.1 rad or m of each joint,",
+        all,
+        all <= MOST_KNOTS,
+        "at most 1e5",
     )?;
     Ok(count as usize)
 }

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use num_traits::Float;
 
 macro_rules! implement_scalar {
-    ($float:ident) => {
+    ($float:ident, $($batch:tt)*) => {
         impl Scalar for $float {
             type Mask = bool;
 
@@ -38,6 +38,8 @@ macro_rules! implement_scalar {
             fn sin_cos(self) -> (Self, Self) {
                 Float::sin_cos(self)
             }
+
+            $($batch)*
 
             #[inline]
             fn atan2(self, x: Self) -> Self {
@@ -87,5 +89,11 @@ macro_rules! implement_scalar {
     };
 }
 
-implement_scalar!(f64);
-implement_scalar!(f32);
+implement_scalar!(
+    f64,
+    #[inline]
+    fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> ([f64; N], [f64; N]) {
+        super::batch::sin_cos_all(angles)
+    }
+);
+implement_scalar!(f32,);

@@ -118,6 +118,16 @@ impl Scalar for F64x4 {
         )
     }
 
+    #[inline]
+    fn sin_cos_all<const N: usize>(angles: &[Self; N]) -> ([Self; N], [Self; N]) {
+        let (mut sines, mut cosines) = ([Self::zero(); N], [Self::zero(); N]);
+        for i in 0..N {
+            let (sine, cosine) = f64::sin_cos_all(&angles[i].to_array());
+            (sines[i], cosines[i]) = (Self::new(sine), Self::new(cosine));
+        }
+        (sines, cosines)
+    }
+
     fn atan2(self, x: Self) -> Self {
         let (y, x) = (self.to_array(), x.to_array());
         Self::new(core::array::from_fn(|i| Scalar::atan2(y[i], x[i])))

@@ -2,6 +2,7 @@
 
 mod allocation;
 mod chains;
+mod compiled;
 mod derivatives;
 mod errata;
 mod euler_lagrange;

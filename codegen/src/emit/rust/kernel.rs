@@ -37,10 +37,9 @@ impl<'a> Method<'a> {
     /// Factors and names what the kernel computes.
     pub fn new(derived: &'a Derived, kernel: &'a Kernel, names: &Names) -> Self {
         let mut names = names.clone();
-        bound_symbols(&kernel.steps).for_each(|symbol| names.claim(symbol));
-        let program = derived
-            .programs
-            .get(kernel, || Program::new(kernel, names.taken()));
+        let bound = kernel.steps.iter().flat_map(derived::Step::bound);
+        bound.for_each(|symbol| names.claim(symbol));
+        let program = derived.program(kernel);
         program
             .bindings
             .iter()
@@ -293,13 +292,6 @@ impl<'a> Method<'a> {
 }
 
 /// The symbols that a kernel's lines bind.
-fn bound_symbols(steps: &[Step]) -> impl Iterator<Item = &Symbol> {
-    steps.iter().flat_map(|step| match step {
-        Step::Let(symbol, _) => std::slice::from_ref(symbol),
-        Step::Call { outputs, .. } => outputs.as_slice(),
-    })
-}
-
 /// A call of the runtime; `names` are its results, row by row.
 fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> TokenStream {
     match primitive {

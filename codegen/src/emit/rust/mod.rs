@@ -18,6 +18,7 @@ mod spacing;
 mod tests;
 mod tokens;
 
+pub use comment::comment;
 pub use docs::meaning;
 pub use index::{Index, index};
 pub use kernel::{Method, method_name};
@@ -133,8 +134,11 @@ fn collect_identifiers(tokens: TokenStream, found: &mut BTreeSet<String>) {
     }
 }
 
-/// Formatted text with its header.
-fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, WriteError> {
+/// Formatted text with its header; `joint` names what it is of in errors.
+///
+/// # Errors
+/// Tokens that are no Rust.
+pub fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, WriteError> {
     let parsed = syn::parse2::<syn::File>(items);
     let file = parsed.map_err(|error| WriteError::Malformed {
         joint: joint.to_owned(),

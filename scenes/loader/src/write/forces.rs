@@ -62,7 +62,8 @@ pub(super) fn per_freedom(numbers: &PerFreedom) -> String {
 }
 
 pub(super) fn speed(speed: &Law) -> String {
-    if speed.amplitude == 0.0 {
+    // A table that sways by nothing may still say how: it is kept as it was given.
+    if [speed.amplitude, speed.frequency, speed.phase] == [0.0; 3] {
         return number(speed.rate);
     }
     table(&[

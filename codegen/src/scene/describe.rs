@@ -1,0 +1,191 @@
+//! From what a scene file says to what is compiled, with all that cannot be compiled named at once.
+
+use super::model::{Body, Model};
+use crate::derived::{Derived, KernelKind, Structure};
+use hamel_scene::{BodyDescription, SceneDescription};
+use std::sync::Arc;
+
+/// Why a scene cannot be compiled: one line for each reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// The scene.
+    pub scene: String,
+    /// The reasons, each with the element that it is about.
+    pub reasons: Vec<String>,
+}
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the scene `{}` cannot be compiled:", self.scene)?;
+        self.reasons
+            .iter()
+            .try_for_each(|reason| write!(f, "\n  {reason}"))
+    }
+}
+
+impl std::error::Error for Refused {}
+
+impl Model {
+    /// The model of a scene; `joints` finds a joint type by its name.
+    ///
+    /// # Errors
+    /// Joint types that are not found, parameters that do not fit them, and what the scene has that the compiler does not write.
+    pub fn new(
+        scene: &SceneDescription,
+        joints: impl Fn(&str) -> Option<Arc<Derived>>,
+    ) -> Result<Self, Refused> {
+        let mut reasons = elsewhere(scene);
+        let bodies = scene.bodies.iter();
+        let bodies: Vec<Option<Body>> = bodies
+            .map(|body| {
+                reasons.extend(uncovered(body));
+                let kind = &body.joint.kind.value;
+                let Some(joint) = joints(kind) else {
+                    let name = &body.joint.name.value;
+                    reasons.push(format!(
+                        "joint `{name}`: there is no spec of the joint type `{kind}`"
+                    ));
+                    return None;
+                };
+                compiled(body, joint)
+                    .map_err(|more| reasons.extend(more))
+                    .ok()
+            })
+            .collect();
+        match bodies.into_iter().collect::<Option<Vec<Body>>>() {
+            Some(bodies) if reasons.is_empty() => Ok(Self {
+                name: scene.name.clone(),
+                gravity: scene.gravity,
+                bodies,
+            }),
+            _ => Err(Refused {
+                scene: scene.name.clone(),
+                reasons,
+            }),
+        }
+    }
+}
+
+/// What acts between bodies, which is not compiled.
+fn elsewhere(scene: &SceneDescription) -> Vec<String> {
+    let springs = scene.springs.len();
+    let mut reasons = vec![];
+    if springs > 0 {
+        reasons.push(format!(
+            "{springs} spring(s) between points: these are not compiled"
+        ));
+    }
+    for wrench in &scene.wrenches {
+        let body = scene
+            .bodies
+            .get(wrench.body)
+            .map_or("?", |body| body.name.value.as_str());
+        reasons.push(format!(
+            "a wrench on body `{body}`: wrenches are not compiled"
+        ));
+    }
+    for constraint in &scene.constraints {
+        let name = &constraint.name.value;
+        reasons.push(format!(
+            "constraint `{name}`: constraints that couple joints are not compiled"
+        ));
+    }
+    reasons
+}
+
+/// What acts at a joint and is not compiled.
+fn uncovered(body: &BodyDescription) -> Vec<String> {
+    let name = &body.joint.name.value;
+    let mut reasons = vec![];
+    if body.forces.spring.is_some() {
+        reasons.push(format!("joint `{name}`: springs are not compiled"));
+    }
+    if body.forces.motion.is_some() {
+        reasons.push(format!(
+            "joint `{name}`: prescribed motions are not compiled"
+        ));
+    }
+    reasons
+}
+
+fn compiled(body: &BodyDescription, joint: Arc<Derived>) -> Result<Body, Vec<String>> {
+    let name = &body.joint.name.value;
+    let mut reasons = vec![];
+    let forces = &body.forces;
+    let freedoms = joint.shape.freedoms;
+    let mut spread = |what: &str, given: Option<&hamel_scene::PerFreedom>| {
+        let numbers = given.map_or(Some(vec![]), |given| given.spread(freedoms));
+        numbers.unwrap_or_else(|| {
+            reasons.push(format!(
+                "joint `{name}`: {what} must have {freedoms} number(s)"
+            ));
+            vec![]
+        })
+    };
+    let damping = spread("damping", forces.damping.as_ref().map(|found| &found.value));
+    let armature = spread(
+        "armature",
+        forces.armature.as_ref().map(|found| &found.value),
+    );
+    let effort = forces
+        .effort
+        .as_ref()
+        .map_or(vec![], |found| found.value.clone());
+    let turns = joint
+        .kernel(KernelKind::Gamma)
+        .is_some_and(|gamma| gamma.structure != Structure::Zero);
+    if turns && armature.iter().any(|&rotor| rotor != 0.0) {
+        reasons.push(format!(
+            "joint `{name}`: armature at a joint whose velocities do not commute (`{}`) is not compiled",
+            body.joint.kind.value
+        ));
+    }
+    let parameters = parameters(body, &joint, &mut reasons);
+    match reasons.is_empty() {
+        false => Err(reasons),
+        true => Ok(Body {
+            name: body.name.value.clone(),
+            joint_name: name.clone(),
+            parent: body.parent,
+            joint,
+            parameters,
+            placement: body.at,
+            child_placement: body.body_at,
+            mass: body.mass,
+            armature,
+            damping,
+            effort,
+        }),
+    }
+}
+
+/// The values of a joint's parameters in the order of its spec.
+fn parameters(body: &BodyDescription, joint: &Derived, reasons: &mut Vec<String>) -> Vec<f64> {
+    let name = &body.joint.name.value;
+    let known: Vec<&str> = joint
+        .spec
+        .parameters
+        .iter()
+        .map(|known| &*known.symbol.name)
+        .collect();
+    for (given, _) in &body.joint.parameters {
+        if !known.contains(&given.value.as_str()) {
+            reasons.push(format!(
+                "joint `{name}`: its type has no parameter `{}`",
+                given.value
+            ));
+        }
+    }
+    let value = |known: &&str| {
+        let given = body
+            .joint
+            .parameters
+            .iter()
+            .find(|(given, _)| given.value == **known);
+        given.map(|(_, value)| *value).or_else(|| {
+            reasons.push(format!("joint `{name}`: parameter `{known}` is missing"));
+            None
+        })
+    };
+    known.iter().filter_map(value).collect()
+}

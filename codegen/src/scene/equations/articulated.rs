@@ -1,0 +1,173 @@
+//! Forward dynamics by articulated bodies: each joint's freedoms are eliminated from the inertia of what it carries.
+
+use super::newton_euler::Spin;
+use super::{Tree, carried, number, wrench_to_parent};
+use crate::scene::graph::{Argument, Sym, section};
+use crate::scene::spatial::{Articulated, Twist, Vec3, Wrench};
+
+/// The elimination of one speed.
+struct Pivot {
+    /// `y / d`, of the momentum y of one unit of it.
+    scaled: Wrench,
+    /// `u / d`, of the effort u that is left for it.
+    share: Sym,
+    /// What the rates of the joint's later speeds take from it, over d.
+    later: Vec<Sym>,
+}
+
+/// Where the velocity-dependent forces are reckoned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bias {
+    /// In the same recursion.
+    Within,
+    /// In a recursion of inverse dynamics before it.
+    Before,
+}
+
+impl Tree<'_> {
+    /// v̄̇ from the efforts of the argument and of the scene.
+    pub fn articulated_accelerations(&self, bias: Bias) -> Vec<Sym> {
+        let velocities = self.angular_velocities();
+        let before = match bias {
+            Bias::Before => self.inverse_dynamics(None),
+            Bias::Within => vec![Sym::Number(0.0); self.model.sizes()[2]],
+        };
+        let count = self.bodies.len();
+        let mut inertias: Vec<Articulated> = vec![];
+        let mut wrenches: Vec<Wrench> = vec![];
+        let mut biases: Vec<Twist> = vec![];
+        for index in 0..count {
+            section(number(index), "bias");
+            let rigid = self.links[index].inertia.on_graph();
+            inertias.push(Articulated::rigid(&rigid));
+            let within = bias == Bias::Within;
+            let spin = Spin::new(&velocities[index].0, &Vec3::zeros());
+            wrenches.push(if within {
+                spin.wrench(&rigid, &Vec3::zeros())
+            } else {
+                Wrench::zero()
+            });
+            let own = match (within, self.bodies[index].parent) {
+                (false, _) => Twist::zero(),
+                (true, None) => self.bias(index, &velocities),
+                (true, Some(parent)) => self
+                    .bias(index, &velocities)
+                    .plus(&self.centripetal(index, &velocities[parent].0)),
+            };
+            biases.push(own);
+        }
+        let mut pivots: Vec<Vec<Pivot>> = (0..count).map(|_| vec![]).collect();
+        for index in (0..count).rev() {
+            let efforts = self.efforts(index, Some(Argument::Efforts));
+            let places = self.bodies[index].share.speeds.clone();
+            let efforts: Vec<Sym> = efforts
+                .iter()
+                .zip(&before[places])
+                .map(|(&tau, &taken)| tau - taken)
+                .collect();
+            pivots[index] =
+                self.eliminate(index, &mut inertias[index], &mut wrenches[index], efforts);
+            if let Some(parent) = self.bodies[index].parent {
+                section(number(index), "seen by parent");
+                let steps = &self.bodies[index].steps;
+                let wrench = wrenches[index].plus(&inertias[index].of(&biases[index]));
+                wrenches[parent] = wrenches[parent].plus(&wrench_to_parent(steps, &wrench));
+                inertias[parent] = inertias[parent].plus(&inertias[index].to_parent(steps));
+            }
+        }
+        self.outward(bias, &biases, &pivots)
+    }
+
+    /// Takes the freedoms of a body's joint out of what it carries.
+    fn eliminate(
+        &self,
+        index: usize,
+        inertia: &mut Articulated,
+        wrench: &mut Wrench,
+        efforts: Vec<Sym>,
+    ) -> Vec<Pivot> {
+        section(number(index), "articulated inertia");
+        let columns = &self.bodies[index].columns;
+        let has_armature = self.has_armature(index);
+        let mut momenta: Vec<Wrench> = columns.iter().map(|column| inertia.of(column)).collect();
+        let mut matrix: Vec<Vec<Sym>> = (0..columns.len())
+            .map(|j| {
+                (0..columns.len())
+                    .map(|k| columns[j].dot(&momenta[k]) + self.armature(index, j, k))
+                    .collect()
+            })
+            .collect();
+        let mut efforts = efforts;
+        for (j, column) in columns.iter().enumerate() {
+            efforts[j] -= column.dot(wrench);
+        }
+        let mut pivots = vec![];
+        for j in 0..columns.len() {
+            let inverse = (Sym::Number(1.0) / matrix[j][j]).named("inverse_inertia");
+            let scaled = momenta[j].times(inverse);
+            let later: Vec<Sym> = matrix[j][j + 1..]
+                .iter()
+                .map(|&entry| entry * inverse)
+                .collect();
+            for k in j + 1..columns.len() {
+                let factor = later[k - j - 1];
+                let less = factor * efforts[j];
+                efforts[k] -= less;
+                momenta[k] = momenta[k].plus(&momenta[j].times(-factor));
+                for l in k..columns.len() {
+                    let less = factor * matrix[j][l];
+                    matrix[k][l] -= less;
+                }
+            }
+            let column = if has_armature {
+                Twist::zero()
+            } else {
+                columns[j].clone()
+            };
+            *inertia = inertia.without(&column, &momenta[j], &scaled);
+            *wrench = wrench.plus(&momenta[j].times(efforts[j] * inverse));
+            pivots.push(Pivot {
+                share: efforts[j] * inverse,
+                scaled,
+                later,
+            });
+        }
+        pivots
+    }
+
+    fn outward(&self, bias: Bias, biases: &[Twist], pivots: &[Vec<Pivot>]) -> Vec<Sym> {
+        let mut rates = vec![Sym::Number(0.0); self.model.sizes()[2]];
+        let mut accelerations: Vec<Twist> = vec![];
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "acceleration");
+            let world = match bias {
+                Bias::Within => Twist {
+                    angular: Vec3::zeros(),
+                    linear: self.ground(),
+                },
+                Bias::Before => Twist::zero(),
+            };
+            let from = body.parent.map_or(&world, |parent| &accelerations[parent]);
+            let base = carried(&body.steps, from).plus(&biases[index]);
+            let places = body.share.speeds.clone();
+            let mut acceleration = base.clone();
+            for (j, place) in places.clone().enumerate().rev() {
+                let Pivot {
+                    scaled,
+                    share,
+                    later,
+                } = &pivots[index][j];
+                let taken: Sym = later
+                    .iter()
+                    .zip(&rates[place + 1..places.end])
+                    .map(|(&factor, &rate)| factor * rate)
+                    .sum();
+                let rate = *share - base.dot(scaled) - taken;
+                rates[place] = rate.named("acceleration");
+                acceleration = acceleration.plus(&body.columns[j].times(rate));
+            }
+            accelerations.push(acceleration);
+        }
+        rates
+    }
+}

@@ -1,0 +1,133 @@
+//! The mass matrix by composite rigid bodies, and its factorisation along the tree.
+
+use super::{Tree, number, wrench_to_parent};
+use crate::scene::graph::{Argument, Sym, section};
+use crate::scene::spatial::Rigid;
+use num_traits::Zero;
+
+/// M̄ as a full matrix, with zeros where no path of the tree connects two speeds.
+pub type Matrix = Vec<Vec<Sym>>;
+
+impl Tree<'_> {
+    /// M̄(Q).
+    pub fn mass_matrix(&self) -> Matrix {
+        let count = self.model.sizes()[2];
+        let mut matrix = vec![vec![Sym::zero(); count]; count];
+        let mut composites: Vec<Rigid> = self
+            .links
+            .iter()
+            .map(|link| link.inertia.on_graph())
+            .collect();
+        for (index, body) in self.bodies.iter().enumerate().rev() {
+            section(number(index), "composite inertia");
+            for (j, place) in body.share.speeds.clone().enumerate() {
+                self.fill_row(index, j, place, &composites[index], &mut matrix);
+            }
+            if let Some(parent) = body.parent {
+                composites[parent] =
+                    composites[parent].plus(&composites[index].to_parent(&body.steps));
+            }
+        }
+        matrix
+    }
+
+    /// The entries of one speed with those of its own joint and of the joints that carry it.
+    fn fill_row(
+        &self,
+        index: usize,
+        j: usize,
+        place: usize,
+        composite: &Rigid,
+        matrix: &mut Matrix,
+    ) {
+        let body = &self.bodies[index];
+        let mut momentum = composite.of(&body.columns[j]);
+        for (k, other) in body.share.speeds.clone().enumerate().skip(j) {
+            let entry = body.columns[k].dot(&momentum) + self.armature(index, j, k);
+            (matrix[place][other], matrix[other][place]) = (entry, entry);
+        }
+        let mut below = index;
+        while let Some(parent) = self.bodies[below].parent {
+            momentum = wrench_to_parent(&self.bodies[below].steps, &momentum);
+            let carrier = &self.bodies[parent];
+            for (k, other) in carrier.share.speeds.clone().enumerate() {
+                let entry = carrier.columns[k].dot(&momentum);
+                (matrix[place][other], matrix[other][place]) = (entry, entry);
+            }
+            below = parent;
+        }
+    }
+
+    /// v̄̇ from the efforts of the argument and of the scene: M̄ factorised as `LᵀDL`, which fills no zero of the tree.
+    pub fn composite_accelerations(&self) -> Vec<Sym> {
+        let forces = self.inverse_dynamics(None);
+        let matrix = self.mass_matrix();
+        let mut right = vec![Sym::zero(); forces.len()];
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "effort");
+            for (place, effort) in body
+                .share
+                .speeds
+                .clone()
+                .zip(self.efforts(index, Some(Argument::Efforts)))
+            {
+                right[place] = effort - forces[place];
+            }
+        }
+        self.solved(matrix, right)
+    }
+
+    /// `M̄⁻¹ b`.
+    pub(super) fn solved(&self, mut matrix: Matrix, mut right: Vec<Sym>) -> Vec<Sym> {
+        let carriers = self.carriers();
+        let sections = self.sections();
+        let mut inverses = vec![Sym::zero(); right.len()];
+        for k in (0..right.len()).rev() {
+            section(sections[k], "factor");
+            inverses[k] = Sym::Number(1.0) / matrix[k][k];
+            for (place, &i) in carriers[k].iter().enumerate() {
+                let factor = matrix[k][i] * inverses[k];
+                for &j in &carriers[k][place..] {
+                    let less = factor * matrix[k][j];
+                    matrix[i][j] -= less;
+                    matrix[j][i] = matrix[i][j];
+                }
+                let less = factor * right[k];
+                right[i] -= less;
+            }
+        }
+        for k in 0..right.len() {
+            section(sections[k], "acceleration");
+            let carried: Sym = carriers[k].iter().map(|&i| matrix[k][i] * right[i]).sum();
+            right[k] = ((right[k] - carried) * inverses[k]).named("acceleration");
+        }
+        right
+    }
+
+    /// The speeds that each speed's momentum reaches: those before it in its own joint and those of all joints that carry it, nearest
+    /// first.
+    fn carriers(&self) -> Vec<Vec<usize>> {
+        let mut carriers: Vec<Vec<usize>> = vec![];
+        for body in &self.bodies {
+            for place in body.share.speeds.clone() {
+                let own = (body.share.speeds.start..place).rev();
+                let mut all: Vec<usize> = own.collect();
+                let mut parent = body.parent;
+                while let Some(index) = parent {
+                    all.extend(self.bodies[index].share.speeds.clone().rev());
+                    parent = self.bodies[index].parent;
+                }
+                carriers.push(all);
+            }
+        }
+        carriers
+    }
+
+    /// The section of each speed.
+    fn sections(&self) -> Vec<u32> {
+        let bodies = self.bodies.iter().enumerate();
+        bodies
+            .flat_map(|(index, body)| body.share.speeds.clone().map(move |_| number(index)))
+            .collect()
+    }
+}

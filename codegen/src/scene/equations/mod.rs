@@ -1,0 +1,211 @@
+//! Equations of motion on the graph, body by body in the frames that were chosen.
+//!
+//! Accelerations are classical ones, of points: the second derivative of the origin's place, in the body's own axes. With them no linear
+//! velocity occurs, `f = m a + α × h + ω × (ω × h)` and `n = I α + h × a + ω × I ω` with h the first moment. Gravity is an acceleration of the
+//! world, upwards.
+
+pub mod articulated;
+mod composite;
+mod newton_euler;
+
+pub use articulated::Bias;
+
+use super::graph::{Argument, Sym, section};
+use super::joint::Joint;
+use super::model::{Body, Model, Share};
+use super::prune::Link;
+use super::spatial::{Step, Twist, Vec3, Wrench, cross, simplified};
+use num_traits::Zero;
+
+/// One body at one state.
+pub struct Placed {
+    /// Index of the parent.
+    pub parent: Option<usize>,
+    /// Where its values lie.
+    pub share: Share,
+    /// The frame of its equations in that of its parent's.
+    pub steps: Vec<Step>,
+    /// X̄^c in its frame.
+    pub columns: Vec<Twist>,
+    /// S̄ by rows.
+    pub basis: Vec<Vec<Sym>>,
+    /// X̄^c v̄.
+    pub velocity: Twist,
+    /// Ẋ̄^c v̄.
+    pub bias: Twist,
+}
+
+/// All bodies at one state.
+pub struct Tree<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Its bodies in their frames.
+    pub links: Vec<Link>,
+    /// The bodies at the state.
+    pub bodies: Vec<Placed>,
+}
+
+impl<'a> Tree<'a> {
+    /// The bodies at the arguments Q and v̄ of the graph under construction.
+    pub fn new(model: &'a Model, links: Vec<Link>) -> Self {
+        let shares = model.shares();
+        let bodies = model.bodies.iter().zip(&links).zip(shares).enumerate();
+        let bodies = bodies
+            .map(|(index, ((body, link), share))| {
+                section(number(index), "joint");
+                placed(body, link, share)
+            })
+            .collect();
+        Self {
+            model,
+            links,
+            bodies,
+        }
+    }
+
+    /// Acceleration of the world that stands for gravity.
+    fn ground(&self) -> Vec3 {
+        self.model.gravity.map(|entry| -Sym::from(entry))
+    }
+
+    /// Angular velocity of every body, in its own axes; and that of its parent there.
+    fn angular_velocities(&self) -> Vec<(Vec3, Vec3)> {
+        let mut velocities: Vec<(Vec3, Vec3)> = vec![];
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "angular velocity");
+            let carried = match body.parent {
+                Some(parent) => to_child(&body.steps, &velocities[parent].0),
+                None => Vec3::zeros(),
+            };
+            let own = carried + body.velocity.angular;
+            let named = |i: usize| own[i].named(["rate_x", "rate_y", "rate_z"][i]);
+            velocities.push((Vec3::from_fn(|i, _| named(i)), carried));
+        }
+        velocities
+    }
+
+    /// The part of a body's acceleration that neither its parent's acceleration nor v̄̇ makes, in its axes.
+    fn bias(&self, index: usize, velocities: &[(Vec3, Vec3)]) -> Twist {
+        let body = &self.bodies[index];
+        let carried = &velocities[index].1;
+        let Twist { angular, linear } = &body.velocity;
+        let two = Sym::Number(2.0);
+        let relative = cross(carried, linear) * two + cross(angular, linear);
+        Twist {
+            angular: cross(carried, angular) + body.bias.angular,
+            linear: relative + body.bias.linear,
+        }
+    }
+
+    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts and the dampers of a body's joint.
+    fn efforts(&self, index: usize, argument: Option<Argument>) -> Vec<Sym> {
+        let (body, placed) = (&self.model.bodies[index], &self.bodies[index]);
+        let speeds: Vec<Sym> = placed
+            .share
+            .speeds
+            .clone()
+            .map(|i| Sym::input(Argument::Speeds, i))
+            .collect();
+        let freedom = |(k, place): (usize, usize)| {
+            let given = argument.map_or(Sym::zero(), |argument| Sym::input(argument, place));
+            let constant = body.effort.get(k).copied().unwrap_or(0.0);
+            let damping = body.damping.get(k).copied().unwrap_or(0.0);
+            let velocity: Sym = placed.basis[k]
+                .iter()
+                .zip(&speeds)
+                .map(|(&s, &v)| s * v)
+                .sum();
+            given + Sym::from(constant) - Sym::from(damping) * velocity
+        };
+        let efforts: Vec<Sym> = placed
+            .share
+            .freedoms
+            .clone()
+            .enumerate()
+            .map(freedom)
+            .collect();
+        (0..speeds.len())
+            .map(|j| {
+                efforts
+                    .iter()
+                    .zip(&placed.basis)
+                    .map(|(&tau, row)| row[j] * tau)
+                    .sum()
+            })
+            .collect()
+    }
+
+    /// `S̄ᵀ diag(armature) S̄` of a body's joint.
+    fn armature(&self, index: usize, j: usize, k: usize) -> Sym {
+        let body = &self.model.bodies[index];
+        let rows = body.armature.iter().zip(&self.bodies[index].basis);
+        rows.map(|(&rotor, row)| row[j] * row[k] * Sym::from(rotor))
+            .sum()
+    }
+
+    /// Whether a body's joint has armature.
+    fn has_armature(&self, index: usize) -> bool {
+        self.model.bodies[index]
+            .armature
+            .iter()
+            .any(|&rotor| rotor != 0.0)
+    }
+}
+
+/// A body's index as the number of its section.
+fn number(index: usize) -> u32 {
+    u32::try_from(index).unwrap_or(u32::MAX)
+}
+
+fn placed(body: &Body, link: &Link, share: Share) -> Placed {
+    let inputs = |argument, range: std::ops::Range<usize>| -> Vec<Sym> {
+        range.map(|i| Sym::input(argument, i)).collect()
+    };
+    let q = inputs(Argument::Configuration, share.configuration.clone());
+    let speeds = inputs(Argument::Speeds, share.speeds.clone());
+    let joint = Joint::new(&body.joint, &body.parameters, &q, &speeds);
+    let (freedoms, basis) = (joint.freedoms(), joint.speed_basis());
+    let column = |j: usize| {
+        let terms = freedoms
+            .iter()
+            .zip(&basis)
+            .map(|(column, row)| column.times(row[j]));
+        terms.fold(Twist::zero(), |sum, term| sum.plus(&term))
+    };
+    let columns: Vec<Twist> = (0..speeds.len()).map(column).collect();
+    let velocity = columns
+        .iter()
+        .zip(&speeds)
+        .map(|(column, &speed)| column.times(speed));
+    let fixed = link.placement.iter().map(super::prune::Fixed::step);
+    let after = link.after.iter().map(super::prune::Fixed::step);
+    Placed {
+        parent: body.parent,
+        steps: simplified(fixed.chain(joint.pose()).chain(after)),
+        velocity: velocity.fold(Twist::zero(), |sum, term| sum.plus(&term)),
+        bias: joint.bias_acceleration(),
+        columns,
+        basis,
+        share,
+    }
+}
+
+/// A vector from the parent's axes to the child's.
+fn to_child(steps: &[Step], a: &Vec3) -> Vec3 {
+    steps.iter().fold(*a, |a, step| step.to_child(&a))
+}
+
+/// A wrench from child to parent.
+fn wrench_to_parent(steps: &[Step], wrench: &Wrench) -> Wrench {
+    let steps = steps.iter().rev();
+    steps.fold(wrench.clone(), |wrench, step| {
+        step.wrench_to_parent(&wrench)
+    })
+}
+
+/// An acceleration from parent to child, as a rigid connection carries it: without centripetal parts.
+fn carried(steps: &[Step], twist: &Twist) -> Twist {
+    steps
+        .iter()
+        .fold(twist.clone(), |twist, step| step.twist_to_child(&twist))
+}

@@ -1,0 +1,139 @@
+//! Inverse dynamics: what efforts an acceleration takes (recursive Newton–Euler).
+
+use super::{Tree, Wrench, number, to_child, wrench_to_parent};
+use crate::scene::graph::{Argument, Sym, section};
+use crate::scene::spatial::{Mat3, Rigid, Step, Twist, Vec3, apply, cross, symmetric};
+use num_traits::Zero;
+
+/// `α~ + ω~ω~`: the acceleration of a point of the body from that of its origin.
+pub struct Spin {
+    matrix: Mat3,
+    omega: Vec3,
+    alpha: Vec3,
+}
+
+impl Spin {
+    /// From angular velocity and acceleration.
+    pub fn new(omega: &Vec3, alpha: &Vec3) -> Self {
+        let squares = symmetric(|i, j| omega[i] * omega[j]);
+        let matrix = Mat3::from_fn(|i, j| {
+            if i == j {
+                return -(squares[((i + 1) % 3, (i + 1) % 3)]
+                    + squares[((i + 2) % 3, (i + 2) % 3)]);
+            }
+            let k = 3 - i - j;
+            let positive = (i + 1) % 3 == k;
+            squares[(i, j)] + if positive { alpha[k] } else { -alpha[k] }
+        });
+        Self {
+            matrix,
+            omega: *omega,
+            alpha: *alpha,
+        }
+    }
+
+    /// Acceleration that the spin adds at a point.
+    pub fn at(&self, point: &Vec3) -> Vec3 {
+        apply(&self.matrix, point)
+    }
+
+    /// What it takes to move a body so, with its origin accelerated by `a`.
+    pub fn wrench(&self, inertia: &Rigid, a: &Vec3) -> Wrench {
+        let gyroscopic = cross(&self.omega, &apply(&inertia.second, &self.omega));
+        Wrench {
+            moment: apply(&inertia.second, &self.alpha) + cross(&inertia.first, a) + gyroscopic,
+            force: a * inertia.mass + self.at(&inertia.first),
+        }
+    }
+}
+
+impl Tree<'_> {
+    /// The efforts τ̄ that inputs must exert, beside those that the scene applies, for the given accelerations, `None` for none.
+    pub fn needed_efforts(&self, accelerations: Option<Argument>) -> Vec<Sym> {
+        let mut efforts = self.inverse_dynamics(accelerations);
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "effort");
+            for (place, applied) in body.share.speeds.clone().zip(self.efforts(index, None)) {
+                efforts[place] -= applied;
+            }
+        }
+        efforts
+    }
+
+    /// The efforts τ̄ that the given accelerations take in all.
+    pub(super) fn inverse_dynamics(&self, accelerations: Option<Argument>) -> Vec<Sym> {
+        let velocities = self.angular_velocities();
+        let mut spins: Vec<Spin> = vec![];
+        let mut linear: Vec<Vec3> = vec![];
+        let mut wrenches: Vec<Wrench> = vec![];
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "acceleration");
+            let mut acceleration = self.bias(index, &velocities);
+            let (alpha, a) = match body.parent {
+                Some(parent) => (
+                    spins[parent].alpha,
+                    self.carried_origin(index, &spins[parent], &linear[parent]),
+                ),
+                None => (Vec3::zeros(), to_child(&body.steps, &self.ground())),
+            };
+            if let Some(argument) = accelerations {
+                for (column, place) in body.columns.iter().zip(body.share.speeds.clone()) {
+                    acceleration = acceleration.plus(&column.times(Sym::input(argument, place)));
+                }
+            }
+            let alpha = to_child(&body.steps, &alpha) + acceleration.angular;
+            let a = a + acceleration.linear;
+            let spin = Spin::new(&velocities[index].0, &alpha);
+            section(number(index), "force");
+            wrenches.push(spin.wrench(&self.links[index].inertia.on_graph(), &a));
+            spins.push(spin);
+            linear.push(a);
+        }
+        self.efforts_of(wrenches, accelerations)
+    }
+
+    /// Acceleration of a child's origin as its parent carries it, in the child's axes: `Rᵀ (a + (α~ + ω~ω~) p)`, with shifts that
+    /// stand behind turns carried along.
+    fn carried_origin(&self, index: usize, spin: &Spin, a: &Vec3) -> Vec3 {
+        let steps = &self.bodies[index].steps;
+        let mut place = Vec3::zeros();
+        for step in steps.iter().rev() {
+            place = match step {
+                Step::Shift(by) => place + by,
+                turn => turn.to_parent(&place),
+            };
+        }
+        to_child(steps, &(a + spin.at(&place)))
+    }
+
+    /// τ̄ from the wrench of each body.
+    fn efforts_of(&self, mut wrenches: Vec<Wrench>, accelerations: Option<Argument>) -> Vec<Sym> {
+        let mut efforts = vec![Sym::zero(); self.model.sizes()[2]];
+        for (index, body) in self.bodies.iter().enumerate().rev() {
+            section(number(index), "effort");
+            for (j, place) in body.share.speeds.clone().enumerate() {
+                let mut effort = body.columns[j].dot(&wrenches[index]);
+                if let Some(argument) = accelerations {
+                    for (k, other) in body.share.speeds.clone().enumerate() {
+                        effort += self.armature(index, j, k) * Sym::input(argument, other);
+                    }
+                }
+                efforts[place] = effort;
+            }
+            if let Some(parent) = body.parent {
+                let carried = wrench_to_parent(&body.steps, &wrenches[index]);
+                wrenches[parent] = wrenches[parent].plus(&carried);
+            }
+        }
+        efforts
+    }
+
+    /// Acceleration of a body's origin that the turning of its parent alone makes.
+    pub(super) fn centripetal(&self, index: usize, omega: &Vec3) -> Twist {
+        let spin = Spin::new(omega, &Vec3::zeros());
+        Twist {
+            angular: Vec3::zeros(),
+            linear: self.carried_origin(index, &spin, &Vec3::zeros()),
+        }
+    }
+}

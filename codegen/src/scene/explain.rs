@@ -1,0 +1,138 @@
+//! What was left out of a scene's equations, why, and what that saved.
+
+use super::functions::{Chosen, Kind, compile_with};
+use super::graph::{Argument, Sym, record};
+use super::joint::Joint;
+use super::model::{Body, Inertia, Model};
+use super::prune::{Fixed, Link, Pruning, prune};
+use std::fmt::Write;
+
+/// Names of the ten parameters of an inertia.
+const PARAMETERS: [&str; 10] = [
+    "m", "mc_x", "mc_y", "mc_z", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz",
+];
+
+/// The account, as text.
+pub fn explain(model: &Model, kinds: &[Kind]) -> String {
+    let bare = prune(model, Pruning::NONE);
+    let framed = prune(
+        model,
+        Pruning {
+            frames: true,
+            inertias: false,
+        },
+    );
+    let pruned = prune(model, Pruning::ALL);
+    let mut text = format!("{}: {} bodies\n", model.name, model.bodies.len());
+    for (index, body) in model.bodies.iter().enumerate() {
+        text += &of_body(model, body, [&bare[index], &framed[index], &pruned[index]]);
+    }
+    for &kind in kinds {
+        let chosen = [&bare, &framed, &pruned].map(|links| compile_with(model, links, kind));
+        text += &of_function(kind, &chosen);
+    }
+    text
+}
+
+fn of_body(model: &Model, body: &Body, [bare, framed, pruned]: [&Link; 3]) -> String {
+    let mut text = format!(
+        "\n{} (joint `{}`, {})\n",
+        body.name, body.joint_name, body.joint.spec.name.value
+    );
+    if bare.placement != framed.placement || bare.after != framed.after {
+        let _ = writeln!(
+            text,
+            "  frame moved: placement {} instead of {}",
+            placement(&framed.placement),
+            placement(&bare.placement)
+        );
+    }
+    let gone = left_out(&framed.inertia, &pruned.inertia);
+    if !gone.is_empty() {
+        let to = body
+            .parent
+            .map_or("dropped at the world".to_owned(), |parent| {
+                format!("moved to `{}`", model.bodies[parent].name)
+            });
+        let _ = writeln!(
+            text,
+            "  inertia that the joint does not feel: {} = 0, {to}",
+            gone.join(", ")
+        );
+    }
+    if let Some(reason) = without_bias(body) {
+        let _ = writeln!(text, "  {reason}");
+    }
+    text
+}
+
+/// Parameters that were not 0 and are.
+fn left_out(before: &Inertia, after: &Inertia) -> Vec<&'static str> {
+    let pairs = before.parameters().into_iter().zip(after.parameters());
+    let gone = pairs
+        .zip(PARAMETERS)
+        .filter(|((before, after), _)| *before != 0.0 && *after == 0.0);
+    gone.map(|(_, name)| name).collect()
+}
+
+fn placement(steps: &[Fixed]) -> String {
+    let one = |step: &Fixed| match step {
+        Fixed::Shift(by) => format!("({}, {}, {}) m", by.x, by.y, by.z),
+        Fixed::Turn(axis, cos, sin) => {
+            format!(
+                "{:.6}° about {}",
+                sin.atan2(*cos).to_degrees(),
+                ["x", "y", "z"][*axis]
+            )
+        }
+    };
+    match steps {
+        [] => "none".to_owned(),
+        steps => steps.iter().map(one).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// What holds of a joint's own velocity terms.
+fn without_bias(body: &Body) -> Option<&'static str> {
+    let shape = body.joint.shape;
+    let (vanishes, _) = record(|| {
+        let inputs = |argument, count: usize| -> Vec<Sym> {
+            (0..count).map(|i| Sym::input(argument, i)).collect()
+        };
+        let q = inputs(Argument::Configuration, shape.configuration);
+        let speeds = inputs(Argument::Speeds, shape.speeds);
+        let bias = Joint::new(&body.joint, &body.parameters, &q, &speeds).bias_acceleration();
+        bias == super::spatial::Twist::zero()
+    });
+    let nonholonomic = shape.constraints > 0;
+    match (vanishes, nonholonomic) {
+        (true, false) => Some("no velocity terms of its own (c = 0), no nonholonomic part"),
+        (true, true) => Some("no velocity terms of its own (c = 0)"),
+        (false, false) => Some("no nonholonomic part"),
+        (false, true) => None,
+    }
+}
+
+fn of_function(kind: Kind, [bare, framed, pruned]: &[Chosen; 3]) -> String {
+    let flops = |chosen: &Chosen| chosen.function.operations().flops();
+    let mut text = format!(
+        "\n{}: {} ({})\n",
+        kind.name(),
+        pruned.function.operations(),
+        pruned.way
+    );
+    for (way, operations) in &pruned.tried {
+        let _ = writeln!(text, "  {operations:>7}  by {way}");
+    }
+    let saved = |before: usize, after: usize, what: &str| {
+        let share = 100.0 * (1.0 - after as f64 / before.max(1) as f64);
+        format!("  {before:>7} → {after}: {what} saves {share:.1} %\n")
+    };
+    text += &saved(flops(bare), flops(framed), "moving frames");
+    text += &saved(
+        flops(framed),
+        flops(pruned),
+        "leaving out what joints do not feel",
+    );
+    text
+}

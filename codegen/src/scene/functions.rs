@@ -1,0 +1,177 @@
+//! The functions that can be asked for, each by its own recursion; where there are several, the one with the fewest operations.
+
+use super::emit::Function;
+use super::equations::{Bias, Tree};
+use super::graph::{Argument, Sym, record};
+use super::model::Model;
+use super::prune::{Link, Pruning, prune};
+
+/// A function of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// v̄̇ from Q, v̄ and τ: (24), (34).
+    ForwardDynamics,
+    /// The efforts τ̄ that v̄̇ takes at Q and v̄.
+    InverseDynamics,
+    /// M̄(Q).
+    MassMatrix,
+    /// The efforts τ̄ that no acceleration takes at Q and v̄.
+    BiasForces,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::ForwardDynamics,
+        Self::InverseDynamics,
+        Self::MassMatrix,
+        Self::BiasForces,
+    ];
+
+    /// Its name, in emitted code as well.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ForwardDynamics => "forward_dynamics",
+            Self::InverseDynamics => "inverse_dynamics",
+            Self::MassMatrix => "mass_matrix",
+            Self::BiasForces => "bias_forces",
+        }
+    }
+
+    /// What it computes, in a sentence.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Self::ForwardDynamics => "Accelerations v̄̇ from Q, v̄ and τ, (24), (34).",
+            Self::InverseDynamics => {
+                "Efforts τ̄ = S̄ᵀτ that the accelerations take at Q and v̄, (24), (34)."
+            }
+            Self::MassMatrix => "Mass matrix M̄ by rows.",
+            Self::BiasForces => "Efforts τ̄ = S̄ᵀτ that no acceleration takes at Q and v̄.",
+        }
+    }
+
+    fn arguments(self) -> &'static [Argument] {
+        match self {
+            Self::ForwardDynamics => {
+                &[Argument::Configuration, Argument::Speeds, Argument::Efforts]
+            }
+            Self::InverseDynamics => &[
+                Argument::Configuration,
+                Argument::Speeds,
+                Argument::Accelerations,
+            ],
+            Self::MassMatrix => &[Argument::Configuration],
+            Self::BiasForces => &[Argument::Configuration, Argument::Speeds],
+        }
+    }
+
+    /// The recursions that compute it.
+    fn ways(self, model: &Model) -> Vec<Way> {
+        match self {
+            Self::ForwardDynamics => {
+                let mut ways: Vec<Way> = vec![
+                    ("articulated bodies", |tree| {
+                        tree.articulated_accelerations(Bias::Within)
+                    }),
+                    ("articulated bodies after inverse dynamics", |tree| {
+                        tree.articulated_accelerations(Bias::Before)
+                    }),
+                ];
+                if worth_factorising(model) {
+                    ways.push(("composite bodies, factorised along the tree", |tree| {
+                        tree.composite_accelerations()
+                    }));
+                }
+                ways
+            }
+            Self::InverseDynamics => vec![("Newton–Euler", |tree| {
+                tree.needed_efforts(Some(Argument::Accelerations))
+            })],
+            Self::MassMatrix => vec![("composite bodies", |tree| tree.mass_matrix().concat())],
+            Self::BiasForces => vec![("Newton–Euler", |tree| tree.needed_efforts(None))],
+        }
+    }
+}
+
+/// Operations of articulated bodies for one speed: about the most that was counted.
+const ARTICULATED: usize = 400;
+
+/// Whether factorising M̄ along the tree can take fewer operations than articulated bodies: a speed with n before it on its way to the
+/// root takes n².
+fn worth_factorising(model: &Model) -> bool {
+    let mut before: Vec<usize> = vec![];
+    let mut operations = 0;
+    for body in &model.bodies {
+        let speeds = body.joint.shape.speeds;
+        let depth = body.parent.map_or(0, |parent| before[parent]);
+        before.push(depth + speeds);
+        operations += (depth..depth + speeds).map(|n| n * n).sum::<usize>();
+    }
+    operations < ARTICULATED * model.sizes()[2]
+}
+
+/// A recursion with its name.
+type Way = (&'static str, fn(&Tree<'_>) -> Vec<Sym>);
+
+/// A function as it was chosen.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// The function.
+    pub function: Function,
+    /// The recursion.
+    pub way: &'static str,
+    /// Operations of all recursions that were tried.
+    pub tried: Vec<(&'static str, usize)>,
+}
+
+/// A function of the model, with the fewest operations.
+pub fn compile(model: &Model, kind: Kind) -> Chosen {
+    compile_with(model, &prune(model, Pruning::ALL), kind)
+}
+
+/// The same with links that are known.
+pub fn compile_with(model: &Model, links: &[Link], kind: Kind) -> Chosen {
+    let ways = kind.ways(model).into_iter();
+    let written = ways.map(|(name, way)| (name, write(model, links, kind, way)));
+    let mut written: Vec<(&'static str, Function)> = written.collect();
+    let flops = |function: &Function| function.operations().flops();
+    let tried = written
+        .iter()
+        .map(|(name, function)| (*name, flops(function)))
+        .collect();
+    written.sort_by_key(|(_, function)| flops(function));
+    let (way, function) = written.swap_remove(0);
+    Chosen {
+        function,
+        way,
+        tried,
+    }
+}
+
+fn write(model: &Model, links: &[Link], kind: Kind, way: fn(&Tree<'_>) -> Vec<Sym>) -> Function {
+    let (outputs, graph) = record(|| {
+        let tree = Tree::new(model, links.to_vec());
+        way(&tree).into_iter().map(Sym::value).collect::<Vec<_>>()
+    });
+    let [configuration, freedoms, speeds] = model.sizes();
+    let size = |argument: Argument| match argument {
+        Argument::Configuration => configuration,
+        Argument::Efforts => freedoms,
+        Argument::Speeds | Argument::Momenta | Argument::Accelerations => speeds,
+    };
+    let arguments = kind.arguments().iter();
+    Function {
+        name: kind.name(),
+        summary: kind.summary().to_owned(),
+        arguments: arguments
+            .map(|&argument| (argument, size(argument)))
+            .collect(),
+        columns: if kind == Kind::MassMatrix {
+            speeds.max(1)
+        } else {
+            1
+        },
+        graph,
+        outputs,
+    }
+}

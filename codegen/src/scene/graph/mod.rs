@@ -1,0 +1,165 @@
+//! Scalars of a scene's equations as a graph: every value once, with zeros, ones and signs folded as they arise.
+//!
+//! A [`Sym`] is a handle on a node of the graph that is under construction on this thread ([`record`]), with a sign: changes of sign are no
+//! nodes. Equal operations on equal operands are one node. What is built is taken out as a [`Graph`]; what nothing needs is left
+//! behind when it is written.
+
+mod count;
+mod evaluate;
+mod sym;
+
+pub use count::Operations;
+pub use sym::{Sym, atan2, call, sin_cos};
+
+use crate::expr::Function;
+use rustc_hash::FxHashMap;
+use std::cell::RefCell;
+
+/// A node, or its opposite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Value {
+    /// Index of the node.
+    pub node: u32,
+    /// Whether the opposite is meant.
+    pub negative: bool,
+}
+
+impl Value {
+    /// The opposite.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        Self {
+            negative: !self.negative,
+            ..self
+        }
+    }
+}
+
+/// An argument of the functions that are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Argument {
+    /// Q.
+    Configuration,
+    /// v̄.
+    Speeds,
+    /// p̄.
+    Momenta,
+    /// τ.
+    Efforts,
+    /// v̄̇.
+    Accelerations,
+}
+
+/// What a node computes. Operands are nodes before it; those of sums and products are in ascending order.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Operation {
+    /// A scalar of an argument.
+    Input(Argument, u32),
+    /// A number greater than 0, by its bits.
+    Constant(u64),
+    /// a + b.
+    Sum(u32, u32),
+    /// a − b.
+    Difference(u32, u32),
+    /// a b.
+    Product(u32, u32),
+    /// a / b.
+    Quotient(u32, u32),
+    /// A function of one or two values.
+    Call(Function, Value, Option<Value>),
+}
+
+impl Operation {
+    /// The nodes that it reads.
+    pub fn operands(&self) -> Vec<u32> {
+        match self {
+            Self::Input(..) | Self::Constant(_) => vec![],
+            Self::Sum(a, b)
+            | Self::Difference(a, b)
+            | Self::Product(a, b)
+            | Self::Quotient(a, b) => vec![*a, *b],
+            Self::Call(_, a, b) => std::iter::once(a)
+                .chain(b)
+                .map(|value| value.node)
+                .collect(),
+        }
+    }
+}
+
+/// A node.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// What it computes.
+    pub operation: Operation,
+    /// The section of the code that it belongs to.
+    pub section: u32,
+    /// What of that section's body.
+    pub topic: &'static str,
+    /// What it is called, without the name of the section's body: the topic where nobody named it.
+    pub label: String,
+}
+
+/// Nodes in an order in which they can be computed.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    /// The nodes.
+    pub nodes: Vec<Node>,
+    known: FxHashMap<Operation, u32>,
+    section: u32,
+    topic: &'static str,
+}
+
+thread_local! {
+    static CURRENT: RefCell<Graph> = RefCell::default();
+}
+
+/// Runs `build` on an empty graph and returns what it makes, with the graph.
+///
+/// Graphs do not nest: `build` must not call this.
+pub fn record<R>(build: impl FnOnce() -> R) -> (R, Graph) {
+    CURRENT.with_borrow_mut(|graph| *graph = Graph::default());
+    let result = build();
+    (result, CURRENT.take())
+}
+
+/// What follows belongs to section `number`, and is about `topic` where it has no name of its own.
+pub fn section(number: u32, topic: &'static str) {
+    CURRENT.with_borrow_mut(|graph| {
+        graph.section = number;
+        graph.topic = topic;
+    });
+}
+
+impl Graph {
+    /// The node that computes `operation`, made where there is none yet.
+    pub(super) fn node(&mut self, operation: Operation) -> u32 {
+        if let Some(&known) = self.known.get(&operation) {
+            return known;
+        }
+        let number = u32::try_from(self.nodes.len()).unwrap_or(u32::MAX);
+        self.nodes.push(Node {
+            operation: operation.clone(),
+            section: self.section,
+            topic: self.topic,
+            label: self.topic.to_owned(),
+        });
+        self.known.insert(operation, number);
+        number
+    }
+
+    /// How often each node is read by what `outputs` need, and 0 for what they do not need.
+    pub fn uses(&self, outputs: &[Value]) -> Vec<u32> {
+        let mut uses = vec![0; self.nodes.len()];
+        for output in outputs {
+            uses[output.node as usize] += 1;
+        }
+        for (number, node) in self.nodes.iter().enumerate().rev() {
+            if uses[number] > 0 {
+                for operand in node.operation.operands() {
+                    uses[operand as usize] += 1;
+                }
+            }
+        }
+        uses
+    }
+}

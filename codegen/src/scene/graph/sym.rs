@@ -1,0 +1,276 @@
+//! Arithmetic on the graph under construction: an operation is folded or becomes a node.
+
+use super::{Argument, CURRENT, Graph, Operation, Value};
+use crate::expr::Function;
+use num_traits::{One, Zero};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A scalar: a number that is known, or a node of the graph with a sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sym {
+    /// A number.
+    Number(f64),
+    /// A node, or its opposite.
+    Node(Value),
+}
+
+impl Sym {
+    /// A scalar of an argument.
+    pub fn input(argument: Argument, index: usize) -> Self {
+        let index = u32::try_from(index).unwrap_or(u32::MAX);
+        make(Operation::Input(argument, index))
+    }
+
+    /// The number, if it is one.
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::Number(value) => Some(value),
+            Self::Node(_) => None,
+        }
+    }
+
+    /// Whether it is known to be ±1.
+    pub fn is_unit(self) -> bool {
+        self.number().is_some_and(|value| value.abs() == 1.0)
+    }
+
+    /// The same, called `label` where it is written.
+    #[must_use]
+    pub fn named(self, label: &str) -> Self {
+        if let Self::Node(value) = self {
+            CURRENT.with_borrow_mut(|graph| {
+                let section = graph.section;
+                let node = &mut graph.nodes[value.node as usize];
+                if node.section == section && !matches!(node.operation, Operation::Input(..)) {
+                    label.clone_into(&mut node.label);
+                }
+            });
+        }
+        self
+    }
+
+    /// The handle on the graph: numbers become nodes of it.
+    pub fn value(self) -> Value {
+        CURRENT.with_borrow_mut(|graph| value(graph, self))
+    }
+
+    /// The square root.
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        call(Function::Sqrt, self)
+    }
+}
+
+/// A number as a node with a sign.
+fn value(graph: &mut Graph, sym: Sym) -> Value {
+    match sym {
+        Sym::Node(value) => value,
+        Sym::Number(number) => Value {
+            node: graph.node(Operation::Constant(number.abs().to_bits())),
+            negative: number.is_sign_negative() && number != 0.0,
+        },
+    }
+}
+
+fn make(operation: Operation) -> Sym {
+    CURRENT.with_borrow_mut(|graph| {
+        Sym::Node(Value {
+            node: graph.node(operation),
+            negative: false,
+        })
+    })
+}
+
+/// A function of one argument. Sines are odd, cosines even.
+pub fn call(function: Function, argument: Sym) -> Sym {
+    if let Some(known) = argument.number().and_then(|number| known(function, number)) {
+        return Sym::Number(known);
+    }
+    let inner = argument.value();
+    let (of, flips) = match function {
+        Function::Sin => (
+            Value {
+                negative: false,
+                ..inner
+            },
+            inner.negative,
+        ),
+        Function::Cos => (
+            Value {
+                negative: false,
+                ..inner
+            },
+            false,
+        ),
+        _ => (inner, false),
+    };
+    let result = make(Operation::Call(function, of, None));
+    if flips { -result } else { result }
+}
+
+/// The value at a number, of the functions that the standard library has.
+fn known(function: Function, number: f64) -> Option<f64> {
+    match function {
+        Function::Sin => Some(number.sin()),
+        Function::Cos => Some(number.cos()),
+        Function::Exp => Some(number.exp()),
+        Function::Ln => Some(number.ln()),
+        Function::Sqrt => Some(number.sqrt()),
+        _ => None,
+    }
+}
+
+/// Sine and cosine.
+pub fn sin_cos(angle: Sym) -> (Sym, Sym) {
+    (call(Function::Sin, angle), call(Function::Cos, angle))
+}
+
+/// `atan2(y, x)`.
+pub fn atan2(y: Sym, x: Sym) -> Sym {
+    let (y, x) = (y.value(), x.value());
+    make(Operation::Call(Function::Atan2, y, Some(x)))
+}
+
+/// Two nodes in ascending order.
+fn sorted(a: u32, b: u32) -> (u32, u32) {
+    if a <= b { (a, b) } else { (b, a) }
+}
+
+fn add(a: Sym, b: Sym) -> Sym {
+    match (a, b) {
+        (Sym::Number(a), Sym::Number(b)) => Sym::Number(a + b),
+        (Sym::Number(zero), other) | (other, Sym::Number(zero)) if zero == 0.0 => other,
+        _ => CURRENT.with_borrow_mut(|graph| {
+            let (a, b) = (value(graph, a), value(graph, b));
+            add_nodes(graph, a, b)
+        }),
+    }
+}
+
+fn add_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
+    if a.node == b.node {
+        if a.negative != b.negative {
+            return Sym::Number(0.0);
+        }
+        let two = graph.node(Operation::Constant(2_f64.to_bits()));
+        return multiply_nodes(
+            graph,
+            a,
+            Value {
+                node: two,
+                negative: false,
+            },
+        );
+    }
+    let (first, second) = if a.node < b.node { (a, b) } else { (b, a) };
+    let operation = if first.negative == second.negative {
+        Operation::Sum(first.node, second.node)
+    } else {
+        Operation::Difference(first.node, second.node)
+    };
+    Sym::Node(Value {
+        node: graph.node(operation),
+        negative: first.negative,
+    })
+}
+
+fn multiply(a: Sym, b: Sym) -> Sym {
+    match (a, b) {
+        (Sym::Number(a), Sym::Number(b)) => Sym::Number(a * b),
+        (Sym::Number(number), other) | (other, Sym::Number(number)) if number == 0.0 => {
+            let _ = other;
+            Sym::Number(0.0)
+        }
+        (Sym::Number(number), other) | (other, Sym::Number(number)) if number == 1.0 => other,
+        (Sym::Number(number), other) | (other, Sym::Number(number)) if number == -1.0 => -other,
+        _ => CURRENT.with_borrow_mut(|graph| {
+            let (a, b) = (value(graph, a), value(graph, b));
+            multiply_nodes(graph, a, b)
+        }),
+    }
+}
+
+fn multiply_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
+    let (first, second) = sorted(a.node, b.node);
+    Sym::Node(Value {
+        node: graph.node(Operation::Product(first, second)),
+        negative: a.negative != b.negative,
+    })
+}
+
+fn divide(a: Sym, b: Sym) -> Sym {
+    match (a, b) {
+        (Sym::Number(a), Sym::Number(b)) => Sym::Number(a / b),
+        (Sym::Number(zero), _) if zero == 0.0 => a,
+        (_, Sym::Number(one)) if one == 1.0 => a,
+        (_, Sym::Number(minus)) if minus == -1.0 => -a,
+        _ => CURRENT.with_borrow_mut(|graph| {
+            let (a, b) = (value(graph, a), value(graph, b));
+            Sym::Node(Value {
+                node: graph.node(Operation::Quotient(a.node, b.node)),
+                negative: a.negative != b.negative,
+            })
+        }),
+    }
+}
+
+impl Neg for Sym {
+    type Output = Self;
+    fn neg(self) -> Self {
+        match self {
+            // Not −0: zero has no sign here.
+            Self::Number(number) if number == 0.0 => self,
+            Self::Number(number) => Self::Number(-number),
+            Self::Node(value) => Self::Node(value.opposite()),
+        }
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $method:ident $assign:ident $assign_method:ident $function:expr),*) => {$(
+        impl $operator for Sym {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                $function(self, other)
+            }
+        }
+        impl $assign for Sym {
+            fn $assign_method(&mut self, other: Self) {
+                *self = $function(*self, other);
+            }
+        }
+    )*};
+}
+operators!(
+    Add add AddAssign add_assign add,
+    Sub sub SubAssign sub_assign |a, b: Sym| add(a, -b),
+    Mul mul MulAssign mul_assign multiply,
+    Div div DivAssign div_assign divide
+);
+
+impl Zero for Sym {
+    fn zero() -> Self {
+        Self::Number(0.0)
+    }
+    fn is_zero(&self) -> bool {
+        self.number() == Some(0.0)
+    }
+}
+
+impl One for Sym {
+    fn one() -> Self {
+        Self::Number(1.0)
+    }
+}
+
+impl From<f64> for Sym {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl std::iter::Sum for Sym {
+    fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {
+        terms.fold(Self::zero(), Add::add)
+    }
+}

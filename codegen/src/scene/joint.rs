@@ -1,0 +1,151 @@
+//! The kernels of one joint of a scene, on the graph.
+
+use super::graph::{Sym, atan2, call, sin_cos};
+use super::spatial::{Mat3, Step, Twist, Vec3, simplified};
+use crate::derived::{Derived, KernelKind};
+use crate::emit::formula::{Binding, Node, Program};
+use crate::expr::{Function, Symbol};
+use num_traits::ToPrimitive;
+use std::collections::BTreeMap;
+
+/// A joint at one state.
+pub struct Joint<'a> {
+    derived: &'a Derived,
+    values: BTreeMap<Symbol, Sym>,
+}
+
+impl<'a> Joint<'a> {
+    /// The joint with numbers for its parameters, at Q and v̄.
+    pub fn new(derived: &'a Derived, parameters: &[f64], q: &[Sym], speeds: &[Sym]) -> Self {
+        let numbers = parameters.iter().map(|&number| Sym::from(number));
+        let parameters = derived.spec.parameters.iter().map(|known| &known.symbol);
+        let mut values: BTreeMap<Symbol, Sym> = parameters.cloned().zip(numbers).collect();
+        let arguments = &derived.arguments;
+        values.extend(
+            arguments
+                .configuration
+                .iter()
+                .cloned()
+                .zip(q.iter().copied()),
+        );
+        values.extend(arguments.speeds.iter().cloned().zip(speeds.iter().copied()));
+        Self { derived, values }
+    }
+
+    /// The stored scalars of the home configuration.
+    pub fn home(&self) -> Vec<Sym> {
+        self.entries(KernelKind::Home)
+    }
+
+    /// H(Q), from child to parent.
+    pub fn pose(&self) -> Vec<Step> {
+        let entries = self.entries(KernelKind::Pose);
+        let Some((rotation, translation)) = entries.split_at_checked(9) else {
+            return vec![];
+        };
+        let steps = [
+            Step::Shift(Vec3::from_iterator(translation.iter().copied())),
+            Step::rotation(&Mat3::from_row_iterator(rotation.iter().copied())),
+        ];
+        simplified(steps)
+    }
+
+    /// The columns of X^c.
+    pub fn freedoms(&self) -> Vec<Twist> {
+        let entries = self.entries(KernelKind::TwistMapChild);
+        columns(&entries, self.derived.shape.freedoms)
+    }
+
+    /// S̄ by rows, one a freedom.
+    pub fn speed_basis(&self) -> Vec<Vec<Sym>> {
+        let (freedoms, speeds) = (self.derived.shape.freedoms, self.derived.shape.speeds);
+        let entries = self.entries(KernelKind::SpeedBasis);
+        if entries.len() == freedoms * speeds {
+            return entries.chunks(speeds.max(1)).map(<[Sym]>::to_vec).collect();
+        }
+        let unit = |i: usize, j: usize| Sym::from(f64::from(u8::from(i == j)));
+        let row = |i: usize| (0..speeds).map(|j| unit(i, j)).collect();
+        (0..freedoms).map(row).collect()
+    }
+
+    /// `c = Ẋ̄^c v̄`.
+    pub fn bias_acceleration(&self) -> Twist {
+        let entries = self.entries(KernelKind::BiasAcceleration);
+        columns(&entries, 1).pop().unwrap_or_else(Twist::zero)
+    }
+
+    /// The entries of a kernel's results, row by row; none where the joint has no such kernel.
+    fn entries(&self, kind: KernelKind) -> Vec<Sym> {
+        let Some(kernel) = self.derived.kernel(kind) else {
+            return vec![];
+        };
+        let program = self.derived.program(kernel);
+        self.run(&program)
+    }
+
+    fn run(&self, program: &Program) -> Vec<Sym> {
+        let mut values = self.values.clone();
+        for binding in &program.bindings {
+            match binding {
+                Binding::Value { name, value } => {
+                    let value = evaluate(value, &values);
+                    values.insert(name.clone(), value);
+                }
+                Binding::SinCos { sin, cos, angle } => {
+                    let (sine, cosine) = sin_cos(evaluate(angle, &values));
+                    let named = [(sin, sine), (cos, cosine)];
+                    let named = named.into_iter();
+                    values.extend(named.filter_map(|(name, value)| Some((name.clone()?, value))));
+                }
+                // Finite maps alone call the runtime, and none is evaluated here.
+                Binding::Call { .. } => {}
+            }
+        }
+        let outputs = program.outputs.iter();
+        outputs.map(|output| evaluate(output, &values)).collect()
+    }
+}
+
+/// The columns of a matrix of six rows, given row by row.
+fn columns(entries: &[Sym], count: usize) -> Vec<Twist> {
+    let at = |i: usize, j: usize| {
+        entries
+            .get(i * count + j)
+            .copied()
+            .unwrap_or(Sym::Number(0.0))
+    };
+    let column = |j: usize| Twist {
+        angular: Vec3::from_fn(|i, _| at(i, j)),
+        linear: Vec3::from_fn(|i, _| at(i + 3, j)),
+    };
+    (0..count).map(column).collect()
+}
+
+fn evaluate(node: &Node, values: &BTreeMap<Symbol, Sym>) -> Sym {
+    let of = |part: &Node| evaluate(part, values);
+    match node {
+        // A rational beyond the range of doubles becomes infinite, which the check of the result finds.
+        Node::Number(value) => value.to_f64().unwrap_or(f64::INFINITY).into(),
+        Node::Pi => std::f64::consts::PI.into(),
+        Node::Symbol(symbol) => values.get(symbol).copied().unwrap_or(Sym::Number(f64::NAN)),
+        Node::Negative(inner) => -of(inner),
+        Node::Quotient(above, below) => of(above) / of(below),
+        Node::Product(factors) => factors
+            .iter()
+            .map(of)
+            .reduce(|product, factor| product * factor)
+            .unwrap_or(Sym::Number(1.0)),
+        Node::Sum(terms) => terms
+            .iter()
+            .map(|(minus, term)| if *minus { -of(term) } else { of(term) })
+            .sum(),
+        Node::Call(function, arguments) => match (function, arguments.as_slice()) {
+            (Function::Group, [inner]) => of(inner),
+            (Function::Recip, [inner]) => Sym::Number(1.0) / of(inner),
+            (Function::Pi, []) => std::f64::consts::PI.into(),
+            (Function::Atan2, [y, x]) => atan2(of(y), of(x)),
+            (function, [argument]) => call(*function, of(argument)),
+            _ => Sym::Number(f64::NAN),
+        },
+    }
+}

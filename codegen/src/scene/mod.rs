@@ -1,0 +1,35 @@
+//! The scene compiler: from one mechanism to code without loops that holds nothing it does not need.
+//!
+//! ```text
+//! SceneDescription + Derived joints
+//!    │  describe    numbers for all that does not change, or the list of what is not compiled
+//!    ▼
+//! Model
+//!    │  prune       frames that cost least; inertias that no joint feels moved to the root
+//!    ▼
+//! Link per body
+//!    │  equations   recursions on the graph: articulated bodies, composite bodies, Newton–Euler
+//!    ▼
+//! Graph             every value once; zeros, ones and signs folded; of several recursions the one with the fewest operations
+//!    │  emit        lines with telling names → Rust
+//!    ▼
+//! module
+//! ```
+//!
+//! [`Build`] is for build scripts; `hamel compile` does the same from the command line.
+
+mod build;
+mod describe;
+pub mod emit;
+pub mod equations;
+mod explain;
+pub mod functions;
+pub mod graph;
+mod joint;
+pub mod model;
+pub mod prune;
+mod spatial;
+
+pub use build::{Build, Error, scene};
+pub use describe::Refused;
+pub use explain::explain;

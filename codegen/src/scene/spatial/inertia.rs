@@ -1,0 +1,173 @@
+//! Inertias of rigid bodies, and those that mechanisms show at one of their bodies.
+
+use super::{Mat3, Step, Twist, Vec3, Wrench, apply, cross, product, symmetric, tilde};
+use crate::scene::graph::Sym;
+use num_traits::Zero;
+
+/// A rigid body's inertia about the origin of its axes: 10 parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rigid {
+    /// Mass.
+    pub mass: Sym,
+    /// Mass times position of its centre.
+    pub first: Vec3,
+    /// Moments and products of inertia.
+    pub second: Mat3,
+}
+
+impl Rigid {
+    /// The sum.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            first: self.first + other.first,
+            second: symmetric(|i, j| self.second[(i, j)] + other.second[(i, j)]),
+        }
+    }
+
+    /// The same inertia, read at the parent of a placement.
+    #[must_use]
+    pub fn to_parent(&self, steps: &[Step]) -> Self {
+        steps
+            .iter()
+            .rev()
+            .fold(self.clone(), |inertia, step| match step {
+                Step::Shift(by) => inertia.shifted(by),
+                _ => Self {
+                    mass: inertia.mass,
+                    first: step.to_parent(&inertia.first),
+                    second: step.turned(&inertia.second, true),
+                },
+            })
+    }
+
+    /// About a point from which the present one stands at `by`: `I + 2 (p·k) 1 − p kᵀ − k pᵀ` with `k = h + m p / 2`.
+    fn shifted(&self, by: &Vec3) -> Self {
+        let half = Sym::from(0.5);
+        let k = self.first + by * (self.mass * half);
+        let twice = by + by;
+        let along: Vec3 = Vec3::from_fn(|i, _| twice[i] * k[i]);
+        Self {
+            mass: self.mass,
+            first: self.first + by * self.mass,
+            second: symmetric(|i, j| {
+                let own = self.second[(i, j)];
+                match i == j {
+                    true => own + (along[(i + 1) % 3] + along[(i + 2) % 3]),
+                    false => own - (by[i] * k[j] + k[i] * by[j]),
+                }
+            }),
+        }
+    }
+
+    /// The momentum of a twist.
+    pub fn of(&self, twist: &Twist) -> Wrench {
+        Wrench {
+            moment: apply(&self.second, &twist.angular) + cross(&self.first, &twist.linear),
+            force: twist.linear * self.mass + cross(&twist.angular, &self.first),
+        }
+    }
+}
+
+/// The inertia that a mechanism shows at one of its bodies: `[A B; Bᵀ M]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Articulated {
+    /// Angular block A.
+    pub angular: Mat3,
+    /// Block B, from linear to moment.
+    pub coupling: Mat3,
+    /// Linear block M.
+    pub linear: Mat3,
+}
+
+impl Articulated {
+    /// That of a rigid body.
+    pub fn rigid(inertia: &Rigid) -> Self {
+        let zero = Sym::zero();
+        Self {
+            angular: inertia.second,
+            coupling: tilde(&inertia.first),
+            linear: symmetric(|i, j| if i == j { inertia.mass } else { zero }),
+        }
+    }
+
+    /// The sum.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            angular: symmetric(|i, j| self.angular[(i, j)] + other.angular[(i, j)]),
+            coupling: self.coupling + other.coupling,
+            linear: symmetric(|i, j| self.linear[(i, j)] + other.linear[(i, j)]),
+        }
+    }
+
+    /// An entry of the 6×6 matrix.
+    fn at(&self, i: usize, j: usize) -> Sym {
+        match (i < 3, j < 3) {
+            (true, true) => self.angular[(i, j)],
+            (true, false) => self.coupling[(i, j - 3)],
+            (false, true) => self.coupling[(j, i - 3)],
+            (false, false) => self.linear[(i - 3, j - 3)],
+        }
+    }
+
+    fn from_upper(entry: impl Fn(usize, usize) -> Sym) -> Self {
+        Self {
+            angular: symmetric(&entry),
+            coupling: Mat3::from_fn(|i, j| entry(i, j + 3)),
+            linear: symmetric(|i, j| entry(i + 3, j + 3)),
+        }
+    }
+
+    /// The wrench that an acceleration takes.
+    pub fn of(&self, twist: &Twist) -> Wrench {
+        Wrench {
+            moment: apply(&self.angular, &twist.angular) + apply(&self.coupling, &twist.linear),
+            force: apply(&self.coupling.transpose(), &twist.angular)
+                + apply(&self.linear, &twist.linear),
+        }
+    }
+
+    /// `I − y yᵀ / d`, with `scaled = y / d`; what `freedom` moves is free of inertia afterwards, exactly.
+    #[must_use]
+    pub fn without(&self, freedom: &Twist, y: &Wrench, scaled: &Wrench) -> Self {
+        let free = freedom.unit_entry();
+        let entries =
+            |w: &Wrench| -> Vec<Sym> { w.moment.iter().chain(&w.force).copied().collect() };
+        let (y, scaled) = (entries(y), entries(scaled));
+        Self::from_upper(|i, j| match free == Some(i) || free == Some(j) {
+            true => Sym::zero(),
+            false => self.at(i, j) - y[i] * scaled[j],
+        })
+    }
+
+    /// The same inertia, read at the parent of a placement.
+    #[must_use]
+    pub fn to_parent(&self, steps: &[Step]) -> Self {
+        steps
+            .iter()
+            .rev()
+            .fold(self.clone(), |inertia, step| match step {
+                Step::Shift(by) => inertia.shifted(by),
+                _ => Self {
+                    angular: step.turned(&inertia.angular, true),
+                    coupling: step.turned(&inertia.coupling, false),
+                    linear: step.turned(&inertia.linear, true),
+                },
+            })
+    }
+
+    /// `B′ = B + p~ M`, `A′ = A − B p~ + p~ B′ᵀ`.
+    fn shifted(&self, by: &Vec3) -> Self {
+        let cross = tilde(by);
+        let coupling = self.coupling + product(&cross, &self.linear);
+        let left = product(&self.coupling, &cross);
+        let right = product(&cross, &coupling.transpose());
+        Self {
+            angular: symmetric(|i, j| self.angular[(i, j)] + (right[(i, j)] - left[(i, j)])),
+            coupling,
+            linear: self.linear,
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! Equations of one mechanism that the scene compiler wrote, behind the trait [`Dynamics`].
+
+use crate::dynamics::{Dynamics, DynamicsError, Recursive};
+use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
+use alloc::string::String;
+use alloc::sync::Arc;
+use alloc::vec;
+
+/// v̄̇ from Q, v̄ and τ, into the last argument; sizes are those of [`Equations`].
+pub type ForwardDynamics = fn(&[f64], &[f64], &[f64], &mut [f64]);
+
+/// What an emitted module holds: functions of one scene. The constant `EQUATIONS` of that module.
+#[derive(Clone, Copy, Debug)]
+pub struct Equations {
+    /// Name of the scene.
+    pub scene: &'static str,
+    /// Stored scalars of Q.
+    pub configuration: usize,
+    /// Entries of τ.
+    pub freedoms: usize,
+    /// Entries of v̄.
+    pub speeds: usize,
+    /// (24), (34), where the module has it.
+    pub forward_dynamics: Option<ForwardDynamics>,
+}
+
+/// A module that does not belong to a mechanism.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CompiledError {
+    /// Sizes differ.
+    #[error(
+        "the equations compiled for `{scene}` have {found} {quantity}, the mechanism has {expected}: compile its scene again"
+    )]
+    Size {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// What differs.
+        quantity: &'static str,
+        /// Of the mechanism.
+        expected: usize,
+        /// Of the module.
+        found: usize,
+    },
+    /// Accelerations at home differ.
+    #[error(
+        "the equations compiled for `{scene}` are those of another mechanism: at home, speed `{speed}` of joint `{joint}` is \
+         accelerated by {found:e}, not {expected:e}; compile its scene again"
+    )]
+    Other {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// The joint.
+        joint: String,
+        /// The speed.
+        speed: &'static str,
+        /// By the mechanism.
+        expected: f64,
+        /// By the module.
+        found: f64,
+    },
+    /// The mechanism itself has no accelerations at home.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
+}
+
+/// How far accelerations at home may differ, relative to the largest: what conditioning leaves of doubles in the worst of tested robots
+/// is 1e-8; another mass or length shows in the leading digits.
+const AGREEMENT: f64 = 1e-6;
+
+/// Compiled equations of a mechanism: what the module does not have, the tree computes.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    equations: &'static Equations,
+    tree: Recursive,
+}
+
+impl Compiled {
+    /// The equations for `mechanism`, compared with its own at home.
+    ///
+    /// # Errors
+    /// A module of another mechanism.
+    pub fn new(
+        mechanism: Arc<Mechanism>,
+        equations: &'static Equations,
+    ) -> Result<Self, CompiledError> {
+        let layout = mechanism.layout();
+        let sizes = [
+            (
+                "stored scalars",
+                layout.configuration,
+                equations.configuration,
+            ),
+            ("freedoms", layout.freedoms, equations.freedoms),
+            ("speeds", layout.speeds, equations.speeds),
+        ];
+        for (quantity, expected, found) in sizes {
+            if expected != found {
+                return Err(CompiledError::Size {
+                    scene: equations.scene,
+                    quantity,
+                    expected,
+                    found,
+                });
+            }
+        }
+        let compiled = Self {
+            equations,
+            tree: Recursive::new(mechanism),
+        };
+        compiled.compared()
+    }
+
+    /// This, if it accelerates as the tree does at home, with speeds and efforts that differ from each other.
+    fn compared(mut self) -> Result<Self, CompiledError> {
+        let Some(forward) = self.equations.forward_dynamics else {
+            return Ok(self);
+        };
+        let mechanism = Arc::clone(self.tree.mechanism());
+        let q = mechanism.home();
+        let numbers = |count: usize| (0..count).map(|i| 0.1 + 0.01 * i as f64).collect();
+        let mut speeds: vec::Vec<f64> = numbers(self.equations.speeds);
+        let efforts: vec::Vec<f64> = numbers(self.equations.freedoms);
+        self.tree.complete_speeds(&q, &mut speeds)?;
+        let mut expected = vec![0.0; speeds.len()];
+        let mut found = expected.clone();
+        self.tree
+            .accelerations(&q, &speeds, &efforts, &mut expected)?;
+        forward(&q, &speeds, &efforts, &mut found);
+        let largest = expected
+            .iter()
+            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let differs = |(found, expected): (&f64, &f64)| {
+            // Written so that NaN differs.
+            !((found - expected).abs() <= AGREEMENT * largest)
+        };
+        match found.iter().zip(&expected).position(differs) {
+            None => Ok(self),
+            Some(place) => Err(self.other(place, expected[place], found[place])),
+        }
+    }
+
+    fn other(&self, place: usize, expected: f64, found: f64) -> CompiledError {
+        let bodies = self.tree.mechanism().bodies().iter();
+        let named = bodies
+            .filter(|body| body.ranges().speeds.contains(&place))
+            .map(|body| {
+                let own = place - body.ranges().speeds.start;
+                let speed = body.joint().speeds().get(own).copied();
+                (String::from(body.joint_name()), speed.unwrap_or_default())
+            });
+        let (joint, speed) = named.last().unwrap_or_default();
+        CompiledError::Other {
+            scene: self.equations.scene,
+            joint,
+            speed,
+            expected,
+            found,
+        }
+    }
+
+    fn check(&self, sizes: [(&'static str, usize, usize); 4]) -> Result<(), StateError> {
+        sizes
+            .into_iter()
+            .try_for_each(|(quantity, expected, found)| {
+                check_size(WHOLE, quantity, expected, found)
+            })
+    }
+}
+
+impl Dynamics for Compiled {
+    fn mechanism(&self) -> &Arc<Mechanism> {
+        self.tree.mechanism()
+    }
+
+    fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
+        self.tree.complete_speeds(q, speeds)
+    }
+
+    fn accelerations(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let Some(forward) = self.equations.forward_dynamics else {
+            return self.tree.accelerations(q, speeds, efforts, rates);
+        };
+        let Equations {
+            configuration,
+            freedoms,
+            speeds: count,
+            ..
+        } = *self.equations;
+        self.check([
+            ("configuration", configuration, q.len()),
+            ("speeds", count, speeds.len()),
+            ("efforts", freedoms, efforts.len()),
+            ("rates", count, rates.len()),
+        ])?;
+        forward(q, speeds, efforts, rates);
+        if rates.iter().all(|rate| rate.is_finite()) {
+            return Ok(());
+        }
+        // The tree says which joint it is, and why.
+        self.tree.accelerations(q, speeds, efforts, rates)
+    }
+
+    fn momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        momenta: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.tree.momenta(q, speeds, momenta)
+    }
+
+    fn speeds(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        speeds: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.tree.speeds(q, momenta, speeds)
+    }
+
+    fn momentum_rates(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &mut dyn FnMut(&[f64], &mut [f64]),
+        speeds: &mut [f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.tree.momentum_rates(q, momenta, efforts, speeds, rates)
+    }
+
+    fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
+        self.tree.hamiltonian(q, momenta)
+    }
+}

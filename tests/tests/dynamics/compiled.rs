@@ -1,0 +1,215 @@
+//! Compiled equations against the tree: every scene that gravity alone acts on, robots, and random trees of all joints; and that
+//! what a scene does not have costs nothing.
+
+use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
+use hamel::mechanism::Mechanism;
+use hamel_codegen::scene::functions::{Kind, compile};
+use hamel_codegen::scene::model::Model;
+use hamel_tests::peers::Reference;
+use hamel_tests::{compiled, random, scenes};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The least bound of relative errors that is asked for.
+const BOUND: f64 = 1e-12;
+/// Roundings of a solution with M̄ for each unit of its condition, as for the tree.
+const ROUNDINGS: f64 = 10.0;
+
+/// A state, and what the tree makes of it.
+struct Point {
+    place: String,
+    model: Model,
+    mechanism: Arc<Mechanism>,
+    q: Vec<f64>,
+    speeds: Vec<f64>,
+    inputs: Vec<f64>,
+}
+
+impl Point {
+    fn random(place: String, mechanism: &Arc<Mechanism>, seed: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let layout = *mechanism.layout();
+        Self {
+            model: compiled::model(&place, mechanism),
+            q: random::configuration(&mut random, mechanism),
+            speeds: random::numbers(&mut random, layout.speeds),
+            inputs: random::numbers(&mut random, layout.freedoms),
+            mechanism: Arc::clone(mechanism),
+            place,
+        }
+    }
+
+    fn compiled(&self, kind: Kind, inputs: &[f64]) -> Vec<f64> {
+        compiled::evaluate(&self.model, kind, &self.q, &self.speeds, inputs)
+    }
+
+    fn agrees(&self) {
+        let mut tree = Recursive::new(Arc::clone(&self.mechanism));
+        let (q, speeds) = (&self.q, &self.speeds);
+        let mut expected = vec![0.0; speeds.len()];
+        let rates = &self.inputs[..speeds.len()];
+
+        let mut mass = MassMatrix::new(&self.mechanism);
+        tree.mass_matrix(q, &mut mass).expect("sizes fit");
+        let mass = mass.matrix();
+        let rows: Vec<f64> = mass.transpose().iter().copied().collect();
+        self.close(
+            "mass matrix",
+            &self.compiled(Kind::MassMatrix, &[]),
+            &rows,
+            BOUND,
+        );
+
+        tree.inverse_dynamics(q, speeds, rates, &mut expected)
+            .expect("sizes fit");
+        self.close(
+            "inverse dynamics",
+            &self.compiled(Kind::InverseDynamics, rates),
+            &expected,
+            BOUND,
+        );
+        tree.bias_forces(q, speeds, &mut expected)
+            .expect("sizes fit");
+        self.close(
+            "bias forces",
+            &self.compiled(Kind::BiasForces, &[]),
+            &expected,
+            BOUND,
+        );
+
+        let eigenvalues = mass.symmetric_eigenvalues();
+        let condition = eigenvalues.max() / eigenvalues.min();
+        tree.accelerations(q, speeds, &self.inputs, &mut expected)
+            .expect("M̄ is regular");
+        let bound = BOUND.max(ROUNDINGS * condition * f64::EPSILON);
+        self.close(
+            "forward dynamics",
+            &self.compiled(Kind::ForwardDynamics, &self.inputs),
+            &expected,
+            bound,
+        );
+    }
+
+    fn close(&self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
+        let largest = expected
+            .iter()
+            .fold(f64::MIN_POSITIVE, |most, entry| most.max(entry.abs()));
+        let error = found.iter().zip(expected).fold(0.0_f64, |most, (a, b)| {
+            // NaN is the largest of all.
+            let error = (a - b).abs() / largest;
+            if error <= most { most } else { error }
+        });
+        assert_eq!(found.len(), expected.len());
+        assert!(
+            error <= bound,
+            "{}, {what}: {error:e} > {bound:e}",
+            self.place
+        );
+    }
+}
+
+#[test]
+fn scenes_agree() {
+    let scenes = scenes::all();
+    assert!(scenes.len() > 5, "the folder of scenes holds more");
+    for (seed, scene) in (0..).zip(scenes) {
+        Point::random(scene.name.clone(), &scene.mechanism, seed).agrees();
+    }
+}
+
+#[test]
+fn robots_agree() {
+    for name in [
+        "pendulum", "panda7", "anymal", "g1", "rev8", "ball8", "ball32",
+    ] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/robots/{name}.json"));
+        let text = std::fs::read_to_string(path).expect("a file of the project");
+        let reference = Reference::parse(&text).expect("it is sound");
+        let mechanism = reference.model.mechanism().expect("it is sound");
+        for seed in 0..3 {
+            Point::random(name.to_owned(), &mechanism, seed).agrees();
+        }
+    }
+}
+
+#[test]
+fn random_trees_agree() {
+    let kinds = random::library();
+    for case in random::cases(&kinds, 40, 200) {
+        let point = Point {
+            place: format!("seed {}", case.seed),
+            model: compiled::model("random", &case.mechanism),
+            mechanism: Arc::clone(&case.mechanism),
+            q: case.q,
+            speeds: case.speeds,
+            inputs: case.efforts,
+        };
+        point.agrees();
+    }
+}
+
+fn flops(model: &Model, kind: Kind) -> usize {
+    compile(model, kind).function.operations().flops()
+}
+
+#[test]
+fn what_a_scene_does_not_have_costs_nothing() {
+    let scene = scenes::load("plate_cart_arm");
+    let whole = compiled::model("whole", &scene.mechanism);
+    let mut floating = whole.clone();
+    floating.gravity = nalgebra::Vector3::zeros();
+    let mut damped = whole.clone();
+    for body in &mut damped.bodies {
+        body.damping = vec![0.1; body.joint.shape.freedoms];
+    }
+    let mut geared = whole.clone();
+    for body in geared
+        .bodies
+        .iter_mut()
+        .filter(|body| body.joint.spec.name.value == "revolute")
+    {
+        body.armature = vec![0.1];
+    }
+    let mut shorter = whole.clone();
+    shorter.bodies.pop();
+    for kind in [Kind::ForwardDynamics, Kind::InverseDynamics] {
+        let [whole, floating, damped, geared, shorter] =
+            [&whole, &floating, &damped, &geared, &shorter].map(|model| flops(model, kind));
+        assert!(
+            floating < whole,
+            "{kind:?}: without gravity {floating}, with {whole}"
+        );
+        assert!(
+            whole < damped,
+            "{kind:?}: without dampers {whole}, with {damped}"
+        );
+        assert!(
+            whole < geared,
+            "{kind:?}: without armature {whole}, with {geared}"
+        );
+        assert!(
+            shorter < whole,
+            "{kind:?}: without the last body {shorter}, with {whole}"
+        );
+    }
+}
+
+/// Operations counted when this was written: a change that costs more is seen.
+#[test]
+fn operations_stay_few() {
+    let counts = [
+        ("panda7", 1212, 648),
+        ("anymal", 3356, 1552),
+        ("g1", 8660, 3649),
+    ];
+    for (name, forward, inverse) in counts {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/robots/{name}.json"));
+        let text = std::fs::read_to_string(path).expect("a file of the project");
+        let reference = Reference::parse(&text).expect("it is sound");
+        let model = compiled::model(name, &reference.model.mechanism().expect("it is sound"));
+        assert!(flops(&model, Kind::ForwardDynamics) <= forward, "{name}");
+        assert!(flops(&model, Kind::InverseDynamics) <= inverse, "{name}");
+    }
+}
