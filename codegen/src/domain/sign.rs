@@ -65,11 +65,7 @@ impl Signs {
                 .clone()
                 .map(|p| (p.symbol.clone(), p.range.clone()))
                 .collect(),
-            vanishing: parameters
-                .clone()
-                .filter(|p| p.may_vanish())
-                .map(|p| p.symbol.clone())
-                .collect(),
+            vanishing: vanishing_parameters(spec),
             conditions: required
                 .chain(parameters.flat_map(|p| conditions_of(&p.symbol, &p.range)))
                 .collect(),
@@ -79,6 +75,12 @@ impl Signs {
                 .collect(),
             functions: RefCell::default(),
         }
+    }
+
+    /// Functions of the parameters that are positive.
+    pub fn positive_conditions(&self) -> impl Iterator<Item = &Expr> {
+        let strict = self.conditions.iter().filter(|(_, strict)| *strict);
+        strict.map(|(condition, _)| condition)
     }
 
     /// Whether the expression is positive wherever it is defined: a sum of terms that are not negative, one of them positive, or of which
@@ -312,6 +314,12 @@ pub fn positive_parameters(spec: &JointSpec) -> BTreeSet<Symbol> {
         .iter()
         .filter(|p| is_positive_range(&p.range) && !p.may_vanish());
     positive.map(|p| p.symbol.clone()).collect()
+}
+
+/// The parameters of which the range holds 0.
+pub fn vanishing_parameters(spec: &JointSpec) -> BTreeSet<Symbol> {
+    let vanishing = spec.parameters.iter().filter(|p| p.may_vanish());
+    vanishing.map(|p| p.symbol.clone()).collect()
 }
 
 /// A parameter that is not negative is positive: parameters are never 0.
