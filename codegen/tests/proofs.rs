@@ -80,3 +80,11 @@ fn identities_need_hold_only_where_the_joint_lives() {
     let met = claim(&joint, "speeds_meet_constraint").expect("it is claimed");
     assert!(met.residual < 1e-60);
 }
+
+/// The rate of a cam's profile is (q − 1)² + 1: no sum of its terms is of one sign, and it has no root.
+#[test]
+fn polynomials_in_one_unknown_need_no_sum_of_squares() {
+    let joint = derived(" { config q: R1; H = trans_x(q * q * q / 3 - q * q + 2 * q); }");
+    let rank = claim(&joint, "twist_map_rank").expect("it is claimed");
+    assert!(rank.detail.contains("of one sign"), "{}", rank.detail);
+}

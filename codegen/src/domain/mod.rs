@@ -6,6 +6,7 @@
 
 mod critical;
 mod factors;
+mod roots;
 mod sign;
 
 pub use self::critical::{Critical, Smooth};

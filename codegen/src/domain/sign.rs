@@ -1,6 +1,6 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
-use super::of_monomial;
+use super::{of_monomial, roots};
 use crate::expr::{
     Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget, evaluate_f64,
 };
@@ -84,9 +84,11 @@ impl Signs {
     }
 
     /// Whether the expression is positive wherever it is defined: a sum of terms that are not negative, one of them positive, or of which
-    /// the constant ones outweigh the bounds of all that may be negative.
+    /// the constant ones outweigh the bounds of all that may be negative; or a polynomial in one unknown without roots.
     pub fn is_positive(&self, expression: &Expr) -> bool {
-        self.exceeds(expression, false) || is_positive_number(expression)
+        self.exceeds(expression, false)
+            || is_positive_number(expression)
+            || roots::is_positive(expression)
     }
 
     /// Whether the expression is negative nowhere, by the same means.
