@@ -2,12 +2,13 @@
 
 use crate::derived::{Derived, Kernel, Programs};
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::domain::{Critical, Domain};
 use crate::expand::task;
 use crate::expand::{self, Expansion};
 use crate::expr::Expr;
 use crate::expr::budget::{self, Exhausted};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::model::{Declared, JointSpec, Locus};
 use crate::{prove, spec};
 use std::path::Path;
 
@@ -64,11 +65,13 @@ fn misnamed(spec: &JointSpec, file: &str) -> Option<Diagnostic> {
 fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     expand::confine(&mut spec);
     let positive = crate::domain::positive_parameters(&spec);
-    spec.manifold.value = spec.manifold.value.clone().with_positive(positive);
+    let vanishing = crate::domain::vanishing_parameters(&spec);
+    spec.manifold.value = spec.manifold.value.clone().with_signs(positive, vanishing);
     prove::retract_is_smooth(&spec).map_err(|error| vec![*error])?;
     let expansion = expand::expand(&spec)?;
     budget::begin(task::PROOF);
     let claims = prove::prove(&spec, &expansion)?;
+    name_sides(&mut spec, &expansion);
     budget::begin(task::KERNELS);
     let kernels = expand::kernels(&spec, &expansion)?;
     budget::begin(task::FORMULAS);
@@ -85,6 +88,25 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
         programs: Programs::default(),
         spec,
     })
+}
+
+/// Where functions have a value on one component of the manifold alone and nothing is excepted, its border is named like an exception: the
+/// runtime then refuses the other components.
+fn name_sides(spec: &mut JointSpec, expansion: &Expansion) {
+    if !spec.loci.is_empty() {
+        return;
+    }
+    let functions = Critical::declared(spec, expansion.exponential);
+    let sides = Domain::new(spec).sides(&functions);
+    let locus = |function: Expr| Declared {
+        span: spec.pose.span.clone(),
+        value: Locus {
+            text: format!("{function} = 0"),
+            docs: "A root, logarithm or angle has a value on the side of home alone.".into(),
+            function,
+        },
+    };
+    spec.loci = sides.into_iter().map(locus).collect();
 }
 
 /// S to first order as a product: S₀ and I + Σ S₀⁻¹ S_k ϕ_k.

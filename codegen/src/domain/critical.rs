@@ -89,6 +89,13 @@ fn whole_multiple(expression: &Expr) -> Option<Atom> {
     }
 }
 
+/// Whether the expression holds no function with a singular argument.
+fn is_defined_everywhere(expression: &Expr) -> bool {
+    let mut found = BTreeSet::new();
+    Critical::collect(expression, &[], &mut found);
+    found.is_empty()
+}
+
 /// Where a function is smooth.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Smooth {
@@ -137,7 +144,9 @@ impl Domain<'_> {
         }
         // What is not 0 keeps its sign on the component of home.
         let positive = self.is_positive(&x.substitute(&self.home));
-        let whole = self.connected && certificate.holds_on_loci();
+        // A function that is not defined on the loci may change its sign there without a zero: 1/x.
+        let passes_loci = self.loci.is_empty() || is_defined_everywhere(x);
+        let whole = self.connected && certificate.holds_on_loci() && passes_loci;
         positive.then(|| match whole {
             true => Smooth::Everywhere,
             false => Smooth::BesideHome(x.clone()),

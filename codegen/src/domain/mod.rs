@@ -5,10 +5,12 @@
 //! positive terms, or 1 as a combination of the functions and the relations.
 
 mod critical;
+mod factors;
+mod roots;
 mod sign;
 
 pub use self::critical::{Critical, Smooth};
-pub use self::sign::positive_parameters;
+pub use self::sign::{positive_parameters, vanishing_parameters};
 
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
@@ -92,12 +94,7 @@ impl<'a> Domain<'a> {
                 .map(|locus| locus.value.function.clone())
                 .collect(),
             signs: Signs::new(spec),
-            vanishing: spec
-                .parameters
-                .iter()
-                .filter(|parameter| parameter.may_vanish())
-                .map(|parameter| parameter.symbol.clone())
-                .collect(),
+            vanishing: vanishing_parameters(spec),
             home: spec.home_values(),
             connected: spec.manifold.value.declared().is_empty(),
         }
@@ -160,7 +157,9 @@ impl<'a> Domain<'a> {
             return Some(Certificate::Positive(signed.clone()));
         }
         let functions = all.len();
-        let mut generators = all.clone();
+        let conditions = || self.signs.positive_conditions();
+        let essential = |e: &Expr| factors::without(e, conditions());
+        let mut generators: Vec<Expr> = all.iter().map(essential).collect();
         let under_root = |e: &Expr| under_root(e).filter(|_| self.has_unit_factor(e));
         let under_roots: Vec<Expr> = expressions.iter().filter_map(under_root).collect();
         generators.extend(under_roots.iter().cloned());
@@ -169,11 +168,16 @@ impl<'a> Domain<'a> {
             generators.extend(self.signs.zero_terms(e).into_iter().flatten());
         }
         let found = |except| Some(Certificate::NoCommonZero { functions, except });
-        if functions > 0 && self.ideal.has_no_zero_with(&generators, &self.vanishing) {
+        let has_no_zero = |generators: &[Expr]| {
+            let has_sign = |e: &Expr| of_one_sign(&e);
+            let ideal = self.ideal;
+            ideal.has_no_zero_with(generators, &self.vanishing, has_sign)
+        };
+        if functions > 0 && has_no_zero(&generators) {
             return found(false);
         }
         generators.extend(self.loci.iter().enumerate().map(away_from));
-        match !self.loci.is_empty() && self.ideal.has_no_zero_with(&generators, &self.vanishing) {
+        match !self.loci.is_empty() && has_no_zero(&generators) {
             true => found(true),
             false => None,
         }

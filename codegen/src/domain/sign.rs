@@ -1,6 +1,6 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
-use super::of_monomial;
+use super::{of_monomial, roots};
 use crate::expr::{
     Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget, evaluate_f64,
 };
@@ -65,11 +65,7 @@ impl Signs {
                 .clone()
                 .map(|p| (p.symbol.clone(), p.range.clone()))
                 .collect(),
-            vanishing: parameters
-                .clone()
-                .filter(|p| p.may_vanish())
-                .map(|p| p.symbol.clone())
-                .collect(),
+            vanishing: vanishing_parameters(spec),
             conditions: required
                 .chain(parameters.flat_map(|p| conditions_of(&p.symbol, &p.range)))
                 .collect(),
@@ -81,10 +77,18 @@ impl Signs {
         }
     }
 
+    /// Functions of the parameters that are positive.
+    pub fn positive_conditions(&self) -> impl Iterator<Item = &Expr> {
+        let strict = self.conditions.iter().filter(|(_, strict)| *strict);
+        strict.map(|(condition, _)| condition)
+    }
+
     /// Whether the expression is positive wherever it is defined: a sum of terms that are not negative, one of them positive, or of which
-    /// the constant ones outweigh the bounds of all that may be negative.
+    /// the constant ones outweigh the bounds of all that may be negative; or a polynomial in one unknown without roots.
     pub fn is_positive(&self, expression: &Expr) -> bool {
-        self.exceeds(expression, false) || is_positive_number(expression)
+        self.exceeds(expression, false)
+            || is_positive_number(expression)
+            || roots::is_positive(expression)
     }
 
     /// Whether the expression is negative nowhere, by the same means.
@@ -312,6 +316,12 @@ pub fn positive_parameters(spec: &JointSpec) -> BTreeSet<Symbol> {
         .iter()
         .filter(|p| is_positive_range(&p.range) && !p.may_vanish());
     positive.map(|p| p.symbol.clone()).collect()
+}
+
+/// The parameters of which the range holds 0.
+pub fn vanishing_parameters(spec: &JointSpec) -> BTreeSet<Symbol> {
+    let vanishing = spec.parameters.iter().filter(|p| p.may_vanish());
+    vanishing.map(|p| p.symbol.clone()).collect()
 }
 
 /// A parameter that is not negative is positive: parameters are never 0.

@@ -46,7 +46,7 @@ pub fn complement(columns: &Matrix, domain: &Domain<'_>) -> Result<Matrix, NoCom
 }
 
 /// Rows and columns in connected parts: two rows belong together where a column has entries in both.
-fn parts(m: &Matrix) -> Vec<(Vec<usize>, Vec<usize>)> {
+pub(super) fn parts(m: &Matrix) -> Vec<(Vec<usize>, Vec<usize>)> {
     let mut part: Vec<usize> = (0..m.rows()).collect();
     for j in 0..m.columns() {
         let rows: Vec<usize> = (0..m.rows()).filter(|&i| !m.at(i, j).is_zero()).collect();

@@ -4,6 +4,7 @@
 
 mod complement;
 pub(crate) mod dimension;
+mod directions;
 mod finite;
 mod general;
 mod hamel;

@@ -136,6 +136,11 @@ impl Motion {
         &self.first[k]
     }
 
+    /// δ_kl, the second derivative of Φ along ϕ_k and ϕ_l.
+    pub fn curvature(&self, k: usize, l: usize) -> &[Expr] {
+        &self.second[k][l]
+    }
+
     /// ∂/∂ϕ_k at ϕ = 0 of a function of Q.
     pub fn along(&self, function: &Expr, k: usize) -> Expr {
         function.along(&|symbol| self.rate(symbol, &self.first[k]))

@@ -1,9 +1,9 @@
 //! The paper's step: J, X and S to first order in ϕ, (23).
 
 use super::motion::Motion;
-use super::rank;
+use super::{directions, rank};
 use crate::domain::Domain;
-use crate::expr::Expr;
+use crate::expr::{Expr, budget};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::PoseExpr;
@@ -183,9 +183,22 @@ impl Solver<'_, '_> {
         if rests.iter().all(Matrix::is_zero) {
             return Some(vec![base.minus(base); rests.len()]);
         }
-        let inverse = self.left_inverse()?.matrix;
-        let solved = |rest: &Matrix| self.domain.ideal().normal_forms(&inverse.times(rest));
-        Some(rests.iter().map(solved).collect())
+        let solve = |inverse: &Matrix, right: &[Matrix]| {
+            let solved = |rest| self.domain.ideal().normal_forms(&inverse.times(rest));
+            right.iter().map(solved).collect()
+        };
+        if let Some(inverse) = self.short_left_inverse() {
+            return Some(solve(&inverse.matrix, &rests));
+        }
+        let whole = || pseudo_inverse(self.twist_map, self.domain.ideal(), LONGEST_GRAM);
+        if let Some(inverse) = budget::scope(GRAM_LIMIT, whole).ok().flatten() {
+            return Some(solve(&inverse, &rests));
+        }
+        // The same in stored scalars, where H does not come in: `Σ_j δ_j (S_l)_ji = δ_li − ∂δ_i/∂ϕ_l`.
+        if let Some(inverse) = directions::left_inverse(self.motion, self.domain) {
+            return Some(solve(&inverse, &directions::bends(self.motion)));
+        }
+        Some(solve(&self.left_inverse()?.matrix, &rests))
     }
 
     /// `J_l − X_l S₀`.
@@ -200,6 +213,13 @@ impl Solver<'_, '_> {
     /// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
     /// constant of one term; from rows whose determinant is short and never 0; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
     fn left_inverse(&self) -> Option<LeftInverse> {
+        let whole = || pseudo_inverse(self.twist_map, self.domain.ideal(), usize::MAX);
+        let short = self.short_left_inverse();
+        short.or_else(|| whole().map(LeftInverse::of_twist_map))
+    }
+
+    /// Any of these but the last.
+    fn short_left_inverse(&self) -> Option<LeftInverse> {
         let constant = |determinant: &Expr| self.domain.is_unit(determinant);
         let short = |determinant: &Expr| {
             determinant.terms().len() <= LONGEST_PIVOT && self.domain.nonzero(determinant).is_some()
@@ -215,9 +235,7 @@ impl Solver<'_, '_> {
         let plain = plain.map(LeftInverse::of_twist_map);
         plain.or_else(|| self.by_rates(&constant)).or_else(|| {
             let divided = in_child(&short).or_else(|| in_parent(&short));
-            divided
-                .or_else(|| pseudo_inverse(self.twist_map, self.domain.ideal()))
-                .map(LeftInverse::of_twist_map)
+            divided.map(LeftInverse::of_twist_map)
         })
     }
 
@@ -260,10 +278,20 @@ impl Solver<'_, '_> {
 /// Most terms of a determinant that is divided by, rather than by that of XᵀX.
 const LONGEST_PIVOT: usize = 2;
 
-fn pseudo_inverse(m: &Matrix, ideal: &Ideal) -> Option<Matrix> {
+/// Most terms of det(XᵀX) that is divided by where directions of Φ would do instead.
+const LONGEST_GRAM: usize = 6;
+/// Most term operations for finding that out.
+const GRAM_LIMIT: u64 = 100_000;
+
+/// `(MᵀM)⁻¹Mᵀ`; `None` where det(MᵀM) vanishes, or has more terms than that.
+fn pseudo_inverse(m: &Matrix, ideal: &Ideal, longest: usize) -> Option<Matrix> {
     let simplify = |e: &Expr| ideal.normal_form(e);
     let gram = ideal.normal_forms(&m.transpose().times(m));
-    let inverse = gram.determinant(&simplify).recip()?;
+    let determinant = gram.determinant(&simplify);
+    let inverse = determinant.recip()?;
+    if determinant.terms().len() > longest {
+        return None;
+    }
     Some(
         gram.adjugate(&simplify)
             .times(&m.transpose())

@@ -26,6 +26,8 @@ pub struct Ideal {
     own: Arc<Reduction>,
     /// Parameters that are positive, so that the root of their square is the parameter itself.
     positive: BTreeSet<Symbol>,
+    /// Parameters that may be 0, by which nothing is divided.
+    vanishing: BTreeSet<Symbol>,
     /// Bases extended by the relations of the functions that an expression holds, by those functions.
     extended: RefCell<BTreeMap<BTreeSet<Atom>, Arc<Reduction>>>,
     /// Functions with their arguments in normal form.
@@ -63,10 +65,11 @@ impl Ideal {
         }
     }
 
-    /// The same ideal where these parameters are known to be positive.
+    /// The same ideal where these parameters are known to be positive, and those may be 0.
     #[must_use]
-    pub fn with_positive(mut self, parameters: BTreeSet<Symbol>) -> Self {
-        self.positive = parameters;
+    pub fn with_signs(mut self, positive: BTreeSet<Symbol>, vanishing: BTreeSet<Symbol>) -> Self {
+        self.positive = positive;
+        self.vanishing = vanishing;
         self.extended = RefCell::default();
         self.settled = RefCell::default();
         self
@@ -204,9 +207,15 @@ impl Ideal {
         matrix.map(|entry| self.simplest(entry))
     }
 
-    /// Whether the expressions have no common zero on the manifold, shown by 1 being among the combinations of their numerators. Nothing is
-    /// divided by the `vanishing` parameters, so that this holds where they are 0, too.
-    pub fn has_no_zero_with(&self, expressions: &[Expr], vanishing: &BTreeSet<Symbol>) -> bool {
+    /// Whether the expressions have no common zero on the manifold, shown by 1, or a function of parameters of which `is_nonzero` says
+    /// that it is never 0, being among the combinations of their numerators. Nothing is divided by the `vanishing` parameters, so that
+    /// this holds where they are 0, too.
+    pub fn has_no_zero_with(
+        &self,
+        expressions: &[Expr],
+        vanishing: &BTreeSet<Symbol>,
+        is_nonzero: impl Fn(&Expr) -> bool,
+    ) -> bool {
         let numerators: Vec<Expr> = expressions.iter().map(|e| self.numerator(e)).collect();
         let numerators = angles::unified_all(&numerators);
         let functions: BTreeSet<Atom> = numerators
@@ -221,7 +230,9 @@ impl Ideal {
             .chain(&all)
             .all(|e| e.symbols().is_disjoint(vanishing))
         {
-            return self.own.with(&all).is_trivial();
+            let reduction = self.own.with(&all, &[], &BTreeSet::new());
+            let mut of_parameters = reduction.relations().into_iter().filter(Expr::is_constant);
+            return reduction.is_trivial() || of_parameters.any(|e| is_nonzero(&e));
         }
         let undivided = own
             .into_iter()
@@ -241,12 +252,9 @@ impl Ideal {
 
     /// Sines and roots complete the basis; quotients only rewrite, since their completion grows.
     fn extend(&self, functions: BTreeSet<Atom>) -> Arc<Reduction> {
-        let mut reduction = self.own.with(&relations_of(&functions, |function| {
-            function != Function::Recip
-        }));
-        reduction.add_rules(&relations_of(&functions, |function| {
-            function == Function::Recip
-        }));
+        let relations = relations_of(&functions, |function| function != Function::Recip);
+        let rules = relations_of(&functions, |function| function == Function::Recip);
+        let reduction = self.own.with(&relations, &rules, &self.vanishing);
         let reduction = Arc::new(reduction);
         if !budget::is_exhausted() {
             let mut extended = self.extended.borrow_mut();

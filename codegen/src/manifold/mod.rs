@@ -58,10 +58,10 @@ impl Manifold {
         }
     }
 
-    /// The same manifold where these parameters are known to be positive.
+    /// The same manifold where these parameters are known to be positive, and those may be 0.
     #[must_use]
-    pub fn with_positive(mut self, parameters: BTreeSet<Symbol>) -> Self {
-        self.ideal = self.ideal.with_positive(parameters);
+    pub fn with_signs(mut self, positive: BTreeSet<Symbol>, vanishing: BTreeSet<Symbol>) -> Self {
+        self.ideal = self.ideal.with_signs(positive, vanishing);
         self
     }
 

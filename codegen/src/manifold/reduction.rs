@@ -2,6 +2,7 @@
 //!
 //! Parameters belong to the field of coefficients: that keeps bases small. A relation whose leading coefficient is a sum of
 //! parameters (`q / (a + b)`, say) cannot be solved there; all parameters then become indeterminates, each beside its inverse.
+//! Those of which the range holds 0 have none: where they occur they are indeterminates, so that nothing is divided by them.
 
 use super::groebner::{self, NotMonic};
 use crate::expr::{Atom, Expr, Monomial, Role, Symbol};
@@ -13,53 +14,97 @@ pub struct Reduction {
     basis: Vec<Expr>,
     /// Further relations that hold, not completed.
     rules: Vec<Expr>,
-    /// The parameters that are indeterminates here, each with its stand-in and that of its inverse.
-    freed: Vec<(Atom, Symbol, Symbol)>,
+    /// The parameters that are indeterminates here.
+    freed: Vec<Freed>,
+}
+
+/// A parameter as an indeterminate.
+#[derive(Clone, Debug)]
+struct Freed {
+    unit: Atom,
+    stand_in: Symbol,
+    /// That of its inverse; none where the parameter may be 0.
+    inverse: Option<Symbol>,
 }
 
 impl Reduction {
     /// The basis of the ideal of the relations.
     pub fn new(relations: &[Expr]) -> Self {
-        Self::of(groebner::groebner_basis(relations), relations)
+        let basis = groebner::groebner_basis(relations);
+        Self::of(basis, relations, vec![], &BTreeSet::new())
     }
 
-    /// The basis of the ideal of this basis and further relations.
-    pub fn with(&self, relations: &[Expr]) -> Self {
-        let all = [&self.basis[..], relations].concat();
-        match self.freed.is_empty() {
-            true => Self::of(groebner::extended(&self.basis, relations), &all),
-            false => {
-                let own: Vec<Expr> = self.basis.iter().map(|e| self.bound(e)).collect();
-                Self::with_free_parameters(&[&own[..], relations].concat())
-            }
-        }
+    /// The basis of the ideal of this basis and further relations; and rules by which to rewrite, without completing them to a
+    /// basis. Nothing is divided by the `vanishing` parameters.
+    pub fn with(&self, relations: &[Expr], rules: &[Expr], vanishing: &BTreeSet<Symbol>) -> Self {
+        let own = self.relations();
+        let held = |symbol: &&Symbol| {
+            let mut all = own.iter().chain(relations).chain(rules);
+            all.any(|e| e.symbols().contains(*symbol))
+        };
+        let held = vanishing.iter().filter(held).cloned().map(Atom::Symbol);
+        let held: Vec<Atom> = held.collect();
+        let all = [&own[..], relations].concat();
+        let mut reduction = match self.freed.is_empty() {
+            true => Self::with_freed(&own, relations, held, vanishing),
+            false => Self::with_free_parameters(&all, held, vanishing),
+        };
+        let freed = &reduction.freed;
+        let rules = rules.iter().map(|rule| freely(rule, freed));
+        reduction.rules = rules.filter_map(|rule| groebner::rule(&rule)).collect();
+        reduction
     }
 
-    /// Adds rules by which to rewrite, without completing them to a basis.
-    pub fn add_rules(&mut self, relations: &[Expr]) {
-        let rules = relations
-            .iter()
-            .filter_map(|relation| groebner::rule(&freely(relation, &self.freed)));
-        self.rules.extend(rules);
+    /// The basis of a basis and further relations, with those parameters as indeterminates.
+    fn with_freed(
+        own: &[Expr],
+        relations: &[Expr],
+        units: Vec<Atom>,
+        vanishing: &BTreeSet<Symbol>,
+    ) -> Self {
+        let of_own = |unit: &Atom| own.iter().any(|e| units_of(e).contains(unit));
+        let is_basis = !units.iter().any(of_own);
+        let freed = freed(units, vanishing);
+        let free = |all: &[Expr]| all.iter().map(|e| freely(e, &freed)).collect::<Vec<_>>();
+        let all = [own, relations].concat();
+        let basis = match is_basis {
+            true => groebner::extended(own, &free(relations)),
+            false => groebner::groebner_basis(&free(&all)),
+        };
+        Self::of(basis, &all, freed, vanishing)
     }
 
-    fn of(basis: Result<Vec<Expr>, NotMonic>, relations: &[Expr]) -> Self {
+    fn of(
+        basis: Result<Vec<Expr>, NotMonic>,
+        relations: &[Expr],
+        freed: Vec<Freed>,
+        vanishing: &BTreeSet<Symbol>,
+    ) -> Self {
         match basis {
             Ok(basis) => Self {
                 basis,
                 rules: vec![],
-                freed: vec![],
+                freed,
             },
-            Err(NotMonic { .. }) => Self::with_free_parameters(relations),
+            Err(NotMonic { .. }) => {
+                let units = freed.into_iter().map(|freed| freed.unit).collect();
+                Self::with_free_parameters(relations, units, vanishing)
+            }
         }
     }
 
-    fn with_free_parameters(relations: &[Expr]) -> Self {
-        let units: BTreeSet<Atom> = relations.iter().flat_map(units_of).collect();
-        let freed: Vec<(Atom, Symbol, Symbol)> =
-            units.into_iter().enumerate().map(stand_ins).collect();
-        let inverses = freed.iter().map(|(_, symbol, inverse)| {
-            &(&Expr::symbol(symbol) * &Expr::symbol(inverse)) - &Expr::one()
+    /// The basis with all parameters in the relations, and those `units`, as indeterminates.
+    fn with_free_parameters(
+        relations: &[Expr],
+        units: Vec<Atom>,
+        vanishing: &BTreeSet<Symbol>,
+    ) -> Self {
+        let named = relations.iter().flat_map(units_of);
+        let units: BTreeSet<Atom> = named.chain(units).collect();
+        let freed = freed(units, vanishing);
+        let inverses = freed.iter().filter_map(|unit| {
+            let product = &Expr::symbol(&unit.stand_in) * &Expr::symbol(unit.inverse.as_ref()?);
+            Some(&product - &Expr::one())
         });
         let mut all: Vec<Expr> = inverses.collect();
         all.extend(relations.iter().map(|relation| freely(relation, &freed)));
@@ -94,10 +139,14 @@ impl Reduction {
 
     /// The expression with the freed parameters as parameters again.
     fn bound(&self, expression: &Expr) -> Expr {
-        let values = self.freed.iter().flat_map(|(unit, symbol, inverse)| {
-            let value = Expr::atom(unit.clone());
+        if self.freed.is_empty() {
+            return expression.clone();
+        }
+        let values = self.freed.iter().flat_map(|freed| {
+            let value = Expr::atom(freed.unit.clone());
             let reciprocal = value.recip().unwrap_or_default();
-            [(symbol.clone(), value), (inverse.clone(), reciprocal)]
+            let inverse = freed.inverse.clone().map(|inverse| (inverse, reciprocal));
+            [(freed.stand_in.clone(), value)].into_iter().chain(inverse)
         });
         expression.substitute(&values.collect::<BTreeMap<_, _>>())
     }
@@ -115,22 +164,37 @@ fn units_of(expression: &Expr) -> BTreeSet<Atom> {
     factors.map(|(atom, _)| atom.clone()).collect()
 }
 
-fn stand_ins((index, unit): (usize, Atom)) -> (Atom, Symbol, Symbol) {
-    let symbol = |n: usize, name: &str| Symbol::new(Role::Constant, n, &format!("{name}{index}"));
-    (unit, symbol(2 * index, "p"), symbol(2 * index + 1, "r"))
+fn freed(units: impl IntoIterator<Item = Atom>, vanishing: &BTreeSet<Symbol>) -> Vec<Freed> {
+    let symbol = |n: usize, name: String| Symbol::new(Role::Constant, n, &name);
+    let stand_ins = |(index, unit): (usize, Atom)| {
+        let may_be_zero = matches!(&unit, Atom::Symbol(symbol) if vanishing.contains(symbol));
+        let inverse = (!may_be_zero).then(|| symbol(2 * index + 1, format!("r{index}")));
+        Freed {
+            unit,
+            stand_in: symbol(2 * index, format!("p{index}")),
+            inverse,
+        }
+    };
+    units.into_iter().enumerate().map(stand_ins).collect()
 }
 
 /// The expression with the freed parameters as indeterminates.
-fn freely(expression: &Expr, freed: &[(Atom, Symbol, Symbol)]) -> Expr {
+fn freely(expression: &Expr, freed: &[Freed]) -> Expr {
+    if freed.is_empty() {
+        return expression.clone();
+    }
     let term = |(monomial, coefficient): (&Monomial, &crate::expr::Rational)| {
         let (main, units) = monomial.split();
         units.units().iter().fold(
             Expr::term(coefficient.clone(), main),
             |product, (atom, power)| {
-                let stand_in = freed.iter().find(|(unit, ..)| unit == atom);
+                let freed = freed.iter().find(|freed| freed.unit == *atom);
+                let stand_in = freed.and_then(|freed| match *power < 0 {
+                    false => Some(&freed.stand_in),
+                    true => freed.inverse.as_ref(),
+                });
                 let factor = match (stand_in, *power < 0) {
-                    (Some((_, symbol, _)), false) => Expr::symbol(symbol),
-                    (Some((_, _, inverse)), true) => Expr::symbol(inverse),
+                    (Some(symbol), _) => Expr::symbol(symbol),
                     (None, false) => Expr::atom(atom.clone()),
                     (None, true) => Expr::atom(atom.clone()).recip().unwrap_or_default(),
                 };

@@ -19,13 +19,37 @@ const ROUNDING_BITS: usize = 24;
 /// Smallest value of a function of a locus: points are drawn where kernels mean something.
 const DISTANCE: f64 = 1.0 / 64.0;
 
+/// How many times as far as usual far points lie from home: beyond some turns of an angle, and on the other side of what is near home.
+const REACHES: [f64; 2] = [4.0, 16.0];
+/// Bits and steps by which a locus is looked for: far points lie beyond it, not on it.
+const ROUGH: (usize, usize) = (64, 10);
+
 /// A deterministic source of random points of one joint.
 #[derive(Clone, Debug)]
 pub struct Sampler<'a> {
     spec: &'a JointSpec,
     draw: Draw,
-    /// The relations and their derivatives by the stored scalars, row by row; empty where every factor is sampled as it is.
-    relations: Vec<(Expr, Vec<Expr>)>,
+    /// The relations, by which points are corrected; empty where every factor is sampled as it is.
+    relations: Vec<Sloped>,
+    /// What is positive wherever the joint lives.
+    sides: Vec<Expr>,
+    /// Whether points have a second configuration Q′.
+    paired: bool,
+    /// Of far points: the loci, beyond which the domain may have other components, and all relations.
+    far: Option<(Vec<Sloped>, Vec<Sloped>)>,
+}
+
+/// An expression with its derivatives by the stored scalars.
+type Sloped = (Expr, Vec<Expr>);
+
+fn sloped(spec: &JointSpec, expressions: impl IntoIterator<Item = Expr>) -> Vec<Sloped> {
+    let coordinates = spec.manifold.value.coordinates();
+    let slopes = |e: &Expr| coordinates.iter().map(|q| e.derivative(q)).collect();
+    let pairs = expressions.into_iter().map(|e| {
+        let slopes = slopes(&e);
+        (e, slopes)
+    });
+    pairs.collect()
 }
 
 impl<'a> Sampler<'a> {
@@ -36,22 +60,41 @@ impl<'a> Sampler<'a> {
             true => vec![],
             false => manifold.relations(),
         };
-        let coordinates = manifold.coordinates();
-        let with_slopes = |relation: Expr| {
-            let slopes = coordinates
-                .iter()
-                .map(|coordinate| relation.derivative(coordinate))
-                .collect();
-            (relation, slopes)
-        };
         Self {
             spec,
             draw: Draw {
                 random: ChaCha8Rng::seed_from_u64(1),
                 bits,
+                reach: 1.0,
             },
-            relations: relations.into_iter().map(with_slopes).collect(),
+            relations: sloped(spec, relations),
+            sides: vec![],
+            paired: true,
+            far: None,
         }
+    }
+
+    /// The same where these functions are positive.
+    #[must_use]
+    pub fn beside(self, sides: Vec<Expr>) -> Self {
+        Self { sides, ..self }
+    }
+
+    /// The same without a second configuration Q′.
+    #[must_use]
+    pub fn single(self) -> Self {
+        let paired = false;
+        Self { paired, ..self }
+    }
+
+    /// Points far from home, every other one beside a locus: the components of the domain are not left out that lie beyond.
+    #[must_use]
+    pub fn far(self) -> Self {
+        let loci = self.spec.loci.iter().map(|l| l.value.function.clone());
+        let loci = sloped(self.spec, loci);
+        let all = sloped(self.spec, self.spec.manifold.value.relations());
+        let far = Some((loci, all));
+        Self { far, ..self }
     }
 
     /// The next point; `None` where none was found that keeps every range, requirement, relation and locus.
@@ -60,6 +103,9 @@ impl<'a> Sampler<'a> {
     }
 
     fn attempt(&mut self) -> Option<Point> {
+        if self.far.is_some() {
+            self.draw.reach = REACHES[self.index(REACHES.len())];
+        }
         let mut point = Point::new(self.draw.random.next_u64(), self.draw.bits);
         for parameter in &self.spec.parameters {
             point.bind(&parameter.symbol, self.draw.parameter(&parameter.range));
@@ -75,11 +121,18 @@ impl<'a> Sampler<'a> {
             .into_iter()
             .flat_map(|factor| factor.coordinates)
             .collect();
-        let second = self.configuration(&point, &coordinates)?;
+        if self.paired {
+            let second = self.configuration(&point, &coordinates)?;
+            bind_all(&mut point, &target, second);
+        }
         let first = self.configuration(&point, &coordinates)?;
-        bind_all(&mut point, &target, second);
         bind_all(&mut point, &coordinates, first);
         Some(point)
+    }
+
+    /// A random place among `count`.
+    fn index(&mut self, count: usize) -> usize {
+        self.draw.random.next_u32() as usize % count.max(1)
     }
 
     /// A configuration on the manifold and away from the loci.
@@ -95,10 +148,15 @@ impl<'a> Sampler<'a> {
             let home = self.home(point);
             let start = self.draw.near(&home, REACH);
             bind_all(&mut at, coordinates, start);
-            self.to_manifold(&mut at, coordinates)?;
+            to_zero(&mut at, coordinates, &self.relations)?;
+        }
+        if self.far.is_some() && self.index(2) == 1 {
+            self.cross(&mut at, coordinates)?;
         }
         let far = |function: &Expr| at.evaluate(function).to_f64().abs() > DISTANCE;
-        let allowed = self.spec.loci.iter().all(|l| far(&l.value.function));
+        let mut loci = self.spec.loci.iter().map(|locus| &locus.value.function);
+        let lives = |side: &Expr| at.evaluate(side).to_f64() > 0.0;
+        let allowed = loci.all(far) && self.sides.iter().all(lives);
         let values: Vec<Precise> = coordinates.iter().map(|c| at.value(c)).collect();
         (allowed && values.iter().all(Precise::is_finite)).then_some(values)
     }
@@ -109,30 +167,54 @@ impl<'a> Sampler<'a> {
         home.iter().map(|entry| point.evaluate(entry)).collect()
     }
 
-    /// Newton's method with the shortest step that solves the linearised relations.
-    fn to_manifold(&self, at: &mut Point, coordinates: &[Symbol]) -> Option<()> {
-        for _ in 0..NEWTON_STEPS {
-            let values: Vec<(Precise, f64)> = self
-                .relations
-                .iter()
-                .map(|(relation, _)| at.evaluate_with_scale(relation))
-                .collect();
-            if values.iter().all(|value| is_met(value, at.bits())) {
-                return Some(());
-            }
-            let rows: Vec<Vec<Precise>> = self
-                .relations
-                .iter()
-                .map(|(_, slopes)| slopes.iter().map(|slope| at.evaluate(slope)).collect())
-                .collect();
-            let right: Vec<Precise> = values.iter().map(|(value, _)| -value).collect();
-            let step = shortest_solution(&rows, &right);
-            for (coordinate, change) in coordinates.iter().zip(step) {
-                let moved = at.value(coordinate) + change;
-                at.bind(coordinate, moved);
-            }
+    /// Goes from a far point to some locus, and from there as far as points lie from home, to either side.
+    fn cross(&mut self, at: &mut Point, coordinates: &[Symbol]) -> Option<()> {
+        let Some((loci, relations)) = self.far.clone() else {
+            return Some(());
+        };
+        let chosen = self.index(loci.len());
+        let Some(locus) = loci.get(chosen) else {
+            return Some(());
+        };
+        let (bits, steps) = ROUGH;
+        let mut rough = Point::new(0, bits);
+        let parameters = self.spec.parameters.iter().map(|p| &p.symbol);
+        for symbol in coordinates.iter().chain(parameters) {
+            rough.bind(symbol, Precise::from_f64(at.value(symbol).to_f64(), bits));
         }
-        None
+        let all = [&relations[..], std::slice::from_ref(locus)].concat();
+        (0..steps).for_each(|_| newton_step(&mut rough, coordinates, &all));
+        let found: Vec<Precise> = coordinates
+            .iter()
+            .map(|q| Precise::from_f64(rough.value(q).to_f64(), self.draw.bits))
+            .collect();
+        let reach = std::mem::replace(&mut self.draw.reach, 1.0);
+        bind_all(at, coordinates, self.draw.near(&found, REACH));
+        self.draw.reach = reach;
+        to_zero(at, coordinates, &relations)
+    }
+}
+
+/// Newton's method with the shortest step that solves the linearised equations.
+fn to_zero(at: &mut Point, coordinates: &[Symbol], equations: &[Sloped]) -> Option<()> {
+    for _ in 0..NEWTON_STEPS {
+        let mut values = equations.iter().map(|(e, _)| at.evaluate_with_scale(e));
+        if values.all(|value| is_met(&value, at.bits())) {
+            return Some(());
+        }
+        newton_step(at, coordinates, equations);
+    }
+    None
+}
+
+fn newton_step(at: &mut Point, coordinates: &[Symbol], equations: &[Sloped]) {
+    let right: Vec<Precise> = equations.iter().map(|(e, _)| -&at.evaluate(e)).collect();
+    let slopes = |(_, slopes): &Sloped| slopes.iter().map(|s| at.evaluate(s)).collect();
+    let rows: Vec<Vec<Precise>> = equations.iter().map(slopes).collect();
+    let step = shortest_solution(&rows, &right);
+    for (coordinate, change) in coordinates.iter().zip(step) {
+        let moved = at.value(coordinate) + change;
+        at.bind(coordinate, moved);
     }
 }
 

@@ -17,6 +17,8 @@ const LARGEST: f64 = 2.0;
 pub(super) struct Draw {
     pub random: ChaCha8Rng,
     pub bits: usize,
+    /// How many times as far as usual real coordinates and parameters without an end lie from 0.
+    pub reach: f64,
 }
 
 impl Draw {
@@ -40,7 +42,7 @@ impl Draw {
         let unit = Precise::integer(1, self.bits);
         let end =
             |end: &Option<crate::model::End>| end.as_ref().map(|end| unit.rational(&end.value));
-        let size = self.between(SMALLEST, LARGEST);
+        let size = self.between(SMALLEST * self.reach, LARGEST * self.reach);
         match (end(&range.lower), end(&range.upper)) {
             (None, None) => match self.random.next_u32().is_multiple_of(2) {
                 true => size,
@@ -55,7 +57,7 @@ impl Draw {
         }
     }
 
-    /// Uniform on a known compact manifold or group; real coordinates and translations within ±2.
+    /// Uniform on a known compact manifold or group; real coordinates and translations within ±2, or as many times that as `reach` says.
     pub fn element(&mut self, kind: Kind) -> Vec<Precise> {
         match kind {
             Kind::Real(size) => self.real(size),
@@ -75,15 +77,17 @@ impl Draw {
         }
     }
 
-    /// Home, with a random displacement of every scalar by at most `size`.
+    /// Home, with a random displacement of every scalar by at most `size`, times `reach`.
     pub fn near(&mut self, home: &[Precise], size: f64) -> Vec<Precise> {
+        let size = size * self.reach;
         home.iter()
             .map(|value| value + &self.between(-size, size))
             .collect()
     }
 
     fn real(&mut self, size: usize) -> Vec<Precise> {
-        (0..size).map(|_| self.between(-LARGEST, LARGEST)).collect()
+        let reach = LARGEST * self.reach;
+        (0..size).map(|_| self.between(-reach, reach)).collect()
     }
 
     /// Uniform on the unit sphere: a point of the ball, normalised.

@@ -48,7 +48,7 @@ impl Prover<'_> {
             return Err(Box::new(refusal(open, &self.spec.pose.span)));
         }
         let mut statement = self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q");
-        let sides = self.domain.sides(&declared);
+        let sides = self.sides();
         if !sides.is_empty() {
             let sides: Vec<String> = sides.iter().map(|side| format!("{side} > 0")).collect();
             statement += &format!(", on the side of home alone: where {}", sides.join(" and "));
@@ -60,6 +60,12 @@ impl Prover<'_> {
                 "quotients, roots, logarithms and angles in them: {count}; all are smooth at their arguments"
             ),
         )))
+    }
+
+    /// What is positive wherever the joint lives, beside the loci.
+    pub(super) fn sides(&self) -> Vec<Expr> {
+        let declared = Critical::declared(self.spec, self.x.exponential);
+        self.domain.sides(&declared)
     }
 
     /// Functions with a singular argument in what is derived and evaluated at a configuration.

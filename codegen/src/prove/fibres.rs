@@ -111,7 +111,7 @@ impl<'a> Fibres<'a> {
         let mut factors = self.spec.manifold.value.factors().iter();
         let factor =
             factors.find(|factor| factor.kind == Kind::S3 && factor.coordinates == rest)?;
-        if !self.gives_products(factor) {
+        if !self.gives_products(factor) || !self.is_even(rest) {
             return None;
         }
         let name = &factor.name;
@@ -168,22 +168,27 @@ impl<'a> Fibres<'a> {
         })
     }
 
-    /// H does not change where the scalars change their signs, and neither do the relations.
+    /// The scalars negated share the pose.
     fn negated(&self, rest: &[Symbol]) -> Option<(String, String)> {
+        self.is_even(rest).then(|| {
+            (
+                format!("Q and the one with {} negated share a pose", names(rest)),
+                "H is even in them; whether other Q have that pose was not decided".into(),
+            )
+        })
+    }
+
+    /// Whether H does not change where the scalars change their signs, and neither do the relations.
+    fn is_even(&self, scalars: &[Symbol]) -> bool {
         let negative = |symbol: &Symbol| (symbol.clone(), -Expr::symbol(symbol));
-        let negative: BTreeMap<Symbol, Expr> = rest.iter().map(negative).collect();
+        let negative: BTreeMap<Symbol, Expr> = scalars.iter().map(negative).collect();
         let ideal = self.domain.ideal();
         let relations = self.spec.manifold.value.relations();
         let stays = relations
             .iter()
             .all(|g| ideal.vanishes(&g.substitute(&negative)));
         let even = |entry: &Expr| ideal.vanishes(&(&entry.substitute(&negative) - entry));
-        (stays && self.entries.iter().all(even)).then(|| {
-            (
-                format!("Q and the one with {} negated share a pose", names(rest)),
-                "H is even in them; whether other Q have that pose was not decided".into(),
-            )
-        })
+        stays && self.entries.iter().all(even)
     }
 }
 
@@ -272,6 +277,14 @@ mod tests {
                 "config q: S3; basis x, y, z of so3; velocity in child; H = {r};"
             )),
             Some("q and −q have one pose: a double cover".into())
+        );
+        // H gives the products of q, and at another place q itself: (p, w p).
+        let odd = "pose(rot(q), [p, p * q.w, 0])";
+        assert_eq!(
+            statement(&format!(
+                "config q: S3, p: R1; basis x, y, z of so3; velocity in child; H = {odd};"
+            )),
+            None
         );
     }
 

@@ -25,7 +25,7 @@ use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use crate::spec::code;
-use numeric::Evaluation;
+use numeric::{Evaluation, Points};
 use std::ops::Range;
 
 /// All claims, or every one that fails.
@@ -35,6 +35,7 @@ pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         x: expansion,
         ideal: spec.manifold.value.ideal(),
         domain: Domain::new(spec),
+        points: Points::default(),
     };
     let attempts = [
         prover.is_defined(),
@@ -76,6 +77,7 @@ struct Prover<'a> {
     x: &'a Expansion,
     ideal: &'a Ideal,
     domain: Domain<'a>,
+    points: Points,
 }
 
 impl Prover<'_> {

@@ -2,22 +2,38 @@
 //!
 //! Functions that the ring does not relate (half angles beside whole ones, logarithms of products) leave a normal form that
 //! is not 0 although the value is. Polynomials in the stored scalars never come here: for them a normal form decides.
+//!
+//! Both sides are smooth, even analytic, on the whole domain: what agrees near some point agrees on all of the component of the domain
+//! in which that lies. Random points near home meet that of home; some more, far from it and beside each exception, meet the others,
+//! where an angle has made some turns or a root another sign.
 
 use super::Prover;
 use crate::expr::{Atom, Expr, Function, budget};
 use crate::matrix::Matrix;
-use crate::precise::Sampler;
+use crate::precise::{Point, Sampler};
+use std::cell::OnceCell;
+use std::collections::BTreeSet;
 
 /// Bits of the numbers.
 pub(super) const BITS: usize = 256;
 /// Random points of each claim.
 const POINTS: usize = 1000;
-/// Largest residual relative to the largest term: 200 bits agree. Rounding of some thousand operations takes less than 20 of the 256.
+/// Points far from home.
+const FAR_POINTS: usize = 100;
+/// Bits of the numbers there, where functions such as cosh are large, and their differences lose digits.
+const FAR_BITS: usize = 512;
+/// Largest scale against which a residual may be small: beside a larger term, which cancels, one of order 1 would be.
+const LARGEST_SCALE: f64 = 1e9;
+/// Terms of this size times 2⁻⁵¹² are still far below the tolerance.
+const BEYOND_BITS: f64 = 1e90;
+/// Largest residual relative to the largest term, or to a scale below that: 200 bits agree. Rounding of some thousand operations takes less than 20 of the 256.
 pub(super) const TOLERANCE: f64 = 6.2e-61;
 /// Most terms that are evaluated at each point: some 0.1 s for all points.
 const MOST_TERMS: usize = 100;
-/// What one point costs, and one term there, in term operations.
-const COST: (u64, u64) = (50, 5);
+/// What a claim costs at one point, and one term and one function there, in term operations.
+const COST: (u64, u64, u64) = (50, 5, 60);
+/// What it costs to draw a point, and each declared relation that it must meet.
+const COST_OF_POINT: (u64, u64) = (50, 100);
 
 /// What the evaluation showed.
 pub enum Evaluation {
@@ -55,23 +71,110 @@ impl Prover<'_> {
         if terms > MOST_TERMS {
             return Evaluation::Undecided;
         }
-        let cost = COST.0 + COST.1 * terms as u64;
-        let mut sampler = Sampler::new(self.spec, BITS);
-        let mut worst = 0.0_f64;
-        for _ in 0..POINTS {
-            let Some(point) = sampler.point().filter(|_| budget::spend(cost)) else {
-                return Evaluation::Undecided;
-            };
-            for entry in &open {
-                let (value, scale) = point.evaluate_with_scale(entry);
-                let value = value.to_f64().abs();
-                if value.is_nan() || value > TOLERANCE * scale {
-                    return Evaluation::Differs { value };
-                }
-                worst = worst.max(if scale > 0.0 { value / scale } else { 0.0 });
-            }
+        let Some(near) = self.points.near(self) else {
+            return Evaluation::Undecided;
+        };
+        let evaluation = evaluate_near(&open, near);
+        let Evaluation::Agrees { .. } = evaluation else {
+            return evaluation;
+        };
+        difference_afar(&open, self.points.far(self))
+            .map_or(evaluation, |value| Evaluation::Differs { value })
+    }
+}
+
+/// The random points of a joint, drawn when the first claim needs them: those of declared relations take time to find.
+#[derive(Default)]
+pub(super) struct Points {
+    near: OnceCell<Option<Vec<Point>>>,
+    far: OnceCell<Vec<Point>>,
+}
+
+impl Points {
+    /// All of them; `None` where some were not found.
+    fn near(&self, prover: &Prover<'_>) -> Option<&[Point]> {
+        let found = || {
+            let mut sampler = prover.sampler(BITS);
+            (0..POINTS).map(|_| prover.draw(&mut sampler)).collect()
+        };
+        self.near.get_or_init(found).as_deref()
+    }
+
+    /// As many as are found one after the other.
+    fn far(&self, prover: &Prover<'_>) -> &[Point] {
+        let found = || {
+            let mut sampler = prover.sampler(FAR_BITS).far();
+            let points = (0..FAR_POINTS).map_while(|_| prover.draw(&mut sampler));
+            points.collect()
+        };
+        self.far.get_or_init(found)
+    }
+}
+
+impl Prover<'_> {
+    fn sampler(&self, bits: usize) -> Sampler<'_> {
+        let sampler = Sampler::new(self.spec, bits);
+        sampler.beside(self.sides()).single()
+    }
+
+    fn draw(&self, sampler: &mut Sampler<'_>) -> Option<Point> {
+        let relations = self.spec.manifold.value.declared().len() as u64;
+        let cost = COST_OF_POINT.0 + COST_OF_POINT.1 * relations;
+        sampler.point().filter(|_| budget::spend(cost))
+    }
+}
+
+fn evaluate_near(open: &[&Expr], points: &[Point]) -> Evaluation {
+    let mut worst = 0.0_f64;
+    let cost = cost(open);
+    for point in points {
+        if !budget::spend(cost) {
+            return Evaluation::Undecided;
         }
-        Evaluation::Agrees { residual: worst }
+        for entry in open {
+            let (value, scale) = point.evaluate_with_scale(entry);
+            let (value, scale) = (value.to_f64().abs(), scale.min(LARGEST_SCALE));
+            if value.is_nan() || value > TOLERANCE * scale {
+                return Evaluation::Differs { value };
+            }
+            worst = worst.max(if scale > 0.0 { value / scale } else { 0.0 });
+        }
+    }
+    Evaluation::Agrees { residual: worst }
+}
+
+/// The value at a far point where the entries do not vanish, if there is one. Where a value is no number, or terms are too large for the
+/// bits, nothing is said.
+fn difference_afar(open: &[&Expr], points: &[Point]) -> Option<f64> {
+    let cost = cost(open);
+    let affordable = points.iter().take_while(|_| budget::spend(cost));
+    let mut values = affordable.flat_map(|point| {
+        open.iter()
+            .map(|entry| point.evaluate_with_scale(entry))
+            .filter(|(_, scale)| *scale < BEYOND_BITS)
+    });
+    values.find_map(|(value, scale)| {
+        let value = value.to_f64().abs();
+        (value > TOLERANCE * scale.min(LARGEST_SCALE)).then_some(value)
+    })
+}
+
+fn cost(open: &[&Expr]) -> u64 {
+    let terms: usize = open.iter().map(|entry| entry.terms().len()).sum();
+    let mut functions = BTreeSet::new();
+    open.iter().for_each(|e| functions_in(e, &mut functions));
+    COST.0 + COST.1 * terms as u64 + COST.2 * functions.len() as u64
+}
+
+/// The functions in an expression, those in their arguments, too.
+fn functions_in(expression: &Expr, found: &mut BTreeSet<Atom>) {
+    for atom in expression.atoms() {
+        if let Atom::Apply(application) = &atom
+            && found.insert(atom.clone())
+        {
+            let arguments = application.arguments.iter();
+            arguments.for_each(|argument| functions_in(argument, found));
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::expr::{Expr, Symbol, budget};
 use crate::matrix::Matrix;
 use crate::precise::Sampler;
 use crate::spec::code;
+use num_traits::ToPrimitive;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -158,13 +159,14 @@ impl Prover<'_> {
             for (coordinate, value) in manifold.coordinates().iter().zip(values) {
                 point.bind(coordinate, value);
             }
-            let residuals = relations.iter().map(|g| point.evaluate_with_scale(g));
-            let mut sizes = residuals.map(|(value, scale)| (value.to_f64().abs(), scale));
             // Where Φ is not defined the value is no number, and says nothing. A relation of one term has no other beside which it is small.
-            if let Some((value, _)) =
-                sizes.find(|(value, scale)| *value > TOLERANCE * scale.max(1.0))
-            {
-                return Some(value);
+            let left = relations.iter().find_map(|g| {
+                let (value, scale) = point.evaluate_with_scale(g);
+                let value = value.to_f64().abs();
+                (value > TOLERANCE * scale.max(largest_coefficient(g))).then_some(value)
+            });
+            if left.is_some() {
+                return left;
             }
         }
         None
@@ -226,6 +228,12 @@ impl Prover<'_> {
                 .help("if the joint ends there, declare it: `except … = 0;`"),
         }
     }
+}
+
+/// The size of a relation at numbers of order 1.
+fn largest_coefficient(relation: &Expr) -> f64 {
+    let sizes = relation.terms().filter_map(|(_, c)| c.abs().to_f64());
+    sizes.fold(0.0, f64::max)
 }
 
 fn leaves_at_finite(span: &Range<usize>, value: f64) -> Diagnostic {

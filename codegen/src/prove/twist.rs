@@ -164,6 +164,16 @@ impl Prover<'_> {
                 &self.where_it_holds(statement),
                 &certificate,
             ))),
+            Err(gram) if gram.is_zero() => Err(Box::new(
+                refuted(
+                    code,
+                    &span,
+                    &format!("{what} has dependent columns at every configuration"),
+                    "here",
+                )
+                .note(format!("{what} =\n{m}"))
+                .help("no column may be a combination of the others"),
+            )),
             Err(gram) => Err(Box::new(
                 refuted(
                     code,

@@ -21,6 +21,8 @@ macro_rules! law_tests {
 // Joints with exceptions, half a turn or a radius away, take smaller steps than the others.
 law_tests! {
     axle_wheel: AxleWheel::new(0.7, 0.85), HalfTurn;
+    ball_in_shell: BallInShell::new(0.85, 0.7), Entries(0.5);
+    bennett: Bennett::new(0.7, 0.85, 1.15), HalfTurn;
     bevel_torus: BevelTorus::new(0.85, 0.7, 1.0), HalfTurn;
     constant_velocity: ConstantVelocity, Entries(0.5);
     cycloid: Cycloid::new(0.7), Entries(0.5);
@@ -34,6 +36,7 @@ law_tests! {
     profile_roller: ProfileRoller::new(0.7, 0.85, 1.0), HalfTurn;
     rolling_cone: RollingCone::new(0.7), HalfTurn;
     screw_plane: ScrewPlane::new(0.7), HalfTurn;
+    slider_crank: SliderCrank::new(0.7, 0.85), HalfTurn;
     so3_about: So3About::new(0.7), HalfTurn;
     so3_norm: So3Norm::new(0.7), HalfTurn;
     so3_skew: So3Skew::new(0.7), HalfTurn;

@@ -1,0 +1,90 @@
+//! What is claimed holds on the whole domain: on both sides of exceptions, on every component, for every value of the parameters.
+
+use hamel_codegen::derived::{Claim, Derived, KernelKind};
+use hamel_codegen::expr::{Expr, evaluate_f64};
+use hamel_codegen::{derive, emit};
+
+fn derived(declared: &str) -> Derived {
+    let source = format!("hamel = 1;\njoint test{declared}");
+    derive(&source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn claim<'d>(joint: &'d Derived, name: &str) -> Option<&'d Claim> {
+    joint.claims.iter().find(|claim| claim.name == name)
+}
+
+/// The value of an expression where every scalar of Q is `at`, `gain` is 0 and everything else 1.
+fn value(expression: &Expr, joint: &Derived, at: f64) -> f64 {
+    let coordinates = &joint.arguments.configuration;
+    evaluate_f64(expression, &|symbol| match coordinates.contains(symbol) {
+        true => at,
+        false if &*symbol.name == "gain" => 0.0,
+        false => 1.0,
+    })
+}
+
+#[test]
+fn nothing_derived_is_divided_by_a_parameter_that_may_be_zero() {
+    let pose = [
+        // Solved for the power of q, the quotient and the root are what is left of it, divided by the gain.
+        "trans([q, r + q * q * q / (1 + gain * q * q), 0])",
+        "trans([q, r + q * q * q * sqrt(1 + gain * q * q * q * q), 0])",
+        "trans([q, r + q * q * sqrt(arm + gain * q * q) / (1 + gain * q * q), 0])",
+    ];
+    for pose in pose {
+        let joint = derived(&format!(
+            "(gain: 1 >= 0, arm: 1 > 0) {{ config q: R1, r: R1; H = {pose}; X = [O(3, 2); 1, 0; 0, arm; 0, 0]; }}"
+        ));
+        for kernel in joint.kernels.iter().filter(|k| k.steps.is_empty()) {
+            let entries = kernel.outputs.iter().flat_map(|output| output.entries());
+            for entry in entries {
+                let at_zero = value(entry, &joint, 0.5);
+                assert!(at_zero.is_finite(), "{:?}: {entry}", kernel.kind);
+            }
+        }
+    }
+}
+
+/// 1/x changes its sign where it is not defined.
+#[test]
+fn a_sign_may_change_at_an_exception_without_a_zero() {
+    let joint = derived(" { config q: R1; home = 1; except q = 0; H = trans_x(log(1 / q)); }");
+    let defined = claim(&joint, "defined").expect("there is a logarithm");
+    assert!(defined.statement.contains("on the side of home alone"));
+    let singularity = joint.kernels.iter();
+    let mut singularity = singularity.filter(|k| k.kind == KernelKind::Singularity);
+    let sides = &singularity.next().expect("an exception").outputs[1];
+    assert!(value(sides.at(0, 0), &joint, -1.0) < 0.0);
+    assert!(value(sides.at(0, 0), &joint, 1.0) > 0.0);
+}
+
+/// Relations may cut out several components, and nothing may be excepted: x = 0 nowhere meets x y = 1.
+#[test]
+fn components_without_a_value_are_refused_without_an_exception() {
+    let joint = derived(
+        " { config p: R2; relation p.x * p.y = 1; home = [1, 1]; local a;
+            Phi = [p.x * exp(phi.a), p.y * exp(-phi.a)]; H = trans_x(log(p.x)); }",
+    );
+    let rust = emit::rust::file(&joint, "test.joint").expect("it can be written");
+    assert!(rust.contains(r#"const SINGULARITIES: &'static [&'static str] = &["p1 = 0"];"#));
+    assert!(rust.contains("least_absolute_beside([p1], [p1])"));
+}
+
+/// log q² = 2 log q holds wherever log q has a value.
+#[test]
+fn identities_need_hold_only_where_the_joint_lives() {
+    let joint = derived(
+        " { config q: R1, r: R1; home = 1, 0; except q = 0; H = trans([q, r, 0]);
+            A = [log(q * q) - 2 * log(q); 1]; S_bar = [1; 0]; }",
+    );
+    let met = claim(&joint, "speeds_meet_constraint").expect("it is claimed");
+    assert!(met.residual < 1e-60);
+}
+
+/// The rate of a cam's profile is (q − 1)² + 1: no sum of its terms is of one sign, and it has no root.
+#[test]
+fn polynomials_in_one_unknown_need_no_sum_of_squares() {
+    let joint = derived(" { config q: R1; H = trans_x(q * q * q / 3 - q * q + 2 * q); }");
+    let rank = claim(&joint, "twist_map_rank").expect("it is claimed");
+    assert!(rank.detail.contains("of one sign"), "{}", rank.detail);
+}
