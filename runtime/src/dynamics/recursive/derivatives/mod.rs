@@ -35,6 +35,7 @@ mod acting;
 mod coriolis;
 mod coupled;
 mod energy;
+mod factor;
 mod forward;
 mod hamiltonian;
 mod inverse;
