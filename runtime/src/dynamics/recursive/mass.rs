@@ -29,6 +29,8 @@ pub struct MassMatrix {
     factors: Vec<f64>,
     /// The next speed towards the root.
     parents: Vec<Option<usize>>,
+    /// Whether speeds of different branches have entries, as in an inverse.
+    full: bool,
 }
 
 impl MassMatrix {
@@ -40,6 +42,7 @@ impl MassMatrix {
             rows: vec![0.0; size * size],
             factors: Vec::new(),
             parents: parents(mechanism),
+            full: false,
         }
         .with_factors()
     }
@@ -168,6 +171,9 @@ impl Recursive {
     /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
         self.check(q, &[("rows of the mass matrix", mass.size)])?;
+        if core::mem::take(&mut mass.full) {
+            mass.rows.fill(0.0);
+        }
         self.stand(q);
         self.compose();
         self.fill_rows(&mut mass.rows);
@@ -234,6 +240,7 @@ impl Recursive {
         self.check(q, &[("rows of the mass matrix", inverse.size)])?;
         self.weigh(q);
         self.articulate()?;
+        inverse.full = true;
         for body in 0..self.links.len() {
             for speed in self.links[body].speeds.clone() {
                 let row = speed * inverse.size;

@@ -141,21 +141,16 @@ impl Recursive {
         let size = self.momenta.len();
         for climb in &self.climbs {
             let rows = &mut rows[climb.speeds.start * size..climb.speeds.end * size];
-            match climb.speeds.len() {
-                1 => self.climb::<1>(climb, rows, size),
-                2 => self.climb::<2>(climb, rows, size),
-                3 => self.climb::<3>(climb, rows, size),
-                _ => self.climb::<LANES>(climb, rows, size),
-            }
+            self.climb(climb, rows, size);
         }
     }
 
-    /// R rows of `size` entries each.
-    #[inline(never)]
-    fn climb<const R: usize>(&self, climb: &Climb, rows: &mut [f64], size: usize) {
+    /// The rows of one climb, of `size` entries each.
+    fn climb(&self, climb: &Climb, rows: &mut [f64], size: usize) {
         let own = &climb.speeds;
         let mut rows = rows.chunks_exact_mut(size);
-        let mut rows: [&mut [f64]; R] = from_fn(|_| rows.next().unwrap_or_default());
+        // What has no row ends in none, so that vectors stay whole.
+        let mut rows: [&mut [f64]; LANES] = from_fn(|_| rows.next().unwrap_or_default());
         let mut wrenches = Wrenches::none();
         let mut body = climb.body;
         // As long as the joint has rows of its own.
@@ -172,7 +167,9 @@ impl Recursive {
             for (speed, column) in speeds.clone().zip(&self.columns[speeds]) {
                 let entries = wrenches.against(column, rung.kind.parts(speed));
                 for (row, entry) in rows.iter_mut().zip(entries) {
-                    row[speed] = entry;
+                    if let Some(place) = row.get_mut(speed) {
+                        *place = entry;
+                    }
                 }
             }
             let Some(parent) = rung.parent else {

@@ -7,7 +7,7 @@ use super::factor::Factors;
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
 use super::sweep::{LANES, Push, Sweep, Tree};
-use super::{Branch, Equations, Sensitivity, branches, in_child};
+use super::{Branch, Sensitivity, branches, in_child};
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::{Dynamics, DynamicsError};
@@ -157,10 +157,8 @@ impl Recursive {
         efforts: &[f64],
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
-        self.check_differentiable(
-            Equations::Lagrangian,
-            &[&out.by_local, &out.by_speeds, &out.by_efforts],
-        )?;
+        self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
+        self.check_coupled(out.coupled.as_ref().map_or(0, Coupled::room))?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
         if !self.mechanism.constraints().is_empty() {
             return self.differentiate_coupled((q, speeds, efforts), out);
