@@ -98,7 +98,7 @@ fn elements_do_not_allocate() {
     counts.assert_none(1);
 }
 
-/// Forward dynamics and its derivatives where constraints couple joints.
+/// Both forms and their derivatives where constraints couple joints.
 #[test]
 fn coupled_joints_do_not_allocate() {
     let mut counts = Counts::default();
@@ -120,7 +120,8 @@ fn coupled_joints_do_not_allocate() {
         let (q, tau, mut v) = (&case.q[..], &case.efforts[..], case.speeds.clone());
         let mut dynamics = Recursive::new(Arc::clone(&mechanism));
         let mut forward = ForwardDerivatives::new(&mechanism);
-        let (mut rates, mut forces) = (case.rates.clone(), [0.0]);
+        let mut hamiltonian = HamiltonianDerivatives::new(&mechanism);
+        let (mut rates, mut forces, mut p) = (case.rates.clone(), [0.0], v.clone());
         counts.of("equations and derivatives", || {
             dynamics.complete_speeds(q, &mut v).expect("determined");
             let found = dynamics.accelerations(q, &v, tau, &mut rates);
@@ -128,6 +129,10 @@ fn coupled_joints_do_not_allocate() {
             let found = dynamics.coupling_force(q, &v, &rates, tau, &mut forces);
             found.expect("determined");
             let found = dynamics.forward_dynamics_derivatives(q, &v, tau, &mut forward);
+            found.expect("every body has mass");
+            let found = dynamics.momenta(q, &v, &mut p);
+            found.expect("determined");
+            let found = dynamics.hamiltonian_derivatives(q, &p, tau, &mut hamiltonian);
             found.expect("every body has mass");
         });
     }

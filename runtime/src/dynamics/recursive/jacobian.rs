@@ -133,13 +133,8 @@ impl Recursive {
         self.compose();
         for (link, node) in self.links.iter().zip(&self.nodes) {
             let speeds = link.speeds.clone();
-            let (columns, momenta) = (
-                &self.columns[speeds.clone()],
-                &mut self.momenta[speeds.clone()],
-            );
-            link.joint.momenta(&node.rigid, columns, momenta);
             let out = out[6 * speeds.start..6 * speeds.end].chunks_exact_mut(6);
-            for (out, momentum) in out.zip(momenta) {
+            for (out, momentum) in out.zip(&self.momenta[speeds]) {
                 let seen = shift_wrench(momentum, &(node.motion.placement.origin - center));
                 out.copy_from_slice(seen.as_slice());
             }

@@ -124,6 +124,16 @@ pub(super) enum Kind {
 }
 
 impl Kind {
+    /// Whether the column of one of the joint's speeds has an angular, and whether it has a linear part.
+    #[inline(always)]
+    pub(super) fn parts(self, speed: usize) -> (bool, bool) {
+        match self {
+            Self::TurnsOnce => (true, false),
+            Self::Apart(middle) => (speed < middle, speed >= middle),
+            Self::Mixed => (true, true),
+        }
+    }
+
     fn new(body: &Body) -> Self {
         let (speeds, joint) = (&body.ranges().speeds, body.joint());
         let turns = |j: usize| !joint.column_parts(j).1;

@@ -2,12 +2,12 @@
 
 use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
-use super::link::Kind;
+use super::link::{Kind, Node};
 use crate::dynamics::DynamicsError;
 use crate::dynamics::error::Space;
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use crate::spatial::fused::{add_cross, dot};
-use crate::spatial::{shift_wrench, split};
+use crate::spatial::{SpatialInertia, shift_wrench, split};
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -29,6 +29,8 @@ pub struct MassMatrix {
     factors: Vec<f64>,
     /// The next speed towards the root.
     parents: Vec<Option<usize>>,
+    /// Whether speeds of different branches have entries, as in an inverse.
+    full: bool,
 }
 
 impl MassMatrix {
@@ -40,6 +42,7 @@ impl MassMatrix {
             rows: vec![0.0; size * size],
             factors: Vec::new(),
             parents: parents(mechanism),
+            full: false,
         }
         .with_factors()
     }
@@ -137,7 +140,7 @@ fn subtract(target: &mut [f64], row: &[f64], weight: f64, parents: &[Option<usiz
 }
 
 /// The next speed towards the root, for each speed.
-fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
+pub(super) fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
     let mut parents = vec![None; mechanism.layout().speeds];
     for body in mechanism.bodies() {
         let mut nearest = nearest_speed(mechanism, body.parent());
@@ -168,24 +171,13 @@ impl Recursive {
     /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
         self.check(q, &[("rows of the mass matrix", mass.size)])?;
-        self.weigh(q);
-        self.compose();
-        // In sweeps of their own, so that none loads what has just been stored.
-        for ((link, rung), node) in self.links.iter().zip(&self.rungs).zip(&self.nodes) {
-            let speeds = link.speeds.clone();
-            if matches!(rung.kind, Kind::TurnsOnce) {
-                let (turn, _) = split(&self.columns[speeds.start]);
-                self.momenta[speeds.start] = node.rigid.apply_angular(&turn);
-                continue;
-            }
-            let (columns, momenta) = (&self.columns[speeds.clone()], &mut self.momenta[speeds]);
-            link.joint.momenta(&node.rigid, columns, momenta);
+        if core::mem::take(&mut mass.full) {
+            mass.rows.fill(0.0);
         }
-        for (index, link) in self.links.iter().enumerate() {
-            for speed in link.speeds.clone() {
-                let row = &mut mass.rows[speed * mass.size..=speed * mass.size + speed];
-                self.fill_row(row, index, &self.momenta[speed]);
-            }
+        self.stand(q);
+        self.compose();
+        self.fill_rows(&mut mass.rows);
+        for link in &self.links {
             for (speed, armature) in link.speeds.clone().zip(&link.armature) {
                 mass.rows[speed * mass.size + speed] += armature;
             }
@@ -193,13 +185,44 @@ impl Recursive {
         Ok(())
     }
 
-    /// Inward, after [`Recursive::weigh`]: the rigid inertia of each body and of all that hangs on it.
+    /// Inward, after [`Recursive::stand`]: the rigid inertia N of each body and of all that hangs on it, and N X̄.
     pub(super) fn compose(&mut self) {
+        // What a body hands over to the next stays in registers: to load what has just been stored is to wait for it.
+        let mut held = SpatialInertia::zero();
+        let mut holds = false;
         for (index, link) in self.links.iter().enumerate().rev() {
+            let (before, rest) = self.nodes.split_at_mut(index);
+            let Node { motion, rigid, .. } = &mut rest[0];
+            let placement = &motion.placement;
+            if !holds && link.carries {
+                held = *rigid;
+            }
+            let whole = link.inertia.rotated(&placement.rotation).combine(&held);
+            *rigid = whole;
+            let speeds = link.speeds.clone();
+            match self.rungs[index].kind {
+                Kind::TurnsOnce => {
+                    let (turn, _) = split(&self.columns[speeds.start]);
+                    self.momenta[speeds.start] = whole.apply_angular(&turn);
+                }
+                _ => {
+                    let (columns, momenta) =
+                        (&self.columns[speeds.clone()], &mut self.momenta[speeds]);
+                    link.joint.momenta(rigid, columns, momenta);
+                }
+            }
+            (held, holds) = (SpatialInertia::zero(), false);
             if let Some(parent) = link.parent {
-                let own = &self.nodes[index];
-                let carried = own.rigid.shifted(&own.motion.placement.offset);
-                self.nodes[parent].rigid = self.nodes[parent].rigid.combine(&carried);
+                let carried = whole.shifted(&placement.offset);
+                let sum = match link.last {
+                    true => carried,
+                    false => before[parent].rigid.combine(&carried),
+                };
+                holds = parent + 1 == index;
+                match holds {
+                    true => held = sum,
+                    false => before[parent].rigid = sum,
+                }
             }
         }
     }
@@ -217,6 +240,7 @@ impl Recursive {
         self.check(q, &[("rows of the mass matrix", inverse.size)])?;
         self.weigh(q);
         self.articulate()?;
+        inverse.full = true;
         for body in 0..self.links.len() {
             for speed in self.links[body].speeds.clone() {
                 let row = speed * inverse.size;

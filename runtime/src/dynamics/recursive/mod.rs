@@ -22,6 +22,7 @@ mod loaded;
 mod mass;
 mod operational;
 mod readings;
+mod rows;
 mod slender;
 mod sweeps;
 
@@ -43,6 +44,7 @@ use alloc::vec::Vec;
 use coupling::Coupling;
 use link::{Link, Node, Rung};
 use nalgebra::Vector6;
+use rows::Climb;
 use slender::Slender;
 
 /// The recursive form of a mechanism's dynamics, with its workspace: one for each thread.
@@ -57,6 +59,7 @@ pub struct Recursive {
     acted_on: bool,
     links: Vec<Link>,
     rungs: Vec<Rung>,
+    climbs: Vec<Climb>,
     world: Node,
     nodes: Vec<Node>,
     /// X̄, one column a speed.
@@ -90,13 +93,15 @@ impl Recursive {
         let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
         let links = Link::all(&mechanism);
+        let rungs: Vec<Rung> = mechanism.bodies().iter().map(Rung::new).collect();
         Self {
             holonomic: mechanism.bodies().iter().all(holonomic),
             plain: false,
             acted_on: false,
             slender: Slender::all(&links),
             links,
-            rungs: mechanism.bodies().iter().map(Rung::new).collect(),
+            climbs: Climb::all(&rungs, &mass::parents(&mechanism)),
+            rungs,
             nodes: vec![world.clone(); count],
             world,
             columns: vec![Vector6::zeros(); speeds],

@@ -30,20 +30,22 @@ impl Recursive {
         }
     }
 
-    /// Outward: placements, X̄ and each body's own inertia; no wrench.
-    pub(super) fn weigh(&mut self, q: &[f64]) {
+    /// Outward: placements and X̄.
+    pub(super) fn stand(&mut self, q: &[f64]) {
         for (index, link) in self.links.iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let (from, to) = (&parent.motion.placement, &mut own.motion.placement);
             let q = &q[link.configuration.clone()];
             let columns = &mut self.columns[link.speeds.clone()];
             link.joint.stand(q, &link.frame, from, to, columns);
-            // The body before: to load what a joint has just stored is to wait for it.
-            if let Some(last) = index.checked_sub(1) {
-                self.links[last].turn(&mut self.nodes[last]);
-            }
         }
-        if let (Some(link), Some(node)) = (self.links.last(), self.nodes.last_mut()) {
+    }
+
+    /// [`Recursive::stand`], and each body's own inertia; no wrench.
+    pub(super) fn weigh(&mut self, q: &[f64]) {
+        self.stand(q);
+        // In a sweep of its own: to load what a joint has just stored is to wait for it.
+        for (link, node) in self.links.iter().zip(&mut self.nodes) {
             link.turn(node);
         }
         if !self.slender.is_empty() {
@@ -76,7 +78,7 @@ impl Recursive {
             let motion = &mut own.motion;
             link.joint
                 .advance(state, &link.frame, &parent.motion, motion, columns);
-            // The body before, as in `weigh`.
+            // The body before: to load what a joint has just stored is to wait for it.
             if let Some(last) = index.checked_sub(1) {
                 self.links[last].load(&mut self.nodes[last]);
             }

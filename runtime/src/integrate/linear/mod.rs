@@ -166,9 +166,10 @@ impl LinearStep {
         Ok(())
     }
 
-    /// Where constraints couple joints, the speeds of the state reached that depend on the others, and how they change.
+    /// Where constraints couple joints, the speeds of the state reached that depend on the others, and how they change; momenta that do are 0.
     fn complete(&mut self, efforts: &[f64]) -> Result<(), StepFailure> {
-        if self.dynamics.mechanism().constraints().is_empty() {
+        let follow = matches!(self.equations, Equations::Lagrangian(_));
+        if !follow || self.dynamics.mechanism().constraints().is_empty() {
             return Ok(());
         }
         let rates = &mut self.stages[0].rates;

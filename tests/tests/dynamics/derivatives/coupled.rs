@@ -1,7 +1,9 @@
-//! Forward dynamics where constraints couple joints, against differences of the dynamics itself along the motions that the constraints allow.
+//! Both forms where constraints couple joints, against differences of the dynamics itself along the motions that the constraints allow.
 
 use super::{Equipment, matrix};
-use hamel::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, Recursive};
+use hamel::dynamics::{
+    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive,
+};
 use hamel::elements::{Drive, Law, PointConstraint};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{DMatrix, Vector3};
@@ -18,8 +20,13 @@ use std::sync::Arc;
 const FINE: f64 = STEP / 16.0;
 const BOUND: f64 = 1e-8;
 
+/// The trees themselves, in the order of their seeds.
+pub fn trees() -> Vec<Case> {
+    cases(&library(), 8, 48).collect()
+}
+
 /// Trees with one or two constraints; every other one with elements and rotors, every third one with a driven joint.
-fn all() -> Vec<Case> {
+pub fn all() -> Vec<Case> {
     let coupled = |case: Case| {
         let mut random = ChaCha8Rng::seed_from_u64(case.seed);
         let mut mechanism = Arc::clone(&case.mechanism);
@@ -53,7 +60,7 @@ fn all() -> Vec<Case> {
             ..case
         })
     };
-    let all: Vec<Case> = cases(&library(), 8, 48).filter_map(coupled).collect();
+    let all: Vec<Case> = trees().into_iter().filter_map(coupled).collect();
     assert!(all.len() >= 36, "{} trees take constraints", all.len());
     all
 }
@@ -124,13 +131,83 @@ fn coupled_joints_answer() {
     worst.iter().for_each(|worst| worst.assert_within(BOUND));
 }
 
+/// v̄ and p̄̇ at Φ(q, ϕ), one after the other.
+fn momentum_rates(case: &Case, phi: &[f64], momenta: &[f64], efforts: &[f64]) -> Vec<f64> {
+    let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+    let q = moved(&case.mechanism, &case.q, phi);
+    let (mut speeds, mut rates) = (momenta.to_vec(), momenta.to_vec());
+    let mut held = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
+    let found = dynamics.momentum_rates(&q, momenta, &mut held, &mut speeds, &mut rates);
+    found.expect("every body has mass");
+    speeds.extend(rates);
+    speeds
+}
+
+#[test]
+fn coupled_joints_answer_in_momenta() {
+    let laws = ["∂v̄/∂ϕ", "∂v̄/∂p̄", "∂p̄̇/∂ϕ", "∂p̄̇/∂p̄", "∂p̄̇/∂τ"];
+    let mut worst = laws.map(Largest::new);
+    for case in all() {
+        let (size_of_y, tau) = (case.speeds.len(), &case.efforts);
+        let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+        let mut p = case.speeds.clone();
+        let found = dynamics.momenta(&case.q, &case.speeds, &mut p);
+        found.expect("determined");
+        let home = vec![0.0; case.mechanism.layout().freedoms];
+        let mut found = HamiltonianDerivatives::new(&case.mechanism);
+        dynamics
+            .hamiltonian_derivatives(&case.q, &p, tau, &mut found)
+            .expect("covered");
+        let both = momentum_rates(&case, &home, &p, tau);
+        assert_eq!(found.speeds(), &both[..size_of_y]);
+        let by_local = slopes(&home, |phi| momentum_rates(&case, phi, &p, tau));
+        let by_momenta = slopes(&p, |p| momentum_rates(&case, &home, p, tau));
+        let by_efforts = slopes(tau, |tau| momentum_rates(&case, &home, &p, tau));
+        let of_rates = |both: &DMatrix<f64>| both.rows(size_of_y, size_of_y).into_owned();
+        let expected = [
+            by_local.rows(0, size_of_y).into_owned(),
+            by_momenta.rows(0, size_of_y).into_owned(),
+            of_rates(&by_local),
+            of_rates(&by_momenta),
+            of_rates(&by_efforts),
+        ];
+        let unit = size(&both).max(1.0);
+        let found = [
+            found.speeds_by_local(),
+            found.speeds_by_momenta(),
+            found.rates_by_local(),
+            found.rates_by_momenta(),
+            found.rates_by_efforts(),
+        ];
+        for ((worst, found), expected) in worst.iter_mut().zip(found).zip(&expected) {
+            let place = format!(
+                "case {} of {} bodies",
+                case.seed,
+                case.mechanism.bodies().len()
+            );
+            let error = difference(found.entries(), expected.transpose().as_slice());
+            worst.meet(error / unit.max(size(expected.as_slice())), place);
+        }
+    }
+    worst.iter().for_each(|worst| worst.assert_within(BOUND));
+}
+
 /// Results that were made without constraints have no room for them.
 #[test]
 fn results_of_the_tree_alone_are_foreign() {
     let case = all().swap_remove(0);
     let tree = (*case.mechanism).clone().with_constraints(vec![], &case.q);
-    let mut out = ForwardDerivatives::new(&tree.expect("no constraints fit"));
+    let tree = tree.expect("no constraints fit");
+    let mut out = ForwardDerivatives::new(&tree);
     let refused = Recursive::new(Arc::clone(&case.mechanism)).forward_dynamics_derivatives(
+        &case.q,
+        &case.speeds,
+        &case.efforts,
+        &mut out,
+    );
+    assert_eq!(refused, Err(DynamicsError::ForeignResults));
+    let mut out = HamiltonianDerivatives::new(&tree);
+    let refused = Recursive::new(Arc::clone(&case.mechanism)).hamiltonian_derivatives(
         &case.q,
         &case.speeds,
         &case.efforts,

@@ -142,20 +142,9 @@ fn port_hamiltonian(equipped: &Equipped, oracle: &Expected) -> [DMatrix<f64>; 5]
     for speed in speeds(case, true) {
         by_momenta[(speed, speed)] = 1.0;
     }
-    let along = |k: usize| {
-        let rate = by_local.column(k);
-        oracle.momentum_rates(case, form.moved(&case.q, k), rate.as_slice())
-    };
-    let faster = |j: usize| {
-        let rate = by_momenta.column(j);
-        oracle.momentum_rates(case, constants(&case.q), rate.as_slice())
-    };
+    let [along, faster] = oracle.rates_of_momenta(case, &by_local, &by_momenta);
     let [_, basis] = oracle.inputs(case);
-    let mut rates = [
-        matrix(rows, (0..oracle.freedoms).map(along)),
-        matrix(rows, (0..rows).map(faster)),
-        basis,
-    ];
+    let mut rates = [along, faster, basis];
     for (body, owner) in case.mechanism.bodies().iter().enumerate() {
         if case.mechanism.is_driven(body) {
             let ranges = owner.ranges();

@@ -1,6 +1,7 @@
 //! Derivatives of the dynamics by recursion against dual numbers, on random trees of all joints of the library and on real robots.
 
 mod coupled;
+mod coupled_momenta;
 mod driven;
 mod dual;
 mod refusals;
@@ -174,6 +175,27 @@ impl Expected {
         ]
     }
 
+    /// ∂p̄̇/∂ϕ and ∂p̄̇/∂p̄, with v̄ moving along with either.
+    fn rates_of_momenta(
+        &self,
+        case: &Case,
+        by_local: &DMatrix<f64>,
+        by_momenta: &DMatrix<f64>,
+    ) -> [DMatrix<f64>; 2] {
+        let along = |k: usize| {
+            let rate = by_local.column(k);
+            self.momentum_rates(case, self.form.moved(&case.q, k), rate.as_slice())
+        };
+        let faster = |j: usize| {
+            let rate = by_momenta.column(j);
+            self.momentum_rates(case, constants(&case.q), rate.as_slice())
+        };
+        [
+            matrix(self.rows, (0..self.freedoms).map(along)),
+            matrix(self.rows, (0..self.rows).map(faster)),
+        ]
+    }
+
     /// p̄̇ with v̄ moving along with ϕ or p̄.
     fn momentum_rates(&self, case: &Case, q: Vec<Dual<f64>>, speed_rate: &[f64]) -> Vec<f64> {
         let mut state = self.form.state(&case.q, &case.speeds, &case.efforts);
@@ -266,22 +288,9 @@ fn port_hamiltonian_form() {
         };
         let by_local = oracle.solve(&-matrix(rows, (0..oracle.freedoms).map(momenta)));
         let by_momenta = oracle.solve(&DMatrix::identity(rows, rows));
-        let along = |k: usize| {
-            let rate = by_local.column(k);
-            oracle.momentum_rates(case, form.moved(&case.q, k), rate.as_slice())
-        };
-        let faster = |j: usize| {
-            let rate = by_momenta.column(j);
-            oracle.momentum_rates(case, constants(&case.q), rate.as_slice())
-        };
+        let [along, faster] = oracle.rates_of_momenta(case, &by_local, &by_momenta);
         let [_, basis] = oracle.inputs(case);
-        let expected = [
-            by_local.clone(),
-            by_momenta.clone(),
-            matrix(rows, (0..oracle.freedoms).map(along)),
-            matrix(rows, (0..rows).map(faster)),
-            basis,
-        ];
+        let expected = [by_local, by_momenta, along, faster, basis];
         let condition = oracle.condition();
         let found = [
             found.speeds_by_local(),

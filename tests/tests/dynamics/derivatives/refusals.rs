@@ -3,9 +3,8 @@
 use hamel::dynamics::{
     Dynamics, DynamicsError, HamiltonianDerivatives, InverseDerivatives, Recursive,
 };
-use hamel::elements::{Action, Element, ElementError, PointConstraint, View};
+use hamel::elements::{Action, Element, ElementError, View};
 use hamel::mechanism::Mechanism;
-use hamel::nalgebra::Vector3;
 use hamel_tests::random::{Case, cases, library};
 use std::sync::Arc;
 
@@ -50,19 +49,10 @@ fn refusal(case: &Case, mechanism: Mechanism) -> String {
 #[test]
 fn what_is_not_covered_is_refused_by_name() {
     let case = cases(&library(), 2, 2).last().expect("two bodies");
-    let mechanism = || (*case.mechanism).clone();
-    let silent = mechanism().with_elements(vec![Arc::new(Silent)]);
-    let constraint = PointConstraint {
-        name: "wheel".to_owned(),
-        body: 1,
-        point: Vector3::new(0.1, 0.2, 0.3),
-        direction: Vector3::new(0.2, 0.9, 0.4),
-    };
-    let coupled = mechanism().with_constraints(vec![constraint], &case.q);
-    for (changed, name) in [(silent, "silent"), (coupled, "wheel")] {
-        let message = refusal(&case, changed.expect("it fits"));
-        assert!(message.contains(&format!("`{name}`")), "{message}");
-    }
+    let mechanism = (*case.mechanism).clone();
+    let silent = mechanism.with_elements(vec![Arc::new(Silent)]);
+    let message = refusal(&case, silent.expect("it fits"));
+    assert!(message.contains("`silent`"), "{message}");
     let other = cases(&library(), 3, 3).last().expect("three bodies");
     let mut out = InverseDerivatives::new(&other.mechanism);
     let refused = Recursive::new(Arc::clone(&case.mechanism)).inverse_dynamics_derivatives(

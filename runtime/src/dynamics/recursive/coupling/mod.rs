@@ -93,7 +93,7 @@ impl Coupling {
     }
 
     /// `S̄ x` into `whole`.
-    fn expand(&self, x: impl Fn(usize) -> f64, whole: &mut [f64]) {
+    pub(super) fn expand(&self, x: impl Fn(usize) -> f64, whole: &mut [f64]) {
         for (j, &speed) in self.independent.iter().enumerate() {
             whole[speed] = x(j);
         }
@@ -104,7 +104,7 @@ impl Coupling {
     }
 
     /// `S̄ᵀ f` into `reduced`.
-    fn reduce(&self, f: &[f64], reduced: &mut [f64]) {
+    pub(super) fn reduce(&self, f: &[f64], reduced: &mut [f64]) {
         for (j, &speed) in self.independent.iter().enumerate() {
             let terms = self.dependent.iter().enumerate();
             let carried: f64 = terms.map(|(i, &d)| self.basis[(i, j)] * f[d]).sum();
@@ -115,6 +115,11 @@ impl Coupling {
     /// The constrained bodies, and `(r × d; d)` at the origins of their child frames, world axes: rows of Aᵀ are products with it.
     pub(super) fn wrenches(&self) -> impl Iterator<Item = (usize, Vector6<f64>)> {
         self.rows.iter().map(|row| (row.body, row.wrench))
+    }
+
+    /// μ of `A_d μ = p_d`, and the rates of the tree's momenta with `−Ȧ μ`, after [`Recursive::coupled_rates`].
+    pub(super) fn momentum_multipliers(&self) -> (&[f64], &[f64]) {
+        (&self.multipliers, &self.other)
     }
 
     /// v̄̇ of the tree, after [`Recursive::coupling_force_with`].
@@ -132,7 +137,13 @@ impl Coupling {
         self.lu.solve(x);
     }
 
-    /// x of `S̄ᵀMS̄ x = −S̄ᵀ (r + M p)`, with the dependent entries of p, after [`Recursive::coupled_accelerations`]. Prescribed entries are 0, but for
+    /// `A_d x = b` in place.
+    pub(super) fn solve_multipliers(&mut self, x: &mut [f64]) {
+        self.lu.solve_transposed(x);
+    }
+
+    /// x of `S̄ᵀMS̄ x = −S̄ᵀ (r + M p)`, with the dependent entries of p, after [`Recursive::coupled_accelerations`] or
+    /// [`Recursive::coupled_speeds`]. Prescribed entries are 0, but for
     /// `prescribed`, a speed of the tree, which is 1.
     pub(super) fn answer(&self, r: &[f64], p: &[f64], prescribed: Option<usize>, x: &mut [f64]) {
         self.reduce(r, x);
@@ -166,7 +177,7 @@ impl Coupling {
     }
 
     /// Entries of independent speeds into their places, 0 elsewhere.
-    fn scatter(&self, reduced: &[f64], whole: &mut [f64]) {
+    pub(super) fn scatter(&self, reduced: &[f64], whole: &mut [f64]) {
         whole.fill(0.0);
         for (&speed, &value) in self.independent.iter().zip(reduced) {
             whole[speed] = value;
@@ -261,7 +272,7 @@ impl Recursive {
     }
 
     /// `M v̄` of the tree at the placements of the workspace, whose twists become those of v̄.
-    fn tree_momenta(&mut self, speeds: &[f64], momenta: &mut [f64]) {
+    pub(super) fn tree_momenta(&mut self, speeds: &[f64], momenta: &mut [f64]) {
         self.set_twists(speeds);
         self.set_momenta();
         self.gather(momenta);

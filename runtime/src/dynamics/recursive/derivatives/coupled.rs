@@ -82,6 +82,11 @@ impl Coupled {
         })
     }
 
+    /// The number of constraints that it has room for.
+    pub(super) const fn room(&self) -> usize {
+        self.slipping.rows()
+    }
+
     /// Adds to r and δe what `weight` units of a speed change.
     fn add_speed(&mut self, speed: usize, weight: f64, asked: &mut [f64]) {
         for (row, needed) in self.column.needed.iter_mut().enumerate() {

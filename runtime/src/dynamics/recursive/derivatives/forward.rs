@@ -3,10 +3,11 @@
 use super::acting::{Acting, Yielding, add_response};
 use super::coriolis::{ArticulatedCoriolis, Coriolis};
 use super::coupled::Coupled;
+use super::factor::Factors;
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
 use super::sweep::{LANES, Push, Sweep, Tree};
-use super::{Branch, Equations, Sensitivity, branches, in_child};
+use super::{Branch, Sensitivity, branches, in_child};
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::{Dynamics, DynamicsError};
@@ -25,7 +26,7 @@ pub struct ForwardDerivatives {
     pub(super) by_speeds: Sensitivity,
     pub(super) by_efforts: Sensitivity,
     /// For mechanisms of few speeds.
-    inverse: Option<InverseDerivatives>,
+    few: Option<(InverseDerivatives, Factors)>,
     /// For constraints that couple joints.
     pub(super) coupled: Option<Coupled>,
     pub(super) responses: Responses,
@@ -69,20 +70,6 @@ impl Responses {
     }
 }
 
-impl Responses {
-    /// The tree, the sweeps and the unit efforts.
-    fn split<'a>(&'a mut self, dynamics: &'a Recursive) -> (Tree<'a>, &'a mut Sweep, &'a [Push]) {
-        let tree = Tree {
-            branches: &self.branches,
-            nodes: &dynamics.nodes,
-            columns: &dynamics.columns,
-            pivots: &dynamics.pivots,
-            drags: &self.drags,
-        };
-        (tree, &mut self.sweep, &self.forced)
-    }
-}
-
 /// The responses to all `pushes`, column by column of `out`; `TURNS` says whether any has a U.
 pub(super) fn respond<const TURNS: bool>(
     tree: &Tree<'_>,
@@ -108,15 +95,20 @@ impl ForwardDerivatives {
     /// Room for the derivatives of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        let responses = Responses::new(mechanism);
         Self {
             rates: vec![0.0; speeds],
             by_local: Sensitivity::new(speeds, freedoms),
             by_speeds: Sensitivity::new(speeds, speeds),
             by_efforts: Sensitivity::new(speeds, freedoms),
-            inverse: (speeds <= FEW && speeds == freedoms)
-                .then(|| InverseDerivatives::new(mechanism)),
+            few: (speeds <= FEW && speeds == freedoms).then(|| {
+                (
+                    InverseDerivatives::new(mechanism),
+                    Factors::new(&responses.branches, speeds),
+                )
+            }),
             coupled: Coupled::new(mechanism),
-            responses: Responses::new(mechanism),
+            responses,
             acting: Acting::new(mechanism),
             yielding: Yielding::new(mechanism),
         }
@@ -165,23 +157,17 @@ impl Recursive {
         efforts: &[f64],
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
-        self.check_differentiable(
-            Equations::Lagrangian,
-            &[&out.by_local, &out.by_speeds, &out.by_efforts],
-        )?;
+        self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
+        self.check_coupled(out.coupled.as_ref().map_or(0, Coupled::room))?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
         if !self.mechanism.constraints().is_empty() {
             return self.differentiate_coupled((q, speeds, efforts), out);
         }
         self.set_accelerations(q, speeds, &out.rates);
         let yields = self.holonomic && self.mechanism.drives().is_empty();
-        if let (true, Some(inverse)) = (yields, &mut out.inverse) {
+        if let (true, Some((inverse, factors))) = (yields, &mut out.few) {
             self.differentiate_needed(q, speeds, &out.rates, inverse);
-            for index in 0..self.links.len() {
-                self.push_efforts(index, q, &mut out.responses.forced);
-            }
-            let (tree, sweep, forced) = out.responses.split(self);
-            invert(&tree, sweep, forced, &mut out.by_efforts);
+            self.invert_few(&out.responses.branches, factors, &mut out.by_efforts);
             negative_product(&out.by_efforts, &inverse.by_local, &mut out.by_local);
             negative_product(&out.by_efforts, &inverse.by_speeds, &mut out.by_speeds);
             return Ok(());

@@ -2,7 +2,7 @@
 
 use super::acting::Acting;
 use super::coriolis::Coriolis;
-use super::{Branch, Equations, Sensitivity, WORLD, branches, in_child};
+use super::{Branch, Sensitivity, WORLD, branches, in_child};
 use crate::dynamics::DynamicsError;
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
@@ -85,7 +85,7 @@ impl Recursive {
             ("accelerations", accelerations.len()),
         ];
         self.check(q, &sizes)?;
-        self.check_differentiable(Equations::Lagrangian, &[&out.by_local, &out.by_speeds])?;
+        self.check_differentiable(&[&out.by_local, &out.by_speeds])?;
         self.advance(q, speeds, Some(accelerations));
         self.differentiate_needed(q, speeds, accelerations, out);
         Ok(())

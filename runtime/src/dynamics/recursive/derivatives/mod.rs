@@ -25,19 +25,22 @@
 //! Forward dynamics takes the same U and W as loads of the articulated factors: W is one more acceleration of the base of the subtree, and
 //! B, with the joints below free to give way, is one more 6×3 matrix of the articulated recursion. Each column then is one sweep inward along
 //! its branch and one outward, O(n), eight columns at a time; M̄ is never formed. Mechanisms of few speeds
-//! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them.
+//! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them ([`factor`]).
 //!
 //! Elements and rotors add what [`acting`] says. Elements of one's own without slopes ([`Element::slope`](crate::elements::Element::slope)) are not
-//! covered; nor, in the port-Hamiltonian form, are constraints that couple joints. Asking for derivatives of such a mechanism is an error.
-//! Inverse dynamics is that of the tree; forward dynamics under such constraints is in [`coupled`].
+//! covered: asking for derivatives of such a mechanism is an error. Inverse dynamics is that of the tree; under constraints that couple joints, forward
+//! dynamics is in [`coupled`] and the port-Hamiltonian form in [`coupled_momenta`].
 
 mod acting;
 mod coriolis;
 mod coupled;
+mod coupled_momenta;
 mod energy;
+mod factor;
 mod forward;
 mod hamiltonian;
 mod inverse;
+mod momentum_rates;
 mod product;
 mod sweep;
 
@@ -105,6 +108,22 @@ impl Sensitivity {
         &mut self.entries
     }
 
+    fn row(&self, row: usize) -> &[f64] {
+        &self.entries[row * self.columns..(row + 1) * self.columns]
+    }
+
+    fn copy_column(&self, column: usize, into: &mut [f64]) {
+        for (row, entry) in into.iter_mut().enumerate() {
+            *entry = self.entry(row, column);
+        }
+    }
+
+    fn set_column(&mut self, column: usize, from: &[f64]) {
+        for (row, entry) in from.iter().enumerate() {
+            self.set(row, column, *entry);
+        }
+    }
+
     fn row_mut(&mut self, row: usize) -> &mut [f64] {
         &mut self.entries[row * self.columns..(row + 1) * self.columns]
     }
@@ -145,22 +164,9 @@ impl Sensitivity {
     }
 }
 
-/// What is to be differentiated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Equations {
-    /// Inverse and forward dynamics.
-    Lagrangian,
-    /// The port-Hamiltonian form.
-    Hamiltonian,
-}
-
 impl Recursive {
-    /// Whether derivatives of `equations` cover all that acts on the mechanism, and `results` belong to a mechanism of its size.
-    fn check_differentiable(
-        &self,
-        equations: Equations,
-        results: &[&Sensitivity],
-    ) -> Result<(), DynamicsError> {
+    /// Whether derivatives cover all that acts on the mechanism, and `results` belong to a mechanism of its size.
+    fn check_differentiable(&self, results: &[&Sensitivity]) -> Result<(), DynamicsError> {
         let layout = self.mechanism.layout();
         let fits = |result: &&Sensitivity| {
             result.fits(layout.speeds, layout.freedoms) || result.fits(layout.speeds, layout.speeds)
@@ -168,20 +174,21 @@ impl Recursive {
         if !results.iter().all(fits) {
             return Err(DynamicsError::ForeignResults);
         }
-        let mechanism = &self.mechanism;
-        let element = mechanism.elements().iter().find(|e| e.slope().is_none());
-        let element = element.map(|element| ("an element without slopes", element.name()));
-        let constraint = match equations {
-            Equations::Lagrangian => None,
-            Equations::Hamiltonian => mechanism.constraints().first(),
-        };
-        let constraint = constraint.map(|c| ("a constraint that couples joints", &c.name[..]));
-        match element.or(constraint) {
-            Some((what, name)) => Err(DynamicsError::NotDifferentiable {
-                what,
-                name: name.into(),
+        let mut elements = self.mechanism.elements().iter();
+        match elements.find(|element| element.slope().is_none()) {
+            Some(element) => Err(DynamicsError::NotDifferentiable {
+                what: "an element without slopes",
+                name: element.name().into(),
             }),
             None => Ok(()),
+        }
+    }
+
+    /// Whether results have room for the constraints that couple joints: for so many.
+    fn check_coupled(&self, room: usize) -> Result<(), DynamicsError> {
+        match room == self.mechanism.constraints().len() {
+            true => Ok(()),
+            false => Err(DynamicsError::ForeignResults),
         }
     }
 

@@ -162,17 +162,26 @@ impl DualForm {
 
     /// p̄̇ at v̄.
     pub fn momentum_rates(&self, state: &DualState) -> Vec<D> {
+        self.momentum_rates_beside(state, &[])
+    }
+
+    /// p̄̇ at v̄, where bodies are rid of momenta that are fixed in them: in the axes of the joints' child frames, at their origins.
+    pub fn momentum_rates_beside(&self, state: &DualState, rid: &[(usize, Vector6<D>)]) -> Vec<D> {
         let DualState { q, speeds, efforts } = state;
         let poses = self.poses(q);
         let twists = self.twists(&poses, q, speeds);
         let rotations = self.rotations(&poses);
         let momentum = |(body, twist): (&Body, &Vector6<D>)| body.inertia.apply(twist);
-        let momenta: Vec<_> = self.bodies.iter().zip(&twists).map(momentum).collect();
+        let mut momenta: Vec<_> = self.bodies.iter().zip(&twists).map(momentum).collect();
         let weight = |(body, rotation): (&Body, &hamel::nalgebra::Matrix3<D>)| {
             let fall = rotation.transpose() * self.gravity;
             body.inertia.apply(&join(&Vector3::zeros(), &fall))
         };
-        let weights: Vec<_> = self.bodies.iter().zip(&rotations).map(weight).collect();
+        let mut weights: Vec<_> = self.bodies.iter().zip(&rotations).map(weight).collect();
+        for (body, momentum) in rid {
+            momenta[*body] -= momentum;
+            weights[*body] += bracket_dual_product(&twists[*body], momentum);
+        }
         let (momenta, weights) = (
             self.gathered(&poses, momenta),
             self.gathered(&poses, weights),
@@ -193,6 +202,14 @@ impl DualForm {
             *rate += force;
         }
         rates
+    }
+
+    /// The power of wrenches that are fixed in bodies, as momenta are in [`DualForm::momentum_rates_beside`].
+    pub fn powers(&self, q: &[D], speeds: &[D], wrenches: &[(usize, Vector6<f64>)]) -> Vec<D> {
+        let twists = self.twists(&self.poses(q), q, speeds);
+        let power =
+            |(body, wrench): &(usize, Vector6<f64>)| wrench.map(Dual::constant).dot(&twists[*body]);
+        wrenches.iter().map(power).collect()
     }
 
     /// Kinetic energy, and potential energy in gravity.
