@@ -11,7 +11,7 @@ use hamel_scene::{Scene, SceneDescription, urdf};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::rc::Rc;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -145,18 +145,18 @@ fn read(path: &Path) -> Result<String, Failure> {
 /// The library's joints, each derived when it is first asked for.
 #[derive(Default)]
 struct Joints {
-    derived: RefCell<BTreeMap<String, Option<Arc<Derived>>>>,
+    derived: RefCell<BTreeMap<String, Option<Rc<Derived>>>>,
 }
 
 impl Joints {
-    fn find(&self, name: &str) -> Option<Arc<Derived>> {
+    fn find(&self, name: &str) -> Option<Rc<Derived>> {
         let mut derived = self.derived.borrow_mut();
         let entry = derived.entry(name.to_owned()).or_insert_with(|| {
             let (_, text) = hamel_joints::specs().find(|(known, _)| *known == name)?;
             // Specs of the library were derived when it was built.
             hamel_codegen::derive(text, &format!("{name}.joint"))
                 .ok()
-                .map(Arc::new)
+                .map(Rc::new)
         });
         entry.clone()
     }

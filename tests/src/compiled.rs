@@ -5,24 +5,28 @@ use hamel_codegen::derived::Derived;
 use hamel_codegen::scene::functions::{Kind, compile};
 use hamel_codegen::scene::graph::Argument;
 use hamel_codegen::scene::model::{Body, Model};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::sync::{Arc, LazyLock};
+use std::rc::Rc;
 
-/// The library's joints, derived once.
-static JOINTS: LazyLock<BTreeMap<&'static str, Arc<Derived>>> = LazyLock::new(|| {
-    let derive = |(name, text)| {
-        let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
-        (
-            name,
-            Arc::new(derived.unwrap_or_else(|errors| panic!("{errors}"))),
-        )
-    };
-    hamel_joints::specs().map(derive).collect()
-});
+thread_local! {
+    /// The library's joints, each derived when it is first asked for.
+    static JOINTS: RefCell<BTreeMap<&'static str, Rc<Derived>>> = RefCell::default();
+}
 
 /// The joint type of the library.
-pub fn joint(name: &str) -> Option<Arc<Derived>> {
-    JOINTS.get(name).cloned()
+///
+/// # Panics
+/// Where its spec is not sound.
+pub fn joint(name: &str) -> Option<Rc<Derived>> {
+    let (name, text) = hamel_joints::specs().find(|(known, _)| *known == name)?;
+    JOINTS.with_borrow_mut(|joints| {
+        let entry = joints.entry(name).or_insert_with(|| {
+            let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
+            Rc::new(derived.unwrap_or_else(|errors| panic!("{errors}")))
+        });
+        Some(Rc::clone(entry))
+    })
 }
 
 /// A mechanism of the library's joints on which gravity alone acts.

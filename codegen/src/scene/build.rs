@@ -18,7 +18,7 @@ use crate::emit::rust::WriteError;
 use hamel_scene::{Scene, SceneDescription, urdf};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::rc::Rc;
 
 /// Compiles a scene in a build script.
 #[derive(Clone, Debug)]
@@ -136,7 +136,7 @@ impl Build {
         let mut joints = BTreeMap::new();
         for kind in kinds {
             if let Some(derived) = self.derive(kind)? {
-                joints.insert(kind.to_owned(), Arc::new(derived));
+                joints.insert(kind.to_owned(), Rc::new(derived));
             }
         }
         let model =

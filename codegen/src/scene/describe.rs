@@ -3,7 +3,7 @@
 use super::model::{Body, Model};
 use crate::derived::{Derived, KernelKind, Structure};
 use hamel_scene::{BodyDescription, SceneDescription};
-use std::sync::Arc;
+use std::rc::Rc;
 
 /// Why a scene cannot be compiled: one line for each reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ impl Model {
     /// Joint types that are not found, parameters that do not fit them, and what the scene has that the compiler does not write.
     pub fn new(
         scene: &SceneDescription,
-        joints: impl Fn(&str) -> Option<Arc<Derived>>,
+        joints: impl Fn(&str) -> Option<Rc<Derived>>,
     ) -> Result<Self, Refused> {
         let mut reasons = elsewhere(scene);
         let bodies = scene.bodies.iter();
@@ -108,7 +108,7 @@ fn uncovered(body: &BodyDescription) -> Vec<String> {
     reasons
 }
 
-fn compiled(body: &BodyDescription, joint: Arc<Derived>) -> Result<Body, Vec<String>> {
+fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<String>> {
     let name = &body.joint.name.value;
     let mut reasons = vec![];
     let forces = &body.forces;

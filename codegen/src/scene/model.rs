@@ -4,7 +4,7 @@ use crate::derived::Derived;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
-use std::sync::Arc;
+use std::rc::Rc;
 
 /// A mechanism whose equations are to be written.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub struct Body {
     /// Index of the parent; `None` is the world.
     pub parent: Option<usize>,
     /// The joint's type.
-    pub joint: Arc<Derived>,
+    pub joint: Rc<Derived>,
     /// Values of the type's parameters, in the order of its spec.
     pub parameters: Vec<f64>,
     /// The joint's parent frame in the parent's body frame.

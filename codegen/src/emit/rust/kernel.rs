@@ -6,7 +6,7 @@ use super::origin::Origins;
 use super::result;
 use super::signature::{Argument, Signature};
 use super::tokens::{Writer, ident};
-use crate::derived::{self, Derived, Kernel, KernelKind, Primitive, Step};
+use crate::derived::{self, Derived, Kernel, KernelKind, Primitive};
 use crate::emit::formula::{Binding, Counts, Program};
 use crate::emit::names::Names;
 use crate::expr::{Role, Symbol};
