@@ -130,8 +130,9 @@ impl Compiled {
             .iter()
             .fold(0.0_f64, |most, rate| most.max(rate.abs()));
         let differs = |(found, expected): (&f64, &f64)| {
-            // Written so that NaN differs.
-            !((found - expected).abs() <= AGREEMENT * largest)
+            let agrees = (found - expected).abs() <= AGREEMENT * largest;
+            // So that NaN differs.
+            !agrees
         };
         match found.iter().zip(&expected).position(differs) {
             None => Ok(self),
@@ -141,14 +142,14 @@ impl Compiled {
 
     fn other(&self, place: usize, expected: f64, found: f64) -> CompiledError {
         let bodies = self.tree.mechanism().bodies().iter();
-        let named = bodies
+        let mut named = bodies
             .filter(|body| body.ranges().speeds.contains(&place))
             .map(|body| {
                 let own = place - body.ranges().speeds.start;
                 let speed = body.joint().speeds().get(own).copied();
                 (String::from(body.joint_name()), speed.unwrap_or_default())
             });
-        let (joint, speed) = named.last().unwrap_or_default();
+        let (joint, speed) = named.next().unwrap_or_default();
         CompiledError::Other {
             scene: self.equations.scene,
             joint,

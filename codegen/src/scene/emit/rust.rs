@@ -243,60 +243,40 @@ fn factor(formula: &Formula) -> TokenStream {
 
 /// Terms that are products are added by multiply–adds.
 fn sum(terms: &[(bool, Formula)]) -> TokenStream {
-    let is_product = |term: &&(bool, Formula)| matches!(term.1, Formula::Product(..));
-    let (products, others): (Vec<_>, Vec<_>) = terms.iter().partition(is_product);
-    // A positive term first, so that no sign stands alone.
-    let start_at =
-        |terms: &[&(bool, Formula)]| terms.iter().position(|(minus, _)| !minus).unwrap_or(0);
-    let (first, others, products) = match others.is_empty() {
-        false => without(others, start_at).map_or_else(
-            || (None, vec![], products.clone()),
-            |(first, rest)| (Some(first), rest, products.clone()),
-        ),
-        true => without(products, start_at).map_or_else(
-            || (None, vec![], vec![]),
-            |(first, rest)| (Some(first), vec![], rest),
-        ),
-    };
-    let Some((minus, first)) = first else {
+    let mut terms: Vec<&(bool, Formula)> = terms.iter().collect();
+    let is_product = |term: &(bool, Formula)| matches!(term.1, Formula::Product(..));
+    // It starts with what is no product, and positive, so that no sign stands alone.
+    terms.sort_by_key(|term| (is_product(term), term.0));
+    let mut terms = terms.into_iter();
+    let Some((minus, first)) = terms.next() else {
         return quote! { n(0.0) };
     };
-    let mut written = match minus {
+    let start = match minus {
         true => {
             let first = factor(first);
             quote! { -#first }
         }
         false => value(first),
     };
-    for (minus, term) in others {
-        let term = factor(term);
-        written = match minus {
-            true => quote! { #written - #term },
-            false => quote! { #written + #term },
-        };
-    }
-    for (minus, product) in products {
-        if let Formula::Product(a, b) = product {
+    terms.fold(start, |sum, (minus, term)| match (term, minus) {
+        (Formula::Product(a, b), minus) => {
             let (a, b) = (factor(a), value(b));
-            written = match minus {
-                true => quote! { (-#a).mul_add(#b, #written) },
-                false => quote! { #a.mul_add(#b, #written) },
+            let a = if *minus {
+                quote! { (-#a) }
+            } else {
+                a
             };
+            quote! { #a.mul_add(#b, #sum) }
         }
-    }
-    written
-}
-
-/// One term and the rest.
-fn without<'a>(
-    mut terms: Vec<&'a (bool, Formula)>,
-    at: impl Fn(&[&'a (bool, Formula)]) -> usize,
-) -> Option<(&'a (bool, Formula), Vec<&'a (bool, Formula)>)> {
-    if terms.is_empty() {
-        return None;
-    }
-    let first = terms.remove(at(&terms));
-    Some((first, terms))
+        (term, true) => {
+            let term = factor(term);
+            quote! { #sum - #term }
+        }
+        (term, false) => {
+            let term = factor(term);
+            quote! { #sum + #term }
+        }
+    })
 }
 
 fn call(function: Known, arguments: &[Formula]) -> TokenStream {

@@ -114,9 +114,9 @@ impl Tree<'_> {
                 let less = factor * efforts[j];
                 efforts[k] -= less;
                 momenta[k] = momenta[k].plus(&momenta[j].times(-factor));
-                for l in k..columns.len() {
-                    let less = factor * matrix[j][l];
-                    matrix[k][l] -= less;
+                let row: Vec<Sym> = matrix[j][k..].iter().map(|&entry| factor * entry).collect();
+                for (entry, less) in matrix[k][k..].iter_mut().zip(row) {
+                    *entry -= less;
                 }
             }
             let column = if has_armature {

@@ -201,9 +201,9 @@ fn multiply_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
 fn divide(a: Sym, b: Sym) -> Sym {
     match (a, b) {
         (Sym::Number(a), Sym::Number(b)) => Sym::Number(a / b),
-        (Sym::Number(zero), _) if zero == 0.0 => a,
-        (_, Sym::Number(one)) if one == 1.0 => a,
-        (_, Sym::Number(minus)) if minus == -1.0 => -a,
+        (Sym::Number(0.0), _) => a,
+        (_, Sym::Number(1.0)) => a,
+        (_, Sym::Number(-1.0)) => -a,
         _ => CURRENT.with_borrow_mut(|graph| {
             let (a, b) = (value(graph, a), value(graph, b));
             Sym::Node(Value {
@@ -219,7 +219,7 @@ impl Neg for Sym {
     fn neg(self) -> Self {
         match self {
             // Not −0: zero has no sign here.
-            Self::Number(number) if number == 0.0 => self,
+            Self::Number(0.0) => self,
             Self::Number(number) => Self::Number(-number),
             Self::Node(value) => Self::Node(value.opposite()),
         }
