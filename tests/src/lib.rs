@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod compiled;
 pub mod differences;
+pub mod emitted;
 pub mod extended;
 pub mod figures;
 pub mod fuzz;

@@ -4,6 +4,7 @@ mod allocation;
 mod chains;
 mod compiled;
 mod derivatives;
+mod emitted;
 mod errata;
 mod euler_lagrange;
 mod frames;
