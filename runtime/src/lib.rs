@@ -16,7 +16,6 @@ pub use nalgebra;
 
 #[cfg(feature = "alloc")]
 pub mod chart;
-#[cfg(feature = "alloc")]
 pub mod compiled;
 #[cfg(feature = "alloc")]
 pub mod control;

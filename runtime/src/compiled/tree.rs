@@ -1,28 +1,11 @@
-//! Equations of one mechanism that the scene compiler wrote, behind the trait [`Dynamics`].
+//! Compiled equations of a mechanism, with the tree for what they do not hold.
 
+use super::Equations;
 use crate::dynamics::{Dynamics, DynamicsError, Recursive};
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
-
-/// v̄̇ from Q, v̄ and τ, into the last argument; sizes are those of [`Equations`].
-pub type ForwardDynamics = fn(&[f64], &[f64], &[f64], &mut [f64]);
-
-/// What an emitted module holds: functions of one scene. The constant `EQUATIONS` of that module.
-#[derive(Clone, Copy, Debug)]
-pub struct Equations {
-    /// Name of the scene.
-    pub scene: &'static str,
-    /// Stored scalars of Q.
-    pub configuration: usize,
-    /// Entries of τ.
-    pub freedoms: usize,
-    /// Entries of v̄.
-    pub speeds: usize,
-    /// (24), (34), where the module has it.
-    pub forward_dynamics: Option<ForwardDynamics>,
-}
 
 /// A module that does not belong to a mechanism.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,0 +1,27 @@
+//! Equations of one mechanism that the scene compiler wrote, behind the trait [`Dynamics`](crate::dynamics::Dynamics).
+//!
+//! [`Equations`] is all that an emitted module needs, without allocator; [`Compiled`] is what integrators take.
+
+#[cfg(feature = "alloc")]
+mod tree;
+
+#[cfg(feature = "alloc")]
+pub use tree::{Compiled, CompiledError};
+
+/// v̄̇ from Q, v̄ and τ, into the last argument; sizes are those of [`Equations`].
+pub type ForwardDynamics = fn(&[f64], &[f64], &[f64], &mut [f64]);
+
+/// What an emitted module holds: functions of one scene. The constant `EQUATIONS` of that module.
+#[derive(Clone, Copy, Debug)]
+pub struct Equations {
+    /// Name of the scene.
+    pub scene: &'static str,
+    /// Stored scalars of Q.
+    pub configuration: usize,
+    /// Entries of τ.
+    pub freedoms: usize,
+    /// Entries of v̄.
+    pub speeds: usize,
+    /// (24), (34), where the module has it.
+    pub forward_dynamics: Option<ForwardDynamics>,
+}
