@@ -1,17 +1,12 @@
 //! `hamel compile`: a scene or a robot as straight-line Rust.
 
+use crate::input;
 use crate::output::{self, Failure, refuse_overwriting};
 use clap::ValueEnum;
 use hamel::registry::JointRegistry;
-use hamel_codegen::derived::Derived;
-use hamel_codegen::scene::functions::{self, Kind};
-use hamel_codegen::scene::model::Model;
-use hamel_codegen::scene::{emit, explain};
-use hamel_scene::{Scene, SceneDescription, urdf};
-use std::cell::RefCell;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use hamel_codegen::scene::explain;
+use hamel_codegen::scene::functions::Kind;
+use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -86,78 +81,30 @@ impl FunctionName {
 /// Mistakes in the scene; what cannot be compiled; a file that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     refuse_overwriting([&args.scene], args.output.as_deref())?;
-    let description = described(args, registry)?;
-    let joints = Joints::default();
-    let model = Model::new(&description, |name| joints.find(name))
-        .map_err(|refused| Failure::Refused(refused.to_string()))?;
+    // Checked as a whole, with the joints of the registry: the compiler knows their specs alone.
+    output::tell(&input::scene(&args.scene, args.floating_base, registry)?.notices);
     let kinds: Vec<Kind> = match args.functions.as_slice() {
         [] => Kind::ALL.to_vec(),
         asked => asked.iter().map(|name| name.kind()).collect(),
     };
+    let refused = |error: hamel_codegen::scene::Error| Failure::Refused(error.to_string());
+    let mut build = hamel_codegen::scene(&args.scene)
+        .library(hamel_joints::specs())
+        .functions(kinds.iter().copied());
+    if args.floating_base {
+        build = build.floating_base();
+    }
     if args.explain {
+        let model = build.model().map_err(refused)?;
         return output::print(&explain(&model, &kinds));
     }
-    let written: Vec<_> = kinds
-        .iter()
-        .map(|&kind| functions::compile(&model, kind).function)
-        .collect();
     let label = args.scene.file_name().unwrap_or_default().to_string_lossy();
-    let text = emit::module(&model, &written, &label)
-        .map_err(|error| Failure::Refused(error.to_string()))?;
+    let text = build.module(&label).map_err(refused)?;
     match &args.output {
         None => output::print(&text),
         Some(path) => std::fs::write(path, text).map_err(|error| Failure::Write {
             target: path.display().to_string(),
             error,
         }),
-    }
-}
-
-/// The scene, checked as a whole: what it says by itself, and with the joints of the registry.
-fn described(args: &Args, registry: &JointRegistry) -> Result<SceneDescription, Failure> {
-    let ending = args.scene.extension().unwrap_or_default();
-    if ending.eq_ignore_ascii_case("urdf") {
-        let options = urdf::Options {
-            floating_base: args.floating_base,
-            ..urdf::Options::default()
-        };
-        let import = urdf::load(&args.scene, &options)?;
-        output::tell(&import.build(registry)?.notices);
-        return Ok(import.scene);
-    }
-    if args.floating_base {
-        return Err(Failure::Options(format!(
-            "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
-            args.scene.display()
-        )));
-    }
-    let text = read(&args.scene)?;
-    let description = Scene::from_toml(&text, &args.scene.display().to_string())?;
-    description.build(registry)?;
-    Ok(description)
-}
-
-fn read(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path)
-        .map_err(|error| Failure::Options(format!("cannot read {}: {error}", path.display())))
-}
-
-/// The library's joints, each derived when it is first asked for.
-#[derive(Default)]
-struct Joints {
-    derived: RefCell<BTreeMap<String, Option<Rc<Derived>>>>,
-}
-
-impl Joints {
-    fn find(&self, name: &str) -> Option<Rc<Derived>> {
-        let mut derived = self.derived.borrow_mut();
-        let entry = derived.entry(name.to_owned()).or_insert_with(|| {
-            let (_, text) = hamel_joints::specs().find(|(known, _)| *known == name)?;
-            // Specs of the library were derived when it was built.
-            hamel_codegen::derive(text, &format!("{name}.joint"))
-                .ok()
-                .map(Rc::new)
-        });
-        entry.clone()
     }
 }

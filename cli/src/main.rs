@@ -4,6 +4,7 @@
 
 mod compile;
 mod import;
+mod input;
 mod joints;
 mod output;
 mod report;

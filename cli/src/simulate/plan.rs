@@ -2,10 +2,11 @@
 
 use super::args::Args;
 use super::{settings, times};
+use crate::input;
 use crate::output::{Failure, refuse_overwriting, tell};
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
-use hamel_scene::{Control, Scene, Settings, urdf};
+use hamel_scene::{Control, Scene, Settings};
 use std::path::{Path, PathBuf};
 
 /// A run, decided in every respect.
@@ -33,7 +34,7 @@ impl Plan {
     /// # Errors
     /// Mistakes in the scene; options out of range.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
-        let scene = load(args, registry)?;
+        let scene = input::scene(&args.scene, args.floating_base, registry)?;
         let control = match &args.controller {
             Some(path) => Some(Control::load(path, &scene)?),
             None => scene.control.clone(),
@@ -103,25 +104,6 @@ impl Plan {
             samples: self.times.clone(),
         }
     }
-}
-
-/// The scene, or the robot in URDF, as the file's ending says.
-fn load(args: &Args, registry: &JointRegistry) -> Result<Scene, Failure> {
-    let ending = args.scene.extension().unwrap_or_default();
-    if ending.eq_ignore_ascii_case("urdf") {
-        let options = urdf::Options {
-            floating_base: args.floating_base,
-            ..urdf::Options::default()
-        };
-        return Ok(urdf::load(&args.scene, &options)?.build(registry)?);
-    }
-    if args.floating_base {
-        return Err(Failure::Options(format!(
-            "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
-            args.scene.display()
-        )));
-    }
-    Ok(Scene::load(&args.scene, registry)?)
 }
 
 /// The file asked for; else, unless something else is wanted, the scene's file name with `.csv` in the current folder.

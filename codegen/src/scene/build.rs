@@ -109,7 +109,12 @@ impl Build {
     /// All mistakes of the scene; joint types without a spec; what the compiler does not write; files that cannot be read or written.
     pub fn compile(&self) -> Result<(), Error> {
         let name = self.scene.file_name().unwrap_or_default();
-        let out = PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
+        let out = std::env::var_os("OUT_DIR")
+            .map(PathBuf::from)
+            .ok_or_else(|| {
+                let reason = "it is not set: call this from a build script";
+                Error::File("OUT_DIR".into(), std::io::Error::other(reason))
+            })?;
         println!("cargo::rerun-if-changed={}", self.scene.display());
         for folder in &self.folders {
             println!("cargo::rerun-if-changed={}", folder.display());
@@ -127,6 +132,20 @@ impl Build {
     /// # Errors
     /// Those of [`Build::compile`].
     pub fn module(&self, label: &str) -> Result<String, Error> {
+        let model = self.model()?;
+        let functions = self
+            .functions
+            .iter()
+            .map(|&kind| functions::compile(&model, kind).function);
+        let functions: Vec<_> = functions.collect();
+        emit::module(&model, &functions, label).map_err(Error::Write)
+    }
+
+    /// What is compiled.
+    ///
+    /// # Errors
+    /// Those of [`Build::compile`], but for writing.
+    pub fn model(&self) -> Result<Model, Error> {
         let description = self.description()?;
         let kinds: std::collections::BTreeSet<&str> = description
             .bodies
@@ -139,14 +158,7 @@ impl Build {
                 joints.insert(kind.to_owned(), Rc::new(derived));
             }
         }
-        let model =
-            Model::new(&description, |kind| joints.get(kind).cloned()).map_err(Error::Refused)?;
-        let functions = self
-            .functions
-            .iter()
-            .map(|&kind| functions::compile(&model, kind).function);
-        let functions: Vec<_> = functions.collect();
-        emit::module(&model, &functions, label).map_err(Error::Write)
+        Model::new(&description, |kind| joints.get(kind).cloned()).map_err(Error::Refused)
     }
 
     fn description(&self) -> Result<SceneDescription, Error> {

@@ -70,7 +70,7 @@ fn serves(angle: f64) -> bool {
 
 #[inline(always)]
 fn reduced(x: f64) -> (f64, f64) {
-    let shifted = x.mul_add_if_fast(core::f64::consts::FRAC_2_PI, ROUND);
+    let shifted = Scalar::mul_add(x, core::f64::consts::FRAC_2_PI, ROUND);
     let k = shifted - ROUND;
     let quadrant = shifted.to_bits();
     // Exact: k has 20 bits, the parts 33.
@@ -116,22 +116,9 @@ fn cosine(r: f64, low: f64) -> f64 {
 /// Coefficients from the lowest.
 #[inline(always)]
 fn polynomial(z: f64, coefficients: &[f64]) -> f64 {
-    coefficients
-        .iter()
-        .rev()
-        .fold(0.0, |sum, &coefficient| sum.mul_add_if_fast(z, coefficient))
-}
-
-/// The scalar's multiply–add: [`f64::mul_add`] is another.
-trait Fused {
-    fn mul_add_if_fast(self, factor: f64, addend: f64) -> f64;
-}
-
-impl Fused for f64 {
-    #[inline(always)]
-    fn mul_add_if_fast(self, factor: f64, addend: f64) -> f64 {
-        <f64 as Scalar>::mul_add(self, factor, addend)
-    }
+    coefficients.iter().rev().fold(0.0, |sum, &coefficient| {
+        Scalar::mul_add(sum, z, coefficient)
+    })
 }
 
 #[cfg(test)]

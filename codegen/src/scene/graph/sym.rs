@@ -53,12 +53,6 @@ impl Sym {
     pub fn value(self) -> Value {
         CURRENT.with_borrow_mut(|graph| value(graph, self))
     }
-
-    /// The square root.
-    #[must_use]
-    pub fn sqrt(self) -> Self {
-        call(Function::Sqrt, self)
-    }
 }
 
 /// A number as a node with a sign.
