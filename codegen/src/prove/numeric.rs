@@ -18,6 +18,8 @@ use std::collections::BTreeSet;
 pub(super) const BITS: usize = 256;
 /// Random points of each claim.
 const POINTS: usize = 1000;
+/// Points at which a claim is tried before the others are drawn.
+const FIRST_POINTS: usize = 10;
 /// Points far from home.
 const FAR_POINTS: usize = 100;
 /// Bits of the numbers there, where functions such as cosh are large, and their differences lose digits.
@@ -71,32 +73,43 @@ impl Prover<'_> {
         if terms > MOST_TERMS {
             return Evaluation::Undecided;
         }
-        let Some(near) = self.points.near(self) else {
-            return Evaluation::Undecided;
+        // What is wrong is seen at once, before many points are drawn.
+        let few = self.points.few(self).map(|few| evaluate_near(&open, few));
+        let Some(Evaluation::Agrees { .. }) = few else {
+            return few.unwrap_or(Evaluation::Undecided);
         };
-        let evaluation = evaluate_near(&open, near);
-        let Evaluation::Agrees { .. } = evaluation else {
-            return evaluation;
+        let near = self
+            .points
+            .near(self)
+            .map(|near| evaluate_near(&open, near));
+        let Some(Evaluation::Agrees { residual }) = near else {
+            return near.unwrap_or(Evaluation::Undecided);
         };
         difference_afar(&open, self.points.far(self))
-            .map_or(evaluation, |value| Evaluation::Differs { value })
+            .map_or(Evaluation::Agrees { residual }, |value| {
+                Evaluation::Differs { value }
+            })
     }
 }
 
 /// The random points of a joint, drawn when the first claim needs them: those of declared relations take time to find.
 #[derive(Default)]
 pub(super) struct Points {
+    few: OnceCell<Option<Vec<Point>>>,
     near: OnceCell<Option<Vec<Point>>>,
     far: OnceCell<Vec<Point>>,
 }
 
 impl Points {
+    /// The first of them; `None` where some were not found.
+    fn few(&self, prover: &Prover<'_>) -> Option<&[Point]> {
+        let found = || prover.draw_near(FIRST_POINTS);
+        self.few.get_or_init(found).as_deref()
+    }
+
     /// All of them; `None` where some were not found.
     fn near(&self, prover: &Prover<'_>) -> Option<&[Point]> {
-        let found = || {
-            let mut sampler = prover.sampler(BITS);
-            (0..POINTS).map(|_| prover.draw(&mut sampler)).collect()
-        };
+        let found = || prover.draw_near(POINTS);
         self.near.get_or_init(found).as_deref()
     }
 
@@ -115,6 +128,11 @@ impl Prover<'_> {
     fn sampler(&self, bits: usize) -> Sampler<'_> {
         let sampler = Sampler::new(self.spec, bits);
         sampler.beside(self.sides()).single()
+    }
+
+    fn draw_near(&self, count: usize) -> Option<Vec<Point>> {
+        let mut sampler = self.sampler(BITS);
+        (0..count).map(|_| self.draw(&mut sampler)).collect()
     }
 
     fn draw(&self, sampler: &mut Sampler<'_>) -> Option<Point> {
