@@ -1,17 +1,17 @@
-//! `hamel compile`: a scene or a robot as straight-line Rust.
+//! `hamel compile`: a scene or a robot as Rust that holds nothing it does not need.
 
 use crate::input;
 use crate::output::{self, Failure, refuse_overwriting};
 use clap::ValueEnum;
 use hamel::registry::JointRegistry;
-use hamel_codegen::scene::explain;
 use hamel_codegen::scene::functions::Kind;
+use hamel_codegen::scene::{Module, explain};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
   hamel compile panda.urdf -o panda.rs
-      writes forward and inverse dynamics, mass matrix and bias forces as functions without loops
+      writes forward and inverse dynamics, mass matrix and bias forces as functions
   hamel compile anymal.urdf --floating-base --function forward-dynamics -o anymal.rs
       one function alone
   hamel compile scenes/plate_cart_arm.toml --explain
@@ -26,7 +26,7 @@ joints whose velocities do not commute.
 
 Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a file that cannot be written; 2 wrong options.";
 
-/// Turn a scene into equations without loops, as a Rust module.
+/// Turn a scene into a Rust module of equations that hold nothing it does not need.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -38,7 +38,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Write this function; may be given several times [default: all]
+    /// Write this function; may be given several times [default: all that are not too long]
     #[arg(long = "function", value_name = "NAME")]
     pub functions: Vec<FunctionName>,
 
@@ -83,23 +83,23 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     refuse_overwriting([&args.scene], args.output.as_deref())?;
     // Checked as a whole, with the joints of the registry: the compiler knows their specs alone.
     output::tell(&input::scene(&args.scene, args.floating_base, registry)?.notices);
-    let kinds: Vec<Kind> = match args.functions.as_slice() {
-        [] => Kind::ALL.to_vec(),
-        asked => asked.iter().map(|name| name.kind()).collect(),
-    };
     let refused = |error: hamel_codegen::scene::Error| Failure::Refused(error.to_string());
-    let mut build = hamel_codegen::scene(&args.scene)
-        .library(hamel_joints::specs())
-        .functions(kinds.iter().copied());
+    let asked: Vec<Kind> = args.functions.iter().map(|name| name.kind()).collect();
+    let mut build = hamel_codegen::scene(&args.scene).library(hamel_joints::specs());
+    if !asked.is_empty() {
+        build = build.functions(asked.iter().copied());
+    }
     if args.floating_base {
         build = build.floating_base();
     }
     if args.explain {
         let model = build.model().map_err(refused)?;
-        return output::print(&explain(&model, &kinds));
+        let kinds: &[Kind] = if asked.is_empty() { &Kind::ALL } else { &asked };
+        return output::print(&explain(&model, kinds));
     }
     let label = args.scene.file_name().unwrap_or_default().to_string_lossy();
-    let text = build.module(&label).map_err(refused)?;
+    let Module { text, left_out } = build.module(&label).map_err(refused)?;
+    output::tell(&left_out);
     match &args.output {
         None => output::print(&text),
         Some(path) => std::fs::write(path, text).map_err(|error| Failure::Write {

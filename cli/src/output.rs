@@ -1,6 +1,6 @@
 //! What goes wrong, and how it is told: in plain words on stderr.
 
-use hamel_scene::{Diagnostics, Notice};
+use hamel_scene::Diagnostics;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -122,8 +122,8 @@ pub fn report(failure: &Failure) {
     drop(told);
 }
 
-/// Tells on stderr what is not simulated. If stderr is gone nobody is left to tell.
-pub fn tell(notices: &[Notice]) {
+/// Tells on stderr what is not done. If stderr is gone nobody is left to tell.
+pub fn tell(notices: &[impl std::fmt::Display]) {
     let mut stderr = io::stderr().lock();
     for notice in notices {
         drop(writeln!(stderr, "note: {notice}"));

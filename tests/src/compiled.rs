@@ -2,9 +2,10 @@
 
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel_codegen::derived::Derived;
-use hamel_codegen::scene::functions::{Kind, compile};
+use hamel_codegen::scene::functions::{Kind, Loops, compile_with};
 use hamel_codegen::scene::graph::Argument;
 use hamel_codegen::scene::model::{Body, Model};
+use hamel_codegen::scene::prune::{Pruning, prune};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -62,14 +63,19 @@ fn body(body: &TreeBody) -> Body {
 }
 
 /// The values of a compiled function at a state.
-pub fn evaluate(model: &Model, kind: Kind, q: &[f64], speeds: &[f64], inputs: &[f64]) -> Vec<f64> {
-    let function = compile(model, kind).function;
-    function
-        .graph
-        .evaluate(&function.outputs, |argument| match argument {
-            Argument::Configuration => q.to_vec(),
-            Argument::Speeds => speeds.to_vec(),
-            Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
-            Argument::Momenta => vec![],
-        })
+pub fn evaluate(
+    model: &Model,
+    (kind, loops): (Kind, Loops),
+    q: &[f64],
+    speeds: &[f64],
+    inputs: &[f64],
+) -> Vec<f64> {
+    let links = prune(model, Pruning::ALL);
+    let function = compile_with(model, &links, kind, loops).function;
+    function.evaluate(|argument| match argument {
+        Argument::Configuration => q.to_vec(),
+        Argument::Speeds => speeds.to_vec(),
+        Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
+        Argument::Momenta => vec![],
+    })
 }

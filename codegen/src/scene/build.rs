@@ -11,7 +11,7 @@
 
 use super::describe::Refused;
 use super::emit;
-use super::functions::{self, Kind};
+use super::functions::{self, Kind, TooLong};
 use super::model::Model;
 use crate::derived::Derived;
 use crate::emit::rust::WriteError;
@@ -26,8 +26,17 @@ pub struct Build {
     scene: PathBuf,
     folders: Vec<PathBuf>,
     texts: BTreeMap<String, String>,
-    functions: Vec<Kind>,
+    functions: Option<Vec<Kind>>,
     floating_base: bool,
+}
+
+/// A module of equations.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Module {
+    /// Its text.
+    pub text: String,
+    /// Functions that it does not have, where nobody asked for them by name.
+    pub left_out: Vec<TooLong>,
 }
 
 /// Why a scene is not compiled.
@@ -41,6 +50,8 @@ pub enum Error {
     Spec(Box<crate::diagnostic::Diagnostics>),
     /// What the scene has and the compiler does not write.
     Refused(Refused),
+    /// A function that was asked for and would be too long.
+    TooLong(TooLong),
     /// Emitted tokens that are no Rust.
     Write(WriteError),
 }
@@ -52,6 +63,7 @@ impl std::fmt::Display for Error {
             Self::Scene(errors) => write!(f, "{errors}"),
             Self::Spec(errors) => write!(f, "{errors}"),
             Self::Refused(refused) => write!(f, "{refused}"),
+            Self::TooLong(long) => write!(f, "{long}"),
             Self::Write(error) => write!(f, "{error}"),
         }
     }
@@ -59,13 +71,13 @@ impl std::fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Compiles the scene file (TOML) or robot (URDF) at `path`, relative to the crate's manifest, with all functions.
+/// Compiles the scene file (TOML) or robot (URDF) at `path`, relative to the crate's manifest, with all functions that are not too long.
 pub fn scene(path: impl Into<PathBuf>) -> Build {
     Build {
         scene: path.into(),
         folders: vec![],
         texts: BTreeMap::new(),
-        functions: Kind::ALL.to_vec(),
+        functions: None,
         floating_base: false,
     }
 }
@@ -88,10 +100,10 @@ impl Build {
         self
     }
 
-    /// The functions to be written.
+    /// The functions to be written; without this all that are not too long.
     #[must_use]
     pub fn functions(mut self, functions: impl IntoIterator<Item = Kind>) -> Self {
-        self.functions = functions.into_iter().collect();
+        self.functions = Some(functions.into_iter().collect());
         self
     }
 
@@ -119,7 +131,10 @@ impl Build {
         for folder in &self.folders {
             println!("cargo::rerun-if-changed={}", folder.display());
         }
-        let text = self.module(&name.to_string_lossy())?;
+        let Module { text, left_out } = self.module(&name.to_string_lossy())?;
+        for left_out in left_out {
+            println!("cargo::warning={}: {left_out}", self.scene.display());
+        }
         let target = out.join(name).with_extension("rs");
         if std::fs::read_to_string(&target).is_ok_and(|known| known == text) {
             return Ok(());
@@ -131,14 +146,19 @@ impl Build {
     ///
     /// # Errors
     /// Those of [`Build::compile`].
-    pub fn module(&self, label: &str) -> Result<String, Error> {
+    pub fn module(&self, label: &str) -> Result<Module, Error> {
         let model = self.model()?;
-        let functions = self
-            .functions
-            .iter()
-            .map(|&kind| functions::compile(&model, kind).function);
-        let functions: Vec<_> = functions.collect();
-        emit::module(&model, &functions, label).map_err(Error::Write)
+        let kinds = self.functions.as_deref().unwrap_or(&Kind::ALL);
+        let (mut functions, mut left_out) = (vec![], vec![]);
+        for &kind in kinds {
+            match functions::compile(&model, kind) {
+                Ok(chosen) => functions.push(chosen.function),
+                Err(long) if self.functions.is_none() => left_out.push(long),
+                Err(long) => return Err(Error::TooLong(long)),
+            }
+        }
+        let text = emit::module(&model, &functions, label).map_err(Error::Write)?;
+        Ok(Module { text, left_out })
     }
 
     /// What is compiled.

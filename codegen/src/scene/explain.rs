@@ -1,6 +1,6 @@
 //! What was left out of a scene's equations, why, and what that saved.
 
-use super::functions::{Chosen, Kind, compile_with};
+use super::functions::{Chosen, Kind, Loops, compile, compile_with};
 use super::graph::{Argument, Sym, record};
 use super::joint::Joint;
 use super::model::{Body, Inertia, Model};
@@ -28,8 +28,14 @@ pub fn explain(model: &Model, kinds: &[Kind]) -> String {
         text += &of_body(model, body, [&bare[index], &framed[index], &pruned[index]]);
     }
     for &kind in kinds {
-        let chosen = [&bare, &framed, &pruned].map(|links| compile_with(model, links, kind));
+        if let Err(long) = compile(model, kind) {
+            let _ = writeln!(text, "\n{long}");
+            continue;
+        }
+        let chosen = [&bare, &framed, &pruned]
+            .map(|links| compile_with(model, links, kind, Loops::default()));
         text += &of_function(kind, &chosen);
+        text += &of_loops(model, &chosen[2]);
     }
     text
 }
@@ -111,6 +117,34 @@ fn without_bias(body: &Body) -> Option<&'static str> {
         (false, false) => Some("no nonholonomic part"),
         (false, true) => None,
     }
+}
+
+/// What is looped over.
+fn of_loops(model: &Model, chosen: &Chosen) -> String {
+    let function = &chosen.function;
+    let Some(plan) = &function.plan else {
+        return String::new();
+    };
+    let mut text = format!(
+        "  {:>7} of {} operations are written: the rest is turns of loops\n",
+        function.written(),
+        function.operations().flops()
+    );
+    for group in plan.groups.iter().filter(|group| group.len() > 1) {
+        let name = |block: &usize| {
+            let section = plan.blocks.blocks[*block].section as usize;
+            model.bodies.get(section).map_or("?", |body| &body.name)
+        };
+        let ends = group.first().zip(group.last());
+        let (first, last) = ends.map_or(("?", "?"), |(first, last)| (name(first), name(last)));
+        let nodes = plan.blocks.blocks[group[0]].nodes.len();
+        let _ = writeln!(
+            text,
+            "  {:>7} turns of {nodes} values, from `{first}` to `{last}`",
+            group.len()
+        );
+    }
+    text
 }
 
 fn of_function(kind: Kind, [bare, framed, pruned]: &[Chosen; 3]) -> String {

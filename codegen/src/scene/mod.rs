@@ -1,4 +1,4 @@
-//! The scene compiler: from one mechanism to code without loops that holds nothing it does not need.
+//! The scene compiler: from one mechanism to code that holds nothing it does not need.
 //!
 //! ```text
 //! SceneDescription + Derived joints
@@ -11,13 +11,17 @@
 //!    │  equations   recursions on the graph: articulated bodies, composite bodies, Newton–Euler
 //!    ▼
 //! Graph             every value once; zeros, ones and signs folded; of several recursions the one with the fewest operations
-//!    │  emit        lines with telling names → Rust
+//!    │  alike       parts that repeat from body to body, where the whole would be long
+//!    ▼
+//! Plan
+//!    │  emit        lines with telling names, loops over like bodies → Rust
 //!    ▼
 //! module
 //! ```
 //!
 //! [`Build`] is for build scripts; `hamel compile` does the same from the command line.
 
+pub mod alike;
 mod build;
 mod describe;
 pub mod emit;
@@ -30,6 +34,6 @@ pub mod model;
 pub mod prune;
 mod spatial;
 
-pub use build::{Build, Error, scene};
+pub use build::{Build, Error, Module, scene};
 pub use describe::Refused;
 pub use explain::explain;

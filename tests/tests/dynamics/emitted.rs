@@ -6,8 +6,11 @@ use hamel::dynamics::{Dynamics, Recursive};
 use hamel::integrate::{Form, Integration, Method, Options, State};
 use hamel::scalar::F64x4;
 use hamel_codegen::scene::scene;
-use hamel_tests::emitted::plate_cart_arm as module;
-use hamel_tests::scenes;
+use hamel_scene::Scene;
+use hamel_tests::emitted::{ball_chain, plate_cart_arm as module};
+use hamel_tests::{random, scenes};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -15,19 +18,58 @@ fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-#[test]
-fn the_committed_module_is_what_is_written() {
-    let build =
-        scene(folder().join("../scenes/plate_cart_arm.toml")).library(hamel_joints::specs());
-    let text = build
-        .module("plate_cart_arm.toml")
+/// What the compiler writes for a scene of this folder, committed under its name.
+fn is_what_is_written(scene_file: &str, name: &str) {
+    let build = scene(folder().join(scene_file)).library(hamel_joints::specs());
+    let label = format!("{name}.toml");
+    let module = build
+        .module(&label)
         .unwrap_or_else(|error| panic!("{error}"));
-    let path = folder().join("src/emitted/plate_cart_arm.rs");
+    let path = folder().join(format!("src/emitted/{name}.rs"));
     if std::env::var_os("UPDATE_EXPECT").is_some() {
-        std::fs::write(&path, &text).expect("the folder is there");
+        std::fs::write(&path, &module.text).expect("the folder is there");
     }
     let committed = std::fs::read_to_string(&path).expect("a file of the project");
-    assert!(committed == text, "run this test with UPDATE_EXPECT=1");
+    assert!(
+        committed == module.text,
+        "run this test with UPDATE_EXPECT=1"
+    );
+}
+
+#[test]
+fn the_committed_modules_are_what_is_written() {
+    is_what_is_written("../scenes/plate_cart_arm.toml", "plate_cart_arm");
+    is_what_is_written("data/ball_chain.toml", "ball_chain");
+}
+
+/// Loops over like links, in compiled Rust.
+#[test]
+fn loops_give_the_values_of_the_tree() {
+    let text = std::fs::read_to_string(folder().join("data/ball_chain.toml")).expect("a file");
+    let scene = Scene::parse(&text, "ball_chain", &hamel_joints::registry());
+    let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+    let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    for _ in 0..10 {
+        let q = random::configuration(&mut random, &scene.mechanism);
+        let v = random::numbers(&mut random, ball_chain::SPEEDS);
+        let tau = random::numbers(&mut random, ball_chain::FREEDOMS);
+        let (Some(chunk), Some(speeds), Some(inputs)) =
+            (q.first_chunk(), v.first_chunk(), tau.first_chunk())
+        else {
+            panic!("the module has other sizes");
+        };
+        let mut expected = vec![0.0; v.len()];
+        tree.accelerations(&q, &v, &tau, &mut expected)
+            .expect("the scene is sound");
+        let found = ball_chain::forward_dynamics(chunk, speeds, inputs);
+        // Conditions of M̄ of such chains are some 1e4: 10 roundings each.
+        assert!(difference(&found, &expected) < 1e-11);
+        tree.inverse_dynamics(&q, &v, &tau, &mut expected)
+            .expect("the scene is sound");
+        let found = ball_chain::inverse_dynamics(chunk, speeds, inputs);
+        assert!(difference(&found, &expected) < 1e-12);
+    }
 }
 
 /// Largest difference of two vectors over the largest entry of the second.
@@ -106,7 +148,7 @@ fn another_mechanism_is_refused() {
     let text = std::fs::read_to_string(folder().join("../scenes/plate_cart_arm.toml"))
         .expect("a file of the project");
     let heavier = text.replacen("mass = 12.0", "mass = 13.0", 1);
-    let heavier = hamel_scene::Scene::parse(&heavier, "heavier", &hamel_joints::registry());
+    let heavier = Scene::parse(&heavier, "heavier", &hamel_joints::registry());
     let heavier = heavier.unwrap_or_else(|errors| panic!("{errors}"));
     let error = Compiled::new(heavier.mechanism, &module::EQUATIONS).expect_err("a mass differs");
     assert!(matches!(error, CompiledError::Other { .. }), "{error}");

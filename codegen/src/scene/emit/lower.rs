@@ -1,231 +1,71 @@
-//! From a graph to lines: what is named, what stands inside a formula, in which order.
+//! From nodes to lines: what is named, what stands inside a formula, in which order.
 
-use super::Function;
+use super::lines::{Formula, Heading, Line};
 use crate::emit::names::NameSet;
 use crate::expr::Function as Known;
-use crate::scene::graph::{Argument, Graph, Operation, Operations, Value};
+use crate::scene::graph::{Graph, Operation, Operations, Value};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Operations that one line holds at most: what is longer is cut into lines of its own.
 const LONGEST: usize = 6;
 
-/// A formula of one line.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Formula {
-    /// A number.
-    Number(f64),
-    /// An entry of an argument.
-    Input(Argument, usize),
-    /// A value of an earlier line.
-    Name(String),
-    /// Terms; those marked true are subtracted.
-    Sum(Vec<(bool, Formula)>),
-    /// Two factors.
-    Product(Box<Formula>, Box<Formula>),
-    /// A quotient.
-    Quotient(Box<Formula>, Box<Formula>),
-    /// The opposite.
-    Negative(Box<Formula>),
-    /// A function.
-    Call(Known, Vec<Formula>),
-}
-
-impl Formula {
-    fn negated(self) -> Self {
-        match self {
-            Self::Negative(inner) => *inner,
-            Self::Number(number) => Self::Number(-number),
-            Self::Sum(terms) => Self::Sum(
-                terms
-                    .into_iter()
-                    .map(|(minus, term)| (!minus, term))
-                    .collect(),
-            ),
-            Self::Product(a, b) if matches!(*a, Self::Number(_)) => {
-                Self::Product(Box::new(a.negated()), b)
-            }
-            Self::Product(a, b) if matches!(*b, Self::Number(_)) => {
-                Self::Product(a, Box::new(b.negated()))
-            }
-            other => Self::Negative(Box::new(other)),
-        }
-    }
-}
-
-/// What stands above a part of the lines.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Heading {
-    /// Name of the body.
-    pub body: String,
-    /// What of it.
-    pub topic: &'static str,
-    /// The operations below it.
-    pub operations: Operations,
-}
-
-/// One line.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Line {
-    /// What follows.
-    Heading(Heading),
-    /// A name for a value.
-    Value(String, Formula),
-    /// Names for sine and cosine of one angle.
-    SinCos(String, String, Formula),
-    /// The same for several angles at once.
-    SinCosAll(Vec<(String, String, Formula)>),
-}
-
-/// A function in lines.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lowered {
-    /// The lines.
-    pub lines: Vec<Line>,
-    /// Its results.
-    pub outputs: Vec<Formula>,
-}
-
-impl Lowered {
-    /// The lines of a function; `bodies` are the names of the sections, `reserved` must not be used.
-    pub fn new(function: &Function, bodies: &[String], reserved: &[&str]) -> Self {
-        let mut names = NameSet::default();
-        for name in reserved {
-            names.claim(name);
-        }
-        let uses = function.graph.uses(&function.outputs);
-        let mut lowering = Lowering {
-            graph: &function.graph,
-            partner: partners(&function.graph, &uses),
-            uses,
-            bodies,
-            names,
-            formulas: vec![None; function.graph.nodes.len()],
-            lines: vec![],
-        };
-        lowering.run();
-        let outputs = function
-            .outputs
-            .iter()
-            .map(|&output| lowering.read(output))
-            .collect();
-        Self {
-            lines: lowering.lines,
-            outputs,
-        }
-    }
-}
-
 /// For a sine the cosine of the same angle, and the other way round, where both are needed.
-fn partners(graph: &Graph, uses: &[u32]) -> Vec<Option<u32>> {
-    let mut partners = vec![None; graph.nodes.len()];
-    let mut angles = rustc_hash::FxHashMap::<Value, u32>::default();
-    for (number, node) in graph.nodes.iter().enumerate() {
+pub fn partners(graph: &Graph, uses: &[u32]) -> FxHashMap<u32, u32> {
+    let mut partners = FxHashMap::default();
+    let mut angles = FxHashMap::<(u32, Value), u32>::default();
+    for (number, node) in (0_u32..).zip(&graph.nodes) {
         let Operation::Call(Known::Sin | Known::Cos, angle, None) = node.operation else {
             continue;
         };
-        if uses[number] == 0 {
+        if uses[number as usize] == 0 {
             continue;
         }
-        let number = u32::try_from(number).unwrap_or(u32::MAX);
-        if let Some(other) = angles.insert(angle, number) {
-            partners[number as usize] = Some(other);
-            partners[other as usize] = Some(number);
+        if let Some(other) = angles.insert((node.section, angle), number) {
+            partners.insert(number, other);
+            partners.insert(other, number);
         }
     }
     partners
 }
 
-struct Lowering<'a> {
-    graph: &'a Graph,
-    uses: Vec<u32>,
-    partner: Vec<Option<u32>>,
-    bodies: &'a [String],
-    names: NameSet,
+/// Nodes that become lines.
+pub struct Lowering<'a> {
+    /// The graph.
+    pub graph: &'a Graph,
+    /// How often each node is read.
+    pub uses: &'a [u32],
+    /// Those of [`partners`].
+    pub partners: &'a FxHashMap<u32, u32>,
+    /// Names of the sections, in values.
+    pub bodies: &'a dyn Fn(u32) -> String,
+    /// What must have a name.
+    pub left: FxHashSet<u32>,
+    /// What stands for a node that is not lowered here.
+    pub outside: &'a dyn Fn(u32) -> Formula,
+    /// Names that are taken.
+    pub names: &'a mut NameSet,
     /// What stands for a node, and the operations in it.
-    formulas: Vec<Option<(Formula, usize)>>,
-    lines: Vec<Line>,
+    pub formulas: FxHashMap<u32, (Formula, usize)>,
+    /// The lines so far.
+    pub lines: Vec<Line>,
 }
 
 impl Lowering<'_> {
-    /// Sines and cosines of arguments come first and together.
-    fn batch(&mut self) {
-        let of_input = |number: usize| {
-            let Operation::Call(function @ (Known::Sin | Known::Cos), angle, None) =
-                self.graph.nodes[number].operation
-            else {
-                return None;
-            };
-            let is_input = matches!(
-                self.graph.nodes[angle.node as usize].operation,
-                Operation::Input(..)
-            );
-            (self.uses[number] > 0 && is_input).then_some((number, function, angle))
-        };
-        let calls: Vec<(usize, Known, Value)> =
-            (0..self.graph.nodes.len()).filter_map(of_input).collect();
-        let mut operations = Operations::default();
-        let mut lines: Vec<(String, String, Formula)> = vec![];
-        for (number, function, angle) in calls {
-            operations.add(&self.graph.nodes[number].operation);
-            if self.formulas[number].is_some() {
-                continue;
-            }
-            self.lower(angle.node as usize);
-            let (sin, cos) = (self.claim(number, "sin"), self.claim(number, "cos"));
-            let named = |function| {
-                Some((
-                    Formula::Name(if function == Known::Sin {
-                        sin.clone()
-                    } else {
-                        cos.clone()
-                    }),
-                    0,
-                ))
-            };
-            self.formulas[number] = named(function);
-            if let Some(partner) = self.partner[number] {
-                let other = if function == Known::Sin {
-                    Known::Cos
-                } else {
-                    Known::Sin
-                };
-                self.formulas[partner as usize] = named(other);
-            }
-            lines.push((sin, cos, self.read(angle)));
-        }
-        if lines.is_empty() {
-            return;
-        }
-        self.lines.push(Line::Heading(Heading {
-            body: "all joints".to_owned(),
-            topic: "sines and cosines",
-            operations,
-        }));
-        self.lines.push(Line::SinCosAll(lines));
-    }
-
-    fn run(&mut self) {
-        self.batch();
+    /// Adds the lines of `nodes`, with headings.
+    pub fn run(&mut self, nodes: &[u32]) {
         let mut heading: Option<(u32, &'static str)> = None;
         let mut place = 0;
-        for number in 0..self.graph.nodes.len() {
-            if self.uses[number] == 0 || self.formulas[number].is_some() {
+        for &number in nodes {
+            if self.formulas.contains_key(&number) {
                 continue;
             }
-            let node = &self.graph.nodes[number];
+            let node = &self.graph.nodes[number as usize];
             let here = (node.section, node.topic);
-            let computes = !matches!(
-                node.operation,
-                Operation::Input(..) | Operation::Constant(_)
-            );
-            if computes && heading != Some(here) {
+            if heading != Some(here) {
                 heading = Some(here);
                 place = self.lines.len();
                 self.lines.push(Line::Heading(Heading {
-                    body: self
-                        .bodies
-                        .get(here.0 as usize)
-                        .cloned()
-                        .unwrap_or_default(),
+                    body: (self.bodies)(here.0),
                     topic: here.1,
                     operations: Operations::default(),
                 }));
@@ -235,71 +75,90 @@ impl Lowering<'_> {
             }
             self.lower(number);
         }
-        let is_empty = |pair: &[Line]| matches!(pair, [Line::Heading(_), Line::Heading(_)]);
-        let mut kept = vec![];
-        let lines = std::mem::take(&mut self.lines);
-        for (place, line) in lines.iter().enumerate() {
-            if !lines.get(place..place + 2).is_some_and(is_empty) {
-                kept.push(line.clone());
-            }
-        }
-        self.lines = kept;
+        self.drop_empty_headings();
     }
 
-    fn lower(&mut self, number: usize) {
-        let operation = &self.graph.nodes[number].operation;
-        if let (Some(partner), Operation::Call(function, angle, _)) =
-            (self.partner[number], operation)
-        {
-            let (function, angle) = (*function, self.read(*angle));
-            let (sin, cos) = (self.claim(number, "sin"), self.claim(number, "cos"));
-            let own = if function == Known::Sin { &sin } else { &cos };
-            let other = if function == Known::Sin { &cos } else { &sin };
-            self.formulas[number] = Some((Formula::Name(own.clone()), 0));
-            self.formulas[partner as usize] = Some((Formula::Name(other.clone()), 0));
+    fn drop_empty_headings(&mut self) {
+        let is_heading = |line: Option<&Line>| matches!(line, Some(Line::Heading(_)) | None);
+        let lines = std::mem::take(&mut self.lines);
+        for (place, line) in lines.iter().enumerate() {
+            let is_empty = matches!(line, Line::Heading(_)) && is_heading(lines.get(place + 1));
+            if !is_empty {
+                self.lines.push(line.clone());
+            }
+        }
+    }
+
+    /// Names for a sine and the cosine beside it, and the angle.
+    pub fn sin_cos(
+        &mut self,
+        number: u32,
+        function: Known,
+        angle: Value,
+    ) -> (String, String, Formula) {
+        let angle = self.read(angle);
+        let (sin, cos) = (self.claim(number, "sin"), self.claim(number, "cos"));
+        let (own, other) = match function {
+            Known::Sin => (&sin, &cos),
+            _ => (&cos, &sin),
+        };
+        let named = |name: &String| (Formula::Name(name.clone()), 0);
+        self.formulas.insert(number, named(own));
+        if let Some(&partner) = self.partners.get(&number) {
+            self.formulas.insert(partner, named(other));
+        }
+        (sin, cos, angle)
+    }
+
+    fn lower(&mut self, number: u32) {
+        if let (true, Operation::Call(function, angle, _)) = (
+            self.partners.contains_key(&number),
+            &self.graph.nodes[number as usize].operation,
+        ) {
+            let (sin, cos, angle) = self.sin_cos(number, *function, *angle);
             self.lines.push(Line::SinCos(sin, cos, angle));
             return;
         }
         let (formula, length) = self.formula(number);
-        let computes = !matches!(formula, Formula::Number(_) | Formula::Input(..));
-        let shared = self.uses[number] > 1 || length > LONGEST;
-        let formula = if computes && shared {
-            let label = self.graph.nodes[number].label.clone();
+        let is_shared = self.uses[number as usize] > 1 || self.left.contains(&number);
+        let formula = if formula.computes() && (is_shared || length > LONGEST) {
+            let label = self.graph.nodes[number as usize].label.clone();
             let name = self.claim(number, &label);
             self.lines.push(Line::Value(name.clone(), formula));
             (Formula::Name(name), 0)
         } else {
             (formula, length)
         };
-        self.formulas[number] = Some(formula);
+        self.formulas.insert(number, formula);
     }
 
-    fn claim(&mut self, number: usize, label: &str) -> String {
-        let body = self.bodies.get(self.graph.nodes[number].section as usize);
-        let body = body.map_or("", String::as_str);
+    fn claim(&mut self, number: u32, label: &str) -> String {
+        let body = (self.bodies)(self.graph.nodes[number as usize].section);
         self.names
             .claim(&format!("{body}_{}", label.replace(' ', "_")))
     }
 
     fn part(&self, number: u32) -> (Formula, usize) {
-        self.formulas[number as usize]
-            .clone()
-            .unwrap_or((Formula::Number(f64::NAN), 0))
+        let known = self.formulas.get(&number).cloned();
+        known.unwrap_or_else(|| ((self.outside)(number), 0))
     }
 
-    fn read(&self, value: Value) -> Formula {
+    /// The formula of a value.
+    pub fn read(&self, value: Value) -> Formula {
         let formula = self.part(value.node).0;
-        if value.negative {
-            formula.negated()
-        } else {
-            formula
+        match value.negative {
+            true => formula.negated(),
+            false => formula,
         }
     }
 
-    fn formula(&self, number: usize) -> (Formula, usize) {
-        match &self.graph.nodes[number].operation {
-            Operation::Input(argument, index) => (Formula::Input(*argument, *index as usize), 0),
-            Operation::Constant(bits) => (Formula::Number(f64::from_bits(*bits)), 0),
+    fn formula(&self, number: u32) -> (Formula, usize) {
+        match &self.graph.nodes[number as usize].operation {
+            Operation::Input(..) | Operation::Constant(_) => ((self.outside)(number), 0),
+            Operation::Opposite(of) => {
+                let (of, length) = self.part(*of);
+                (of.negated(), length)
+            }
             Operation::Sum(a, b) => self.sum(*a, *b, false),
             Operation::Difference(a, b) => self.sum(*a, *b, true),
             Operation::Product(a, b) => {
@@ -322,9 +181,10 @@ impl Lowering<'_> {
 
     fn sum(&self, a: u32, b: u32, minus: bool) -> (Formula, usize) {
         let ((a, m), (b, n)) = (self.part(a), self.part(b));
-        let mut terms = terms(a);
-        terms.extend(terms_of(b, minus));
-        (Formula::Sum(terms), m + n + 1)
+        let mut sum = terms(a);
+        let added = terms(b).into_iter();
+        sum.extend(added.map(|(subtracted, term)| (subtracted ^ minus, term)));
+        (Formula::Sum(sum), m + n + 1)
     }
 }
 
@@ -333,11 +193,4 @@ fn terms(formula: Formula) -> Vec<(bool, Formula)> {
         Formula::Sum(terms) => terms,
         other => vec![(false, other)],
     }
-}
-
-fn terms_of(formula: Formula, minus: bool) -> Vec<(bool, Formula)> {
-    terms(formula)
-        .into_iter()
-        .map(|(subtracted, term)| (subtracted ^ minus, term))
-        .collect()
 }

@@ -1,15 +1,23 @@
 //! The graph as source text.
 //!
 //! [`Lowered`] is what every target language writes: lines in order, each a name for a value, under a heading for each part of a body's
-//! equations. It holds no decision of a language: names are ASCII identifiers, sums and products are as they are computed.
+//! equations, and loops of such lines. It holds no decision of a language: names are ASCII identifiers, sums and products are as they are
+//! computed.
 
+mod evaluate;
+pub mod lines;
+mod looped;
 mod lower;
 mod rust;
+mod straight;
 
-pub use lower::{Formula, Heading, Line, Lowered};
 pub use rust::module;
 
+use super::alike::Plan;
 use super::graph::{Argument, Graph, Operations, Value};
+use crate::emit::names::NameSet;
+use lines::{Formula, Line};
+use std::collections::BTreeMap;
 
 /// One function to be written.
 #[derive(Clone, Debug)]
@@ -26,6 +34,8 @@ pub struct Function {
     pub outputs: Vec<Value>,
     /// Columns of the result: 1 for a vector.
     pub columns: usize,
+    /// Its like parts, where they are looped over.
+    pub plan: Option<Plan>,
 }
 
 impl Function {
@@ -33,6 +43,49 @@ impl Function {
     pub fn operations(&self) -> Operations {
         Operations::of(&self.graph, &self.outputs)
     }
+
+    /// Operations that are written, where those of loops stand once.
+    pub fn written(&self) -> usize {
+        match &self.plan {
+            Some(plan) => plan.written(&self.graph),
+            None => self.operations().flops(),
+        }
+    }
+}
+
+/// A function in lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lowered {
+    /// The lines.
+    pub lines: Vec<Line>,
+    /// Arrays of the rows that blocks leave: how many rows of which length.
+    pub arrays: BTreeMap<usize, usize>,
+    /// Its results, where no line assigns them.
+    pub outputs: Option<Vec<Formula>>,
+}
+
+impl Lowered {
+    /// The lines of a function; `bodies` are the names of the sections, `reserved` must not be used.
+    pub fn new(function: &Function, bodies: &[String], reserved: &[&str]) -> Self {
+        let mut names = NameSet::default();
+        for name in reserved {
+            names.claim(name);
+        }
+        match &function.plan {
+            None => straight::lowered(function, bodies, &mut names),
+            Some(plan) => {
+                for width in plan.arrays.keys() {
+                    names.claim(&array(*width));
+                }
+                looped::lowered(function, plan, bodies, &mut names)
+            }
+        }
+    }
+}
+
+/// Name of the array of rows of a length.
+fn array(width: usize) -> String {
+    format!("rows_of_{width}")
 }
 
 impl Argument {

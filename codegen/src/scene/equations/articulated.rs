@@ -57,7 +57,13 @@ impl Tree<'_> {
             biases.push(own);
         }
         let mut pivots: Vec<Vec<Pivot>> = (0..count).map(|_| vec![]).collect();
+        let mut seen: Vec<Vec<(Articulated, Wrench)>> = (0..count).map(|_| vec![]).collect();
         for index in (0..count).rev() {
+            section(number(index), "carried");
+            for (inertia, wrench) in std::mem::take(&mut seen[index]) {
+                inertias[index] = inertias[index].plus(&inertia);
+                wrenches[index] = wrenches[index].plus(&wrench);
+            }
             let efforts = self.efforts(index, Some(Argument::Efforts));
             let places = self.bodies[index].share.speeds.clone();
             let efforts: Vec<Sym> = efforts
@@ -71,8 +77,10 @@ impl Tree<'_> {
                 section(number(index), "seen by parent");
                 let steps = &self.bodies[index].steps;
                 let wrench = wrenches[index].plus(&inertias[index].of(&biases[index]));
-                wrenches[parent] = wrenches[parent].plus(&wrench_to_parent(steps, &wrench));
-                inertias[parent] = inertias[parent].plus(&inertias[index].to_parent(steps));
+                seen[parent].push((
+                    inertias[index].to_parent(steps).settled(),
+                    wrench_to_parent(steps, &wrench).settled(),
+                ));
             }
         }
         self.outward(bias, &biases, &pivots)
@@ -166,7 +174,7 @@ impl Tree<'_> {
                 rates[place] = rate.named("acceleration");
                 acceleration = acceleration.plus(&body.columns[j].times(rate));
             }
-            accelerations.push(acceleration);
+            accelerations.push(acceleration.settled());
         }
         rates
     }

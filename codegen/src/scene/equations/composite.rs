@@ -18,14 +18,17 @@ impl Tree<'_> {
             .iter()
             .map(|link| link.inertia.on_graph())
             .collect();
+        let mut seen: Vec<Vec<Rigid>> = self.bodies.iter().map(|_| vec![]).collect();
         for (index, body) in self.bodies.iter().enumerate().rev() {
             section(number(index), "composite inertia");
+            for inertia in std::mem::take(&mut seen[index]) {
+                composites[index] = composites[index].plus(&inertia);
+            }
             for (j, place) in body.share.speeds.clone().enumerate() {
                 self.fill_row(index, j, place, &composites[index], &mut matrix);
             }
             if let Some(parent) = body.parent {
-                composites[parent] =
-                    composites[parent].plus(&composites[index].to_parent(&body.steps));
+                seen[parent].push(composites[index].to_parent(&body.steps).settled());
             }
         }
         matrix

@@ -78,7 +78,7 @@ impl<'a> Tree<'a> {
                 None => Vec3::zeros(),
             };
             let own = carried + body.velocity.angular;
-            let named = |i: usize| own[i].named(["rate_x", "rate_y", "rate_z"][i]);
+            let named = |i: usize| own[i].settled().named(["rate_x", "rate_y", "rate_z"][i]);
             velocities.push((Vec3::from_fn(|i, _| named(i)), carried));
         }
         velocities

@@ -81,8 +81,8 @@ impl Tree<'_> {
                     acceleration = acceleration.plus(&column.times(Sym::input(argument, place)));
                 }
             }
-            let alpha = to_child(&body.steps, &alpha) + acceleration.angular;
-            let a = a + acceleration.linear;
+            let alpha = (to_child(&body.steps, &alpha) + acceleration.angular).map(Sym::settled);
+            let a = (a + acceleration.linear).map(Sym::settled);
             let spin = Spin::new(&velocities[index].0, &alpha);
             section(number(index), "force");
             wrenches.push(spin.wrench(&self.links[index].inertia.on_graph(), &a));
@@ -109,8 +109,12 @@ impl Tree<'_> {
     /// τ̄ from the wrench of each body.
     fn efforts_of(&self, mut wrenches: Vec<Wrench>, accelerations: Option<Argument>) -> Vec<Sym> {
         let mut efforts = vec![Sym::zero(); self.model.sizes()[2]];
+        let mut seen: Vec<Vec<Wrench>> = self.bodies.iter().map(|_| vec![]).collect();
         for (index, body) in self.bodies.iter().enumerate().rev() {
             section(number(index), "effort");
+            for wrench in std::mem::take(&mut seen[index]) {
+                wrenches[index] = wrenches[index].plus(&wrench);
+            }
             for (j, place) in body.share.speeds.clone().enumerate() {
                 let mut effort = body.columns[j].dot(&wrenches[index]);
                 if let Some(argument) = accelerations {
@@ -121,8 +125,7 @@ impl Tree<'_> {
                 efforts[place] = effort;
             }
             if let Some(parent) = body.parent {
-                let carried = wrench_to_parent(&body.steps, &wrenches[index]);
-                wrenches[parent] = wrenches[parent].plus(&carried);
+                seen[parent].push(wrench_to_parent(&body.steps, &wrenches[index]).settled());
             }
         }
         efforts

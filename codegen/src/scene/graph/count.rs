@@ -41,7 +41,7 @@ impl Operations {
             Operation::Quotient(..) => self.divisions += 1,
             Operation::Call(Function::Sqrt, ..) => self.roots += 1,
             Operation::Call(..) => self.calls += 1,
-            Operation::Input(..) | Operation::Constant(_) => {}
+            Operation::Input(..) | Operation::Constant(_) | Operation::Opposite(_) => {}
         }
     }
 

@@ -5,7 +5,6 @@
 //! behind when it is written.
 
 mod count;
-mod evaluate;
 mod sym;
 
 pub use count::Operations;
@@ -35,6 +34,15 @@ impl Value {
     }
 }
 
+impl From<u32> for Value {
+    fn from(node: u32) -> Self {
+        Self {
+            node,
+            negative: false,
+        }
+    }
+}
+
 /// An argument of the functions that are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Argument {
@@ -50,12 +58,13 @@ pub enum Argument {
     Accelerations,
 }
 
-/// What a node computes. Operands are nodes before it; those of sums and products are in ascending order.
+/// What a node computes. Operands are nodes before it; those of sums and products are in ascending order, numbers last: so the order does
+/// not depend on who used a number first.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
     /// A scalar of an argument.
     Input(Argument, u32),
-    /// A number greater than 0, by its bits.
+    /// A number by its bits: greater than 0 but where numbers keep their signs ([`record_alike`]).
     Constant(u64),
     /// a + b.
     Sum(u32, u32),
@@ -65,6 +74,8 @@ pub enum Operation {
     Product(u32, u32),
     /// a / b.
     Quotient(u32, u32),
+    /// The opposite of a value, as a value of its own: between like bodies.
+    Opposite(u32),
     /// A function of one or two values.
     Call(Function, Value, Option<Value>),
 }
@@ -74,6 +85,7 @@ impl Operation {
     pub fn operands(&self) -> Vec<u32> {
         match self {
             Self::Input(..) | Self::Constant(_) => vec![],
+            Self::Opposite(of) => vec![*of],
             Self::Sum(a, b)
             | Self::Difference(a, b)
             | Self::Product(a, b)
@@ -105,6 +117,8 @@ pub struct Graph {
     /// The nodes.
     pub nodes: Vec<Node>,
     known: FxHashMap<Operation, u32>,
+    /// Whether numbers keep their signs.
+    signed: bool,
     section: u32,
     topic: &'static str,
 }
@@ -117,7 +131,21 @@ thread_local! {
 ///
 /// Graphs do not nest: `build` must not call this.
 pub fn record<R>(build: impl FnOnce() -> R) -> (R, Graph) {
-    CURRENT.with_borrow_mut(|graph| *graph = Graph::default());
+    record_in(Graph::default(), build)
+}
+
+/// The same with numbers that keep their signs: bodies whose numbers differ in sign alone make like nodes, at the price of some products
+/// that differ from others in sign alone.
+pub fn record_alike<R>(build: impl FnOnce() -> R) -> (R, Graph) {
+    let graph = Graph {
+        signed: true,
+        ..Graph::default()
+    };
+    record_in(graph, build)
+}
+
+fn record_in<R>(empty: Graph, build: impl FnOnce() -> R) -> (R, Graph) {
+    CURRENT.with_borrow_mut(|graph| *graph = empty);
     let result = build();
     (result, CURRENT.take())
 }

@@ -49,6 +49,20 @@ impl Sym {
         self
     }
 
+    /// The same without a sign beside it, where bodies are to be alike: whether one arises alternates from body to body.
+    #[must_use]
+    pub fn settled(self) -> Self {
+        match self {
+            Self::Node(value) if value.negative => CURRENT.with_borrow_mut(|graph| {
+                if !graph.signed {
+                    return self;
+                }
+                Self::Node(graph.node(Operation::Opposite(value.node)).into())
+            }),
+            _ => self,
+        }
+    }
+
     /// The handle on the graph: numbers become nodes of it.
     pub fn value(self) -> Value {
         CURRENT.with_borrow_mut(|graph| value(graph, self))
@@ -59,6 +73,10 @@ impl Sym {
 fn value(graph: &mut Graph, sym: Sym) -> Value {
     match sym {
         Sym::Node(value) => value,
+        Sym::Number(number) if graph.signed => Value {
+            node: graph.node(Operation::Constant(number.to_bits())),
+            negative: false,
+        },
         Sym::Number(number) => Value {
             node: graph.node(Operation::Constant(number.abs().to_bits())),
             negative: number.is_sign_negative() && number != 0.0,
@@ -125,9 +143,11 @@ pub fn atan2(y: Sym, x: Sym) -> Sym {
     make(Operation::Call(Function::Atan2, y, Some(x)))
 }
 
-/// Two nodes in ascending order.
-fn sorted(a: u32, b: u32) -> (u32, u32) {
-    if a <= b { (a, b) } else { (b, a) }
+/// Whether `a` stands before `b` in a sum or product.
+fn precedes(graph: &Graph, a: u32, b: u32) -> bool {
+    let is_number =
+        |node: u32| matches!(graph.nodes[node as usize].operation, Operation::Constant(_));
+    (is_number(a), a) <= (is_number(b), b)
 }
 
 fn add(a: Sym, b: Sym) -> Sym {
@@ -156,7 +176,10 @@ fn add_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
             },
         );
     }
-    let (first, second) = if a.node < b.node { (a, b) } else { (b, a) };
+    let (first, second) = match precedes(graph, a.node, b.node) {
+        true => (a, b),
+        false => (b, a),
+    };
     let operation = if first.negative == second.negative {
         Operation::Sum(first.node, second.node)
     } else {
@@ -185,7 +208,10 @@ fn multiply(a: Sym, b: Sym) -> Sym {
 }
 
 fn multiply_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
-    let (first, second) = sorted(a.node, b.node);
+    let (first, second) = match precedes(graph, a.node, b.node) {
+        true => (a.node, b.node),
+        false => (b.node, a.node),
+    };
     Sym::Node(Value {
         node: graph.node(Operation::Product(first, second)),
         negative: a.negative != b.negative,

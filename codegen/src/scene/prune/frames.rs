@@ -147,7 +147,8 @@ impl<'a> Placed<'a> {
         }
     }
 
-    /// Frames in which one number of a placement vanishes.
+    /// Frames in which one number of a placement vanishes. Of those that cost the same the first is taken: turns, then shifts along the
+    /// body's own placement, so that like bodies come to stand alike (on common normals, where joints are hinges).
     fn candidates(&self, body: usize) -> Vec<Moved> {
         let (freedom, now) = (self.freedoms[body], self.moved[body]);
         let mut candidates = vec![];
@@ -157,22 +158,6 @@ impl<'a> Placed<'a> {
                 self.joints[child].compose(&Pose::from_translation(self.moved[child].shift))
             })
             .collect();
-        for axis in (0..3).filter(|&axis| freedom.shifts[axis]) {
-            let mut to = |entry: f64| {
-                let mut moved = now;
-                moved.shift[axis] = entry;
-                candidates.push(moved);
-            };
-            to(0.0);
-            children
-                .iter()
-                .for_each(|child| to(child.translation[axis]));
-            let still = self.placement(body);
-            let direction = still.rotation.column(axis);
-            for i in (0..3).filter(|&i| direction[i].abs() > 0.1) {
-                to(now.shift[axis] - still.translation[i] / direction[i]);
-            }
-        }
         if freedom.turns {
             candidates.push(Moved {
                 cos: 1.0,
@@ -197,6 +182,22 @@ impl<'a> Placed<'a> {
                     });
                 }
             }
+        }
+        for axis in (0..3).filter(|&axis| freedom.shifts[axis]) {
+            let mut to = |entry: f64| {
+                let mut moved = now;
+                moved.shift[axis] = entry;
+                candidates.push(moved);
+            };
+            to(0.0);
+            let still = self.placement(body);
+            let direction = still.rotation.column(axis);
+            for i in (0..3).filter(|&i| direction[i].abs() > 0.1) {
+                to(now.shift[axis] - still.translation[i] / direction[i]);
+            }
+            children
+                .iter()
+                .for_each(|child| to(child.translation[axis]));
         }
         candidates
     }

@@ -61,6 +61,16 @@ impl Rigid {
         }
     }
 
+    /// The same without signs beside its scalars ([`Sym::settled`]).
+    #[must_use]
+    pub fn settled(&self) -> Self {
+        Self {
+            mass: self.mass.settled(),
+            first: self.first.map(Sym::settled),
+            second: self.second.map(Sym::settled),
+        }
+    }
+
     /// The momentum of a twist.
     pub fn of(&self, twist: &Twist) -> Wrench {
         Wrench {
@@ -82,6 +92,16 @@ pub struct Articulated {
 }
 
 impl Articulated {
+    /// The same without signs beside its scalars ([`Sym::settled`]).
+    #[must_use]
+    pub fn settled(&self) -> Self {
+        Self {
+            angular: self.angular.map(Sym::settled),
+            coupling: self.coupling.map(Sym::settled),
+            linear: self.linear.map(Sym::settled),
+        }
+    }
+
     /// That of a rigid body.
     pub fn rigid(inertia: &Rigid) -> Self {
         let zero = Sym::zero();

@@ -42,6 +42,15 @@ impl Wrench {
         }
     }
 
+    /// The same without signs beside its scalars ([`Sym::settled`]).
+    #[must_use]
+    pub fn settled(&self) -> Self {
+        Self {
+            moment: self.moment.map(Sym::settled),
+            force: self.force.map(Sym::settled),
+        }
+    }
+
     /// The wrench `factor` times as large.
     #[must_use]
     pub fn times(&self, factor: Sym) -> Self {
@@ -76,6 +85,15 @@ impl Twist {
         Self {
             angular: self.angular + other.angular,
             linear: self.linear + other.linear,
+        }
+    }
+
+    /// The same without signs beside its scalars ([`Sym::settled`]).
+    #[must_use]
+    pub fn settled(&self) -> Self {
+        Self {
+            angular: self.angular.map(Sym::settled),
+            linear: self.linear.map(Sym::settled),
         }
     }
 

@@ -1,16 +1,19 @@
 //! A module of functions in Rust, generic over the runtime's scalars.
 
-use super::{Formula, Function, Line, Lowered};
-use crate::emit::rust::{WriteError, comment, text};
-use crate::expr::Function as Known;
+mod lines;
+
+use super::{Function, Lowered, array};
+use crate::emit::rust::{WriteError, text};
 use crate::scene::functions::Kind;
 use crate::scene::model::Model;
+use lines::{line, value};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 /// Names that lines must not take: arguments, and what the functions bind themselves.
-const RESERVED: [&str; 10] = [
-    "q", "v", "p", "tau", "a", "n", "sines", "cosines", "hamel", "core",
+const RESERVED: [&str; 14] = [
+    "q", "v", "p", "tau", "a", "n", "i", "sines", "cosines", "results", "numbers", "places",
+    "hamel", "core",
 ];
 
 /// The module that holds `functions` of the model. `label` names the scene's file.
@@ -131,11 +134,27 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
         quote! { #name: &[T; #size] }
     });
     let lines = lowered.lines.iter().map(line);
-    let outputs: Vec<TokenStream> = lowered.outputs.iter().map(value).collect();
-    let size = Literal::usize_unsuffixed(outputs.len() / function.columns.max(1));
-    let (result, kind) = match function.columns {
-        1 => (quote! { [#(#outputs),*] }, quote! { [T; #size] }),
-        columns => {
+    let arrays = lowered.arrays.iter().map(|(&width, &rows)| {
+        let (name, width, rows) = (
+            format_ident!("{}", array(width)),
+            Literal::usize_unsuffixed(width),
+            Literal::usize_unsuffixed(rows),
+        );
+        quote! { let mut #name = [[n(0.0); #width]; #rows]; }
+    });
+    let size = Literal::usize_unsuffixed(function.outputs.len() / function.columns.max(1));
+    let results = match &lowered.outputs {
+        None => quote! { let mut results = [n(0.0); #size]; },
+        Some(_) => quote! {},
+    };
+    let outputs: Option<Vec<TokenStream>> = lowered
+        .outputs
+        .as_ref()
+        .map(|outputs| outputs.iter().map(value).collect());
+    let (result, kind) = match (outputs, function.columns) {
+        (None, _) => (quote! { results }, quote! { [T; #size] }),
+        (Some(outputs), 1) => (quote! { [#(#outputs),*] }, quote! { [T; #size] }),
+        (Some(outputs), columns) => {
             let width = Literal::usize_unsuffixed(columns);
             let rows = outputs.chunks(columns).map(|row| quote! { [#(#row),*] });
             (quote! { [#(#rows),*] }, quote! { [[T; #width]; #size] })
@@ -152,151 +171,10 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
         #[must_use]
         pub fn #name<T: Scalar>(#(#arguments),*) -> #kind {
             let n = T::from_f64;
+            #(#arrays)*
+            #results
             #(#lines)*
             #result
         }
-    }
-}
-
-fn line(line: &Line) -> TokenStream {
-    match line {
-        Line::Heading(heading) => {
-            let operations = heading.operations;
-            comment(&format!(
-                "{}: {} ({operations})",
-                heading.body, heading.topic
-            ))
-        }
-        Line::Value(name, formula) => {
-            let (name, value) = (format_ident!("{name}"), value(formula));
-            quote! { let #name = #value; }
-        }
-        Line::SinCosAll(all) => {
-            let sines = all.iter().map(|(sin, ..)| format_ident!("{sin}"));
-            let cosines = all.iter().map(|(_, cos, _)| format_ident!("{cos}"));
-            let angles = all.iter().map(|(.., angle)| value(angle));
-            quote! {
-                let (sines, cosines) = T::sin_cos_all(&[#(#angles),*]);
-                let [#(#sines),*] = sines;
-                let [#(#cosines),*] = cosines;
-            }
-        }
-        Line::SinCos(sin, cos, angle) => {
-            let (sin, cos, angle) = (
-                format_ident!("{sin}"),
-                format_ident!("{cos}"),
-                factor(angle),
-            );
-            quote! { let (#sin, #cos) = #angle.sin_cos(); }
-        }
-    }
-}
-
-/// A formula where nothing stands beside it.
-fn value(formula: &Formula) -> TokenStream {
-    match formula {
-        Formula::Number(number) => {
-            let literal = Literal::f64_unsuffixed(number.abs());
-            match number.is_sign_negative() {
-                true => quote! { n(-#literal) },
-                false => quote! { n(#literal) },
-            }
-        }
-        Formula::Input(argument, index) => {
-            let (name, index) = (
-                format_ident!("{}", argument.name()),
-                Literal::usize_unsuffixed(*index),
-            );
-            quote! { #name[#index] }
-        }
-        Formula::Name(name) => {
-            let name = format_ident!("{name}");
-            quote! { #name }
-        }
-        Formula::Sum(terms) => sum(terms),
-        Formula::Product(a, b) => {
-            let (a, b) = (factor(a), factor(b));
-            quote! { #a * #b }
-        }
-        Formula::Quotient(a, b) => {
-            let (a, b) = (factor(a), factor(b));
-            quote! { #a / #b }
-        }
-        Formula::Negative(inner) => {
-            let inner = factor(inner);
-            quote! { -#inner }
-        }
-        Formula::Call(function, arguments) => call(*function, arguments),
-    }
-}
-
-/// A formula as a factor, or as what a method is called on.
-fn factor(formula: &Formula) -> TokenStream {
-    let plain = value(formula);
-    match formula {
-        Formula::Name(_) | Formula::Input(..) | Formula::Number(_) | Formula::Call(..) => plain,
-        _ => quote! { (#plain) },
-    }
-}
-
-/// Terms that are products are added by multiply–adds.
-fn sum(terms: &[(bool, Formula)]) -> TokenStream {
-    let mut terms: Vec<&(bool, Formula)> = terms.iter().collect();
-    let is_product = |term: &(bool, Formula)| matches!(term.1, Formula::Product(..));
-    // It starts with what is no product, and positive, so that no sign stands alone.
-    terms.sort_by_key(|term| (is_product(term), term.0));
-    let mut terms = terms.into_iter();
-    let Some((minus, first)) = terms.next() else {
-        return quote! { n(0.0) };
-    };
-    let start = match minus {
-        true => {
-            let first = factor(first);
-            quote! { -#first }
-        }
-        false => value(first),
-    };
-    terms.fold(start, |sum, (minus, term)| match (term, minus) {
-        (Formula::Product(a, b), minus) => {
-            let (a, b) = (factor(a), value(b));
-            let a = if *minus {
-                quote! { (-#a) }
-            } else {
-                a
-            };
-            quote! { #a.mul_add(#b, #sum) }
-        }
-        (term, true) => {
-            let term = factor(term);
-            quote! { #sum - #term }
-        }
-        (term, false) => {
-            let term = factor(term);
-            quote! { #sum + #term }
-        }
-    })
-}
-
-fn call(function: Known, arguments: &[Formula]) -> TokenStream {
-    let mut arguments = arguments.iter();
-    let of = arguments.next().map(factor).unwrap_or_default();
-    let rest: Vec<TokenStream> = arguments.map(value).collect();
-    match function {
-        Known::Sin => quote! { #of.sin_cos().0 },
-        Known::Cos => quote! { #of.sin_cos().1 },
-        Known::Exp => quote! { #of.exp() },
-        Known::Ln => quote! { #of.ln() },
-        Known::Sqrt => quote! { #of.sqrt() },
-        Known::Atan2 => quote! { #of.atan2(#(#rest),*) },
-        Known::Stumpff(order) => {
-            let order = Literal::u8_unsuffixed(order);
-            quote! { #of.stumpff(#order) }
-        }
-        Known::DexpInverse(order) => {
-            let order = Literal::u8_unsuffixed(order);
-            quote! { #of.dexp_inverse(#order) }
-        }
-        // Folded when the graph was made.
-        Known::Pi | Known::Recip | Known::Group => of,
     }
 }

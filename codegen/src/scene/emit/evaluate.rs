@@ -1,0 +1,173 @@
+//! Lines in double precision: what the written code computes, without writing it.
+
+use super::lines::{Formula, Line, Loop, Place};
+use super::{Function, Lowered};
+use crate::expr::Function as Known;
+use crate::scene::alike::Read;
+use crate::scene::graph::Argument;
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+
+impl Function {
+    /// The results; `argument` holds the scalars of each argument. What is missing there is NaN, and so is a function that the standard
+    /// library does not have.
+    pub fn evaluate(&self, argument: impl Fn(Argument) -> Vec<f64>) -> Vec<f64> {
+        let lowered = Lowered::new(self, &[], &[]);
+        let given = |&(name, _): &(Argument, usize)| (Read::Argument(name), argument(name));
+        let arrays = lowered.arrays.iter();
+        let mut state = State {
+            inputs: self.arguments.iter().map(given).collect(),
+            rows: arrays
+                .map(|(&width, &rows)| (width, vec![vec![f64::NAN; width]; rows]))
+                .collect(),
+            results: vec![f64::NAN; self.outputs.len()],
+            names: FxHashMap::default(),
+            turn: Turn::default(),
+        };
+        lowered.lines.iter().for_each(|line| state.line(line));
+        match &lowered.outputs {
+            Some(outputs) => outputs.iter().map(|output| state.value(output)).collect(),
+            None => state.results,
+        }
+    }
+}
+
+/// Where a loop stands.
+#[derive(Default)]
+struct Turn {
+    number: usize,
+    places: Vec<usize>,
+    numbers: Vec<f64>,
+    /// Length and number of the row of each source.
+    sources: FxHashMap<String, (usize, usize)>,
+}
+
+struct State {
+    inputs: BTreeMap<Read, Vec<f64>>,
+    rows: BTreeMap<usize, Vec<Vec<f64>>>,
+    results: Vec<f64>,
+    names: FxHashMap<String, f64>,
+    turn: Turn,
+}
+
+impl State {
+    fn line(&mut self, line: &Line) {
+        match line {
+            Line::Heading(_) => {}
+            Line::Value(name, formula) => {
+                let value = self.value(formula);
+                self.names.insert(name.clone(), value);
+            }
+            Line::SinCos(sin, cos, angle) => self.sin_cos(sin, cos, angle),
+            Line::SinCosAll(all) => all
+                .iter()
+                .for_each(|(sin, cos, angle)| self.sin_cos(sin, cos, angle)),
+            Line::Angles(angles) => {
+                let angles: Vec<f64> = angles.iter().map(|angle| self.value(angle)).collect();
+                let of = |function: fn(f64) -> f64| angles.iter().copied().map(function).collect();
+                self.inputs.insert(Read::Sines, of(f64::sin));
+                self.inputs.insert(Read::Cosines, of(f64::cos));
+            }
+            Line::Row(row) => {
+                let values = row.values.iter().map(|value| self.value(value)).collect();
+                let place = self.place(row.place);
+                let rows = self.rows.get_mut(&row.values.len());
+                if let Some(row) = rows.and_then(|rows| rows.get_mut(place)) {
+                    *row = values;
+                }
+            }
+            Line::Result(place, formula) => {
+                let (place, value) = (self.place(*place), self.value(formula));
+                if let Some(result) = self.results.get_mut(place) {
+                    *result = value;
+                }
+            }
+            Line::Loop(looped) => (0..looped.bodies.len()).for_each(|turn| self.turn(looped, turn)),
+        }
+    }
+
+    fn turn(&mut self, looped: &Loop, number: usize) {
+        self.turn = Turn {
+            number,
+            places: looped.places[number].clone(),
+            numbers: looped.numbers[number].clone(),
+            sources: FxHashMap::default(),
+        };
+        for (name, width, place) in &looped.sources {
+            let row = self.place(*place);
+            self.turn.sources.insert(name.clone(), (*width, row));
+        }
+        looped.lines.iter().for_each(|line| self.line(line));
+    }
+
+    fn sin_cos(&mut self, sin: &str, cos: &str, angle: &Formula) {
+        let (sine, cosine) = self.value(angle).sin_cos();
+        self.names.insert(sin.to_owned(), sine);
+        self.names.insert(cos.to_owned(), cosine);
+    }
+
+    fn place(&self, place: Place) -> usize {
+        let moved = |start: i64, by: i64| usize::try_from(start + by).unwrap_or(usize::MAX);
+        match place {
+            Place::Known(place) => place,
+            Place::Along { start, step } => moved(start, step * self.turn.number as i64),
+            Place::Listed { column, offset } => moved(self.turn.places[column] as i64, offset),
+        }
+    }
+
+    fn row(&self, width: usize, row: usize, entry: usize) -> f64 {
+        let row = self.rows.get(&width).and_then(|rows| rows.get(row));
+        row.and_then(|row| row.get(entry))
+            .copied()
+            .unwrap_or(f64::NAN)
+    }
+
+    fn value(&self, formula: &Formula) -> f64 {
+        match formula {
+            Formula::Number(number) => *number,
+            Formula::Column(column) => self.turn.numbers[*column],
+            Formula::Input(array, place) => {
+                let entry = self
+                    .inputs
+                    .get(array)
+                    .and_then(|array| array.get(self.place(*place)));
+                entry.copied().unwrap_or(f64::NAN)
+            }
+            Formula::Source(name, entry) => {
+                let source = self.turn.sources.get(name);
+                source.map_or(f64::NAN, |&(width, row)| self.row(width, row, *entry))
+            }
+            Formula::Row(width, row, entry) => self.row(*width, *row, *entry),
+            Formula::Name(name) => self.names.get(name).copied().unwrap_or(f64::NAN),
+            Formula::Sum(terms) => terms
+                .iter()
+                .map(|(minus, term)| {
+                    if *minus {
+                        -self.value(term)
+                    } else {
+                        self.value(term)
+                    }
+                })
+                .sum(),
+            Formula::Product(a, b) => self.value(a) * self.value(b),
+            Formula::Quotient(a, b) => self.value(a) / self.value(b),
+            Formula::Negative(inner) => -self.value(inner),
+            Formula::Call(function, arguments) => {
+                let arguments: Vec<f64> = arguments.iter().map(|one| self.value(one)).collect();
+                call(*function, &arguments)
+            }
+        }
+    }
+}
+
+fn call(function: Known, arguments: &[f64]) -> f64 {
+    match (function, arguments) {
+        (Known::Sin, [a]) => a.sin(),
+        (Known::Cos, [a]) => a.cos(),
+        (Known::Exp, [a]) => a.exp(),
+        (Known::Ln, [a]) => a.ln(),
+        (Known::Sqrt, [a]) => a.sqrt(),
+        (Known::Atan2, [y, x]) => y.atan2(*x),
+        _ => f64::NAN,
+    }
+}
