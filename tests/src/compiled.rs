@@ -1,13 +1,19 @@
 //! Mechanisms as the scene compiler takes them, and what it makes of them in double precision.
 
+use crate::random;
+use hamel::elements::{Element, JointSpring, RotationSpring};
 use hamel::mechanism::{Body as TreeBody, Mechanism};
+use hamel::nalgebra::DMatrix;
 use hamel_codegen::derived::Derived;
 use hamel_codegen::scene::functions::{Kind, compile};
 use hamel_codegen::scene::graph::Argument;
-use hamel_codegen::scene::model::{Body, Model};
+use hamel_codegen::scene::model::{Body, Elements, Model};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 thread_local! {
     /// The library's joints, each derived when it is first asked for.
@@ -38,6 +44,7 @@ pub fn model(name: &str, mechanism: &Mechanism) -> Model {
         name: name.to_owned(),
         gravity: *mechanism.gravity(),
         bodies: mechanism.bodies().iter().map(body).collect(),
+        elements: Elements::default(),
     }
 }
 
@@ -72,4 +79,52 @@ pub fn evaluate(model: &Model, kind: Kind, q: &[f64], speeds: &[f64], inputs: &[
             Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
             Argument::Momenta => vec![],
         })
+}
+
+/// Random elements for a mechanism: springs of both kinds at half of its joints each.
+pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
+    let mut elements = Elements::default();
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        let rest = random::configuration(random, mechanism);
+        let rest = owner.configuration(&rest).to_vec();
+        if random.random_bool(0.5) {
+            let size = owner.ranges().freedoms.len();
+            let root = DMatrix::from_vec(size, size, random::numbers(random, size * size));
+            let stiffness = match random.random_bool(0.5) {
+                true => &root * root.transpose(),
+                false => DMatrix::identity(size, size) * 0.8,
+            };
+            elements.joint_springs.push(JointSpring {
+                name: format!("spring {body}"),
+                body,
+                stiffness: stiffness.as_slice().to_vec(),
+                rest: rest.clone(),
+            });
+        }
+        if random.random_bool(0.5) {
+            elements.rotation_springs.push(RotationSpring {
+                name: format!("rotation spring {body}"),
+                body,
+                stiffness: random.random_range(0.5..2.0),
+                rest: owner.joint().pose(&rest).rotation,
+            });
+        }
+    }
+    elements
+}
+
+/// The mechanism with these elements.
+///
+/// # Panics
+/// Where one does not fit it.
+pub fn equipped(mechanism: &Mechanism, elements: &Elements) -> Arc<Mechanism> {
+    let mut all: Vec<Arc<dyn Element>> = vec![];
+    for spring in &elements.joint_springs {
+        all.push(Arc::new(spring.clone()));
+    }
+    for spring in &elements.rotation_springs {
+        all.push(Arc::new(spring.clone()));
+    }
+    let equipped = mechanism.clone().with_elements(all);
+    Arc::new(equipped.unwrap_or_else(|errors| panic!("{errors:?}")))
 }

@@ -1,6 +1,7 @@
 //! From what a scene file says to what is compiled, with all that cannot be compiled named at once.
 
-use super::model::{Body, Model};
+use super::acting::Held;
+use super::model::{Body, Elements, Model};
 use crate::derived::{Derived, KernelKind, Structure};
 use hamel_scene::{BodyDescription, SceneDescription};
 use std::rc::Rc;
@@ -35,9 +36,10 @@ impl Model {
         joints: impl Fn(&str) -> Option<Rc<Derived>>,
     ) -> Result<Self, Refused> {
         let mut reasons = elsewhere(scene);
-        let bodies = scene.bodies.iter();
+        let mut elements = Elements::default();
+        let bodies = scene.bodies.iter().enumerate();
         let bodies: Vec<Option<Body>> = bodies
-            .map(|body| {
+            .map(|(index, body)| {
                 reasons.extend(uncovered(body));
                 let kind = &body.joint.kind.value;
                 let Some(joint) = joints(kind) else {
@@ -47,9 +49,17 @@ impl Model {
                     ));
                     return None;
                 };
-                compiled(body, joint)
-                    .map_err(|more| reasons.extend(more))
-                    .ok()
+                let compiled = compiled(body, joint).and_then(|compiled| {
+                    let held = Held {
+                        index,
+                        body,
+                        joint: &compiled.joint,
+                        parameters: &compiled.parameters,
+                    };
+                    let added = held.add_spring(&mut elements);
+                    added.map(|()| compiled).map_err(|reason| vec![reason])
+                });
+                compiled.map_err(|more| reasons.extend(more)).ok()
             })
             .collect();
         match bodies.into_iter().collect::<Option<Vec<Body>>>() {
@@ -57,6 +67,7 @@ impl Model {
                 name: scene.name.clone(),
                 gravity: scene.gravity,
                 bodies,
+                elements,
             }),
             _ => Err(Refused {
                 scene: scene.name.clone(),
@@ -97,9 +108,6 @@ fn elsewhere(scene: &SceneDescription) -> Vec<String> {
 fn uncovered(body: &BodyDescription) -> Vec<String> {
     let name = &body.joint.name.value;
     let mut reasons = vec![];
-    if body.forces.spring.is_some() {
-        reasons.push(format!("joint `{name}`: springs are not compiled"));
-    }
     if body.forces.motion.is_some() {
         reasons.push(format!(
             "joint `{name}`: prescribed motions are not compiled"

@@ -1,6 +1,6 @@
 //! The kernels of one joint of a scene, on the graph.
 
-use super::graph::{Sym, atan2, call, sin_cos};
+use super::graph::{Sym, atan2, call, primitive, sin_cos};
 use super::spatial::{Mat3, Step, Twist, Vec3, simplified};
 use crate::derived::{Derived, KernelKind};
 use crate::emit::formula::{Binding, Node, Program};
@@ -50,6 +50,12 @@ impl<'a> Joint<'a> {
         simplified(steps)
     }
 
+    /// The rotation of H(Q).
+    pub fn rotation(&self) -> Mat3 {
+        let entries = self.entries(KernelKind::Pose);
+        Mat3::from_fn(|i, j| entries.get(3 * i + j).copied().unwrap_or(Sym::Number(0.0)))
+    }
+
     /// The columns of X^c.
     pub fn freedoms(&self) -> Vec<Twist> {
         let entries = self.entries(KernelKind::TwistMapChild);
@@ -74,17 +80,66 @@ impl<'a> Joint<'a> {
         columns(&entries, 1).pop().unwrap_or_else(Twist::zero)
     }
 
+    /// The columns of X.
+    pub fn freedoms_in_parent(&self) -> Vec<Twist> {
+        let entries = self.entries(KernelKind::TwistMap);
+        columns(&entries, self.derived.shape.freedoms)
+    }
+
+    /// S₀⁻¹ by columns.
+    pub fn velocity_map_inverse(&self) -> Vec<Vec<Sym>> {
+        let freedoms = self.derived.shape.freedoms;
+        let entries = self.entries(KernelKind::VelocityMapInverse);
+        let column = |j: usize| entries.iter().skip(j).step_by(freedoms).copied().collect();
+        (0..freedoms).map(column).collect()
+    }
+
+    /// Φ(Q, ϕ).
+    pub fn retract(&self, phi: &[Sym]) -> Vec<Sym> {
+        let given = [(self.derived.arguments.local.as_slice(), phi)];
+        self.entries_with(KernelKind::Retract, &given)
+    }
+
+    /// ϕ with Φ(Q, ϕ) = Q′.
+    pub fn local(&self, target: &[Sym]) -> Vec<Sym> {
+        let given = [(self.derived.arguments.target.as_slice(), target)];
+        self.entries_with(KernelKind::Local, &given)
+    }
+
+    /// ϕ̇ at ϕ, from S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ).
+    pub fn retract_differential_inverse(&self, phi: &[Sym], rate: &[Sym]) -> Vec<Sym> {
+        let arguments = &self.derived.arguments;
+        let given = [
+            (arguments.local.as_slice(), phi),
+            (arguments.velocity.as_slice(), rate),
+        ];
+        self.entries_with(KernelKind::RetractDifferentialInverse, &given)
+    }
+
+    /// The nearest point of the manifold.
+    pub fn project(&self) -> Vec<Sym> {
+        self.entries(KernelKind::Project)
+    }
+
     /// The entries of a kernel's results, row by row; none where the joint has no such kernel.
     fn entries(&self, kind: KernelKind) -> Vec<Sym> {
+        self.entries_with(kind, &[])
+    }
+
+    /// The same with values for more symbols.
+    fn entries_with(&self, kind: KernelKind, given: &[(&[Symbol], &[Sym])]) -> Vec<Sym> {
         let Some(kernel) = self.derived.kernel(kind) else {
             return vec![];
         };
-        let program = self.derived.program(kernel);
-        self.run(&program)
-    }
-
-    fn run(&self, program: &Program) -> Vec<Sym> {
         let mut values = self.values.clone();
+        for (symbols, given) in given {
+            values.extend(symbols.iter().cloned().zip(given.iter().copied()));
+        }
+        run(&self.derived.program(kernel), values)
+    }
+}
+
+fn run(program: &Program, mut values: BTreeMap<Symbol, Sym>) -> Vec<Sym> {
         for binding in &program.bindings {
             match binding {
                 Binding::Value { name, value } => {
@@ -97,13 +152,20 @@ impl<'a> Joint<'a> {
                     let named = named.into_iter();
                     values.extend(named.filter_map(|(name, value)| Some((name.clone()?, value))));
                 }
-                // Finite maps alone call the runtime, and none is evaluated here.
-                Binding::Call { .. } => {}
+                Binding::Call {
+                    primitive: function,
+                    argument,
+                    outputs,
+                } => {
+                    let arguments: Vec<Sym> =
+                        argument.iter().map(|part| evaluate(part, &values)).collect();
+                    let results = primitive(*function, &arguments);
+                    values.extend(outputs.iter().cloned().zip(results));
+                }
             }
         }
         let outputs = program.outputs.iter();
         outputs.map(|output| evaluate(output, &values)).collect()
-    }
 }
 
 /// The columns of a matrix of six rows, given row by row.

@@ -18,6 +18,7 @@
 //!
 //! [`Build`] is for build scripts; `hamel compile` does the same from the command line.
 
+mod acting;
 mod build;
 mod describe;
 pub mod emit;

@@ -1,6 +1,7 @@
 //! What is compiled: a tree of bodies with numbers for all that does not change.
 
 use crate::derived::Derived;
+use hamel::elements::{JointSpring, RotationSpring};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -15,6 +16,17 @@ pub struct Model {
     pub gravity: Vector3<f64>,
     /// The bodies, each after its parent.
     pub bodies: Vec<Body>,
+    /// What acts beside gravity and what the bodies' own joints have.
+    pub elements: Elements,
+}
+
+/// Springs, as the runtime has them.
+#[derive(Clone, Debug, Default)]
+pub struct Elements {
+    /// Springs at joints in local coordinates.
+    pub joint_springs: Vec<JointSpring>,
+    /// Springs at joints that are smooth at every attitude.
+    pub rotation_springs: Vec<RotationSpring>,
 }
 
 /// One body and the joint that it hangs on.

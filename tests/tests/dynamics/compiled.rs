@@ -187,6 +187,25 @@ fn random_trees_agree() {
     }
 }
 
+#[test]
+fn random_trees_with_elements_agree() {
+    let kinds = random::library();
+    for case in random::cases(&kinds, 20, 100) {
+        let mut random = ChaCha8Rng::seed_from_u64(case.seed);
+        let mut model = compiled::model("random", &case.mechanism);
+        model.elements = compiled::elements(&mut random, &case.mechanism);
+        let point = Point {
+            place: format!("seed {}, with elements", case.seed),
+            mechanism: compiled::equipped(&case.mechanism, &model.elements),
+            model,
+            q: case.q,
+            speeds: case.speeds,
+            inputs: case.efforts,
+        };
+        point.agrees();
+    }
+}
+
 fn flops(model: &Model, kind: Kind) -> usize {
     compile(model, kind).function.operations().flops()
 }

@@ -1,6 +1,7 @@
 //! From a graph to lines: what is named, what stands inside a formula, in which order.
 
 use super::Function;
+use crate::derived::Primitive;
 use crate::emit::names::NameSet;
 use crate::expr::Function as Known;
 use crate::scene::graph::{Argument, Graph, Operation, Operations, Value};
@@ -27,6 +28,10 @@ pub enum Formula {
     Negative(Box<Formula>),
     /// A function.
     Call(Known, Vec<Formula>),
+    /// A function of the runtime with several results.
+    Several(Primitive, Vec<Formula>),
+    /// One of the results that a name stands for.
+    Part(Box<Formula>, usize),
 }
 
 impl Formula {
@@ -215,7 +220,7 @@ impl Lowering<'_> {
             let here = (node.section, node.topic);
             let computes = !matches!(
                 node.operation,
-                Operation::Input(..) | Operation::Constant(_)
+                Operation::Input(..) | Operation::Constant(_) | Operation::Part(..)
             );
             if computes && heading != Some(here) {
                 heading = Some(here);
@@ -261,7 +266,10 @@ impl Lowering<'_> {
             return;
         }
         let (formula, length) = self.formula(number);
-        let computes = !matches!(formula, Formula::Number(_) | Formula::Input(..));
+        let computes = !matches!(
+            formula,
+            Formula::Number(_) | Formula::Input(..) | Formula::Part(..)
+        );
         let shared = self.uses[number] > 1 || length > LONGEST;
         let formula = if computes && shared {
             let label = self.graph.nodes[number].label.clone();
@@ -316,6 +324,14 @@ impl Lowering<'_> {
                     .map(|&value| self.read(value))
                     .collect();
                 (Formula::Call(*function, arguments), LONGEST)
+            }
+            // Always a line of its own.
+            Operation::Several(function, arguments) => {
+                let arguments = arguments.iter().map(|&value| self.read(value)).collect();
+                (Formula::Several(*function, arguments), LONGEST + 1)
+            }
+            Operation::Part(of, result) => {
+                (Formula::Part(Box::new(self.part(*of).0), *result as usize), 0)
             }
         }
     }

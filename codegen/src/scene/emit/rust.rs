@@ -1,6 +1,7 @@
 //! A module of functions in Rust, generic over the runtime's scalars.
 
 use super::{Formula, Function, Line, Lowered};
+use crate::derived::Primitive;
 use crate::emit::rust::{WriteError, comment, text};
 use crate::expr::Function as Known;
 use crate::scene::functions::Kind;
@@ -227,6 +228,11 @@ fn value(formula: &Formula) -> TokenStream {
             quote! { -#inner }
         }
         Formula::Call(function, arguments) => call(*function, arguments),
+        Formula::Several(function, arguments) => several(*function, arguments),
+        Formula::Part(of, result) => {
+            let (of, result) = (value(of), Literal::usize_unsuffixed(*result));
+            quote! { #of[#result] }
+        }
     }
 }
 
@@ -234,7 +240,11 @@ fn value(formula: &Formula) -> TokenStream {
 fn factor(formula: &Formula) -> TokenStream {
     let plain = value(formula);
     match formula {
-        Formula::Name(_) | Formula::Input(..) | Formula::Number(_) | Formula::Call(..) => plain,
+        Formula::Name(_)
+        | Formula::Input(..)
+        | Formula::Number(_)
+        | Formula::Call(..)
+        | Formula::Part(..) => plain,
         _ => quote! { (#plain) },
     }
 }
@@ -298,5 +308,19 @@ fn call(function: Known, arguments: &[Formula]) -> TokenStream {
         }
         // Folded when the graph was made.
         Known::Pi | Known::Recip | Known::Group => of,
+    }
+}
+
+/// What is indexed by the number of a result; matrices are given and read row by row.
+fn several(function: Primitive, arguments: &[Formula]) -> TokenStream {
+    let arguments = arguments.iter().map(value);
+    match function {
+        Primitive::RotationVector => quote! {
+            T::rotation_vector(&::hamel::nalgebra::Matrix3::new(#(#arguments),*))
+        },
+        Primitive::QuaternionVector => quote! { T::quaternion_vector([#(#arguments),*]) },
+        Primitive::NearestRotation => quote! {
+            ::hamel::spatial::nearest_rotation(&::hamel::nalgebra::Matrix3::new(#(#arguments),*)).transpose()
+        },
     }
 }

@@ -6,6 +6,7 @@
 
 pub mod articulated;
 mod composite;
+mod elements;
 mod newton_euler;
 
 pub use articulated::Bias;
@@ -97,7 +98,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts and the dampers of a body's joint.
+    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers and the springs of a body's joint.
     fn efforts(&self, index: usize, argument: Option<Argument>) -> Vec<Sym> {
         let (body, placed) = (&self.model.bodies[index], &self.bodies[index]);
         let speeds: Vec<Sym> = placed
@@ -106,6 +107,7 @@ impl<'a> Tree<'a> {
             .clone()
             .map(|i| Sym::input(Argument::Speeds, i))
             .collect();
+        let springs = self.spring_efforts(index);
         let freedom = |(k, place): (usize, usize)| {
             let given = argument.map_or(Sym::zero(), |argument| Sym::input(argument, place));
             let constant = body.effort.get(k).copied().unwrap_or(0.0);
@@ -115,7 +117,8 @@ impl<'a> Tree<'a> {
                 .zip(&speeds)
                 .map(|(&s, &v)| s * v)
                 .sum();
-            given + Sym::from(constant) - Sym::from(damping) * velocity
+            let spring = springs.get(k).copied().unwrap_or_else(Sym::zero);
+            given + Sym::from(constant) + spring - Sym::from(damping) * velocity
         };
         let efforts: Vec<Sym> = placed
             .share

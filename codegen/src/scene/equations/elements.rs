@@ -1,0 +1,75 @@
+//! What springs exert: efforts at their joints.
+
+use super::Tree;
+use crate::scene::graph::{Argument, Sym};
+use crate::scene::joint::Joint;
+use crate::scene::spatial::{Mat3, Vec3, dot, product};
+use hamel::elements::{JointSpring, RotationSpring};
+use num_traits::Zero;
+
+impl Tree<'_> {
+    /// The efforts of the springs at a body's joint, one a freedom; none where it has no spring.
+    pub(super) fn spring_efforts(&self, index: usize) -> Vec<Sym> {
+        let elements = &self.model.elements;
+        let springs = elements.joint_springs.iter();
+        let springs = springs.filter(|spring| spring.body == index);
+        let turned = elements.rotation_springs.iter();
+        let turned = turned.filter(|spring| spring.body == index);
+        let each = springs
+            .map(|spring| self.joint_spring(index, spring))
+            .chain(turned.map(|spring| self.rotation_spring(index, spring)));
+        let add = |sum: Vec<Sym>, next: Vec<Sym>| sum.into_iter().zip(next).map(|(a, b)| a + b).collect();
+        each.reduce(add).unwrap_or_default()
+    }
+
+    /// `τ = −S₀⁻ᵀ D⁻ᵀ K ϕ`.
+    fn joint_spring(&self, index: usize, spring: &JointSpring) -> Vec<Sym> {
+        let (q, joint) = self.joint(index);
+        let rest: Vec<Sym> = spring.rest.iter().copied().map(Sym::from).collect();
+        let rest = Joint::new(&self.model.bodies[index].joint, &self.model.bodies[index].parameters, &rest, &[]);
+        let phi: Vec<Sym> = rest.local(&q).into_iter().map(|entry| entry.named("stretch")).collect();
+        let rows = spring.stiffness.chunks(phi.len().max(1));
+        let load: Vec<Sym> = rows.map(|row| weighted(row, &phi)).collect();
+        let rates = joint.velocity_map_inverse();
+        let effort = |column: &Vec<Sym>| {
+            let rate = rest.retract_differential_inverse(&phi, column);
+            -rate.iter().zip(&load).map(|(&rate, &load)| rate * load).sum::<Sym>()
+        };
+        rates.iter().map(effort).collect()
+    }
+
+    /// `−k vee(½(R − Rᵀ))` on the rotation R from rest, by X or by X^c, whichever depends less on the configuration.
+    fn rotation_spring(&self, index: usize, spring: &RotationSpring) -> Vec<Sym> {
+        let (_, joint) = self.joint(index);
+        let rotation = joint.rotation();
+        let back = spring.rest.transpose().map(Sym::from);
+        let (parent, child) = (joint.freedoms_in_parent(), joint.freedoms());
+        let known = |columns: &[crate::scene::spatial::Twist]| columns.iter().flat_map(|column| column.angular.iter()).all(|entry| entry.number().is_some());
+        let (columns, turn) = match known(&child) && !known(&parent) {
+            true => (child, product(&back, &rotation)),
+            false => (parent, product(&rotation, &back)),
+        };
+        let half = Sym::from(-0.5 * spring.stiffness);
+        let moment = axial(&turn) * half;
+        columns.iter().map(|column| dot(&column.angular, &moment)).collect()
+    }
+
+    /// The Q of a body's joint, and the joint there.
+    fn joint(&self, index: usize) -> (Vec<Sym>, Joint<'_>) {
+        let body = &self.model.bodies[index];
+        let places = self.bodies[index].share.configuration.clone();
+        let q: Vec<Sym> = places.map(|place| Sym::input(Argument::Configuration, place)).collect();
+        let joint = Joint::new(&body.joint, &body.parameters, &q, &[]);
+        (q, joint)
+    }
+}
+
+/// `Σ numbers · values`.
+fn weighted(numbers: &[f64], values: &[Sym]) -> Sym {
+    numbers.iter().zip(values).map(|(&number, &value)| Sym::from(number) * value).sum()
+}
+
+/// The vector a with `a~ = M − Mᵀ`.
+fn axial(m: &Mat3) -> Vec3 {
+    Vec3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)])
+}
