@@ -1,9 +1,9 @@
 //! Mechanisms as the scene compiler takes them, and what it makes of them in double precision.
 
 use crate::random;
-use hamel::elements::{Element, JointSpring, RotationSpring};
+use hamel::elements::{BodySpring, BodyWrench, Element, JointSpring, RotationSpring, WrenchAxes};
 use hamel::mechanism::{Body as TreeBody, Mechanism};
-use hamel::nalgebra::DMatrix;
+use hamel::nalgebra::{DMatrix, Vector3};
 use hamel_codegen::derived::Derived;
 use hamel_codegen::scene::functions::{Kind, compile};
 use hamel_codegen::scene::graph::Argument;
@@ -81,7 +81,8 @@ pub fn evaluate(model: &Model, kind: Kind, q: &[f64], speeds: &[f64], inputs: &[
         })
 }
 
-/// Random elements for a mechanism: springs of both kinds at half of its joints each.
+/// Random elements for a mechanism: springs of both kinds at half of its joints each, springs between points of every third body and of any
+/// other or the world, and wrenches in both axes.
 pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
     let mut elements = Elements::default();
     for (body, owner) in mechanism.bodies().iter().enumerate() {
@@ -110,7 +111,36 @@ pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
             });
         }
     }
+    let count = mechanism.bodies().len();
+    for body in (0..count).step_by(3) {
+        let other = random.random_range(0..=count);
+        let mut of = |some: f64| if random.random_bool(0.5) { some } else { 0.0 };
+        let (stiffness, damping, length) = (of(2.0), of(0.7), of(0.6));
+        elements.springs.push(BodySpring {
+            name: format!("spring of {body}"),
+            bodies: [(other < count).then_some(other), Some(body)],
+            points: [vector(random), vector(random)],
+            stiffness,
+            damping,
+            length,
+        });
+        elements.wrenches.push(BodyWrench {
+            name: format!("wrench on {body}"),
+            body,
+            point: vector(random),
+            force: vector(random),
+            moment: vector(random),
+            axes: match random.random_bool(0.5) {
+                true => WrenchAxes::World,
+                false => WrenchAxes::Body,
+            },
+        });
+    }
     elements
+}
+
+fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
+    Vector3::from_vec(random::numbers(random, 3))
 }
 
 /// The mechanism with these elements.
@@ -124,6 +154,12 @@ pub fn equipped(mechanism: &Mechanism, elements: &Elements) -> Arc<Mechanism> {
     }
     for spring in &elements.rotation_springs {
         all.push(Arc::new(spring.clone()));
+    }
+    for spring in &elements.springs {
+        all.push(Arc::new(spring.clone()));
+    }
+    for wrench in &elements.wrenches {
+        all.push(Arc::new(wrench.clone()));
     }
     let equipped = mechanism.clone().with_elements(all);
     Arc::new(equipped.unwrap_or_else(|errors| panic!("{errors:?}")))

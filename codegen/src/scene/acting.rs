@@ -94,7 +94,7 @@ impl Held<'_> {
 
     /// The Q at rest.
     fn rest(&self, rest: &Position) -> Result<Vec<f64>, String> {
-        let home = || self.numbers(self.at(&[], Joint::home));
+        let home = || self.numbers(self.at(&[], |joint| joint.home()));
         match rest {
             Position::Home => home(),
             Position::Configuration(given) => self.projected(&given.value),
@@ -119,7 +119,7 @@ impl Held<'_> {
             return Err(self.refused(&format!("`configuration` must have {size} number(s)")));
         }
         self.in_closed_form(KernelKind::Project)?;
-        let projected = self.numbers(self.at(given, Joint::project))?;
+        let projected = self.numbers(self.at(given, |joint| joint.project()))?;
         let away = given.iter().zip(&projected).map(|(a, b)| (a - b).abs());
         match away.fold(0.0, f64::max) {
             away if away <= CONFIGURATION_TOLERANCE => Ok(projected),

@@ -3,7 +3,8 @@
 use super::acting::Held;
 use super::model::{Body, Elements, Model};
 use crate::derived::{Derived, KernelKind, Structure};
-use hamel_scene::{BodyDescription, SceneDescription};
+use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
+use hamel_scene::{BodyDescription, PointSpring, SceneDescription, WrenchDescription};
 use std::rc::Rc;
 
 /// Why a scene cannot be compiled: one line for each reason.
@@ -36,7 +37,11 @@ impl Model {
         joints: impl Fn(&str) -> Option<Rc<Derived>>,
     ) -> Result<Self, Refused> {
         let mut reasons = elsewhere(scene);
-        let mut elements = Elements::default();
+        let mut elements = Elements {
+            springs: scene.springs.iter().map(spring).collect(),
+            wrenches: scene.wrenches.iter().map(wrench).collect(),
+            ..Elements::default()
+        };
         let bodies = scene.bodies.iter().enumerate();
         let bodies: Vec<Option<Body>> = bodies
             .map(|(index, body)| {
@@ -77,24 +82,9 @@ impl Model {
     }
 }
 
-/// What acts between bodies, which is not compiled.
+/// What acts between bodies and is not compiled.
 fn elsewhere(scene: &SceneDescription) -> Vec<String> {
-    let springs = scene.springs.len();
     let mut reasons = vec![];
-    if springs > 0 {
-        reasons.push(format!(
-            "{springs} spring(s) between points: these are not compiled"
-        ));
-    }
-    for wrench in &scene.wrenches {
-        let body = scene
-            .bodies
-            .get(wrench.body)
-            .map_or("?", |body| body.name.value.as_str());
-        reasons.push(format!(
-            "a wrench on body `{body}`: wrenches are not compiled"
-        ));
-    }
     for constraint in &scene.constraints {
         let name = &constraint.name.value;
         reasons.push(format!(
@@ -102,6 +92,31 @@ fn elsewhere(scene: &SceneDescription) -> Vec<String> {
         ));
     }
     reasons
+}
+
+fn spring(spring: &PointSpring) -> BodySpring {
+    BodySpring {
+        name: String::new(),
+        bodies: [spring.from.body, spring.to.body],
+        points: [spring.from.point, spring.to.point],
+        stiffness: spring.stiffness,
+        damping: spring.damping,
+        length: spring.length,
+    }
+}
+
+fn wrench(wrench: &WrenchDescription) -> BodyWrench {
+    BodyWrench {
+        name: String::new(),
+        body: wrench.body,
+        point: wrench.point,
+        force: wrench.force,
+        moment: wrench.moment,
+        axes: match wrench.axes {
+            hamel_scene::WrenchAxes::World => WrenchAxes::World,
+            hamel_scene::WrenchAxes::Body => WrenchAxes::Body,
+        },
+    }
 }
 
 /// What acts at a joint and is not compiled.

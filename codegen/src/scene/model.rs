@@ -1,7 +1,7 @@
 //! What is compiled: a tree of bodies with numbers for all that does not change.
 
 use crate::derived::Derived;
-use hamel::elements::{JointSpring, RotationSpring};
+use hamel::elements::{BodySpring, BodyWrench, JointSpring, RotationSpring};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -20,13 +20,17 @@ pub struct Model {
     pub elements: Elements,
 }
 
-/// Springs, as the runtime has them.
+/// Springs and wrenches, as the runtime has them.
 #[derive(Clone, Debug, Default)]
 pub struct Elements {
     /// Springs at joints in local coordinates.
     pub joint_springs: Vec<JointSpring>,
     /// Springs at joints that are smooth at every attitude.
     pub rotation_springs: Vec<RotationSpring>,
+    /// Springs and dampers between points.
+    pub springs: Vec<BodySpring>,
+    /// Wrenches from outside.
+    pub wrenches: Vec<BodyWrench>,
 }
 
 /// One body and the joint that it hangs on.

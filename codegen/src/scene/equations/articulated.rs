@@ -32,6 +32,7 @@ impl Tree<'_> {
             Bias::Before => self.inverse_dynamics(None),
             Bias::Within => vec![Sym::Number(0.0); self.model.sizes()[2]],
         };
+        let external = self.external();
         let count = self.bodies.len();
         let mut inertias: Vec<Articulated> = vec![];
         let mut wrenches: Vec<Wrench> = vec![];
@@ -43,7 +44,8 @@ impl Tree<'_> {
             let within = bias == Bias::Within;
             let spin = Spin::new(&velocities[index].0, &Vec3::zeros());
             wrenches.push(if within {
-                spin.wrench(&rigid, &Vec3::zeros())
+                let needed = spin.wrench(&rigid, &Vec3::zeros());
+                needed.plus(&external[index].times(Sym::Number(-1.0)))
             } else {
                 Wrench::zero()
             });

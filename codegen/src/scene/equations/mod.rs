@@ -7,6 +7,7 @@
 pub mod articulated;
 mod composite;
 mod elements;
+mod external;
 mod newton_euler;
 
 pub use articulated::Bias;

@@ -63,6 +63,7 @@ impl Tree<'_> {
     /// The efforts τ̄ that the given accelerations take in all.
     pub(super) fn inverse_dynamics(&self, accelerations: Option<Argument>) -> Vec<Sym> {
         let velocities = self.angular_velocities();
+        let external = self.external();
         let mut spins: Vec<Spin> = vec![];
         let mut linear: Vec<Vec3> = vec![];
         let mut wrenches: Vec<Wrench> = vec![];
@@ -85,7 +86,8 @@ impl Tree<'_> {
             let a = a + acceleration.linear;
             let spin = Spin::new(&velocities[index].0, &alpha);
             section(number(index), "force");
-            wrenches.push(spin.wrench(&self.links[index].inertia.on_graph(), &a));
+            let needed = spin.wrench(&self.links[index].inertia.on_graph(), &a);
+            wrenches.push(needed.plus(&external[index].times(Sym::Number(-1.0))));
             spins.push(spin);
             linear.push(a);
         }

@@ -217,6 +217,7 @@ impl<'a> Placed<'a> {
                     .then_some(Fixed::Turn(2, cos, sin))
                     .into_iter()
                     .collect(),
+                body: to_joint,
                 inertia: tidy(&Inertia::of(&body.mass).seen_from(&to_joint)),
             }
         };
@@ -225,7 +226,7 @@ impl<'a> Placed<'a> {
 }
 
 /// Without entries that are rounding of the others.
-fn clean(shift: Vector3<f64>) -> Vector3<f64> {
+pub fn clean(shift: Vector3<f64>) -> Vector3<f64> {
     let limit = ROUNDING * shift.norm();
     shift.map(|entry| if entry.abs() <= limit { 0.0 } else { entry })
 }

@@ -7,7 +7,7 @@ mod frames;
 mod inertias;
 mod rotation;
 
-pub use frames::Placed;
+pub use frames::{Placed, clean};
 
 use super::model::{Inertia, Model};
 use hamel::spatial::Pose;
@@ -19,6 +19,8 @@ pub struct Link {
     pub placement: Vec<Fixed>,
     /// From the frame of this body's equations to the joint's child frame.
     pub after: Vec<Fixed>,
+    /// The body frame in the frame of its equations.
+    pub body: Pose<f64>,
     /// The inertia that is left to it, in its frame.
     pub inertia: Inertia,
 }
