@@ -35,20 +35,21 @@ pub fn joint(name: &str) -> Option<Rc<Derived>> {
     })
 }
 
-/// A mechanism of the library's joints on which gravity alone acts.
+/// A mechanism of the library's joints on which gravity alone acts, with its rotors.
 ///
 /// # Panics
 /// Where a joint is not of the library.
 pub fn model(name: &str, mechanism: &Mechanism) -> Model {
+    let bodies = mechanism.bodies().iter().enumerate();
     Model {
         name: name.to_owned(),
         gravity: *mechanism.gravity(),
-        bodies: mechanism.bodies().iter().map(body).collect(),
+        bodies: bodies.map(|(index, owner)| body(owner, mechanism.armature(index))).collect(),
         elements: Elements::default(),
     }
 }
 
-fn body(body: &TreeBody) -> Body {
+fn body(body: &TreeBody, armature: &[f64]) -> Body {
     let mut parameters = vec![];
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
@@ -62,7 +63,7 @@ fn body(body: &TreeBody) -> Body {
         placement: *body.placement(),
         child_placement: *body.child_placement(),
         mass: *body.mass(),
-        armature: vec![],
+        armature: armature.to_vec(),
         damping: vec![],
         effort: vec![],
     }
@@ -163,4 +164,22 @@ pub fn equipped(mechanism: &Mechanism, elements: &Elements) -> Arc<Mechanism> {
     }
     let equipped = mechanism.clone().with_elements(all);
     Arc::new(equipped.unwrap_or_else(|errors| panic!("{errors:?}")))
+}
+
+/// The mechanism with random rotors at half of its holonomic joints.
+///
+/// # Panics
+/// Never: they fit.
+pub fn geared(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
+    let mut geared = mechanism.clone();
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        let layout = owner.joint().layout();
+        if layout.constraints == 0 && random.random_bool(0.5) {
+            let rotors = random::numbers(random, layout.freedoms);
+            let rotors: Vec<f64> = rotors.into_iter().map(f64::abs).collect();
+            let with = geared.with_armature(body, &rotors);
+            geared = with.unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+    geared
 }

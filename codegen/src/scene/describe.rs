@@ -2,7 +2,7 @@
 
 use super::acting::Held;
 use super::model::{Body, Elements, Model};
-use crate::derived::{Derived, KernelKind, Structure};
+use crate::derived::Derived;
 use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
 use hamel_scene::{BodyDescription, PointSpring, SceneDescription, WrenchDescription};
 use std::rc::Rc;
@@ -154,12 +154,9 @@ fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<Stri
         .effort
         .as_ref()
         .map_or(vec![], |found| found.value.clone());
-    let turns = joint
-        .kernel(KernelKind::Gamma)
-        .is_some_and(|gamma| gamma.structure != Structure::Zero);
-    if turns && armature.iter().any(|&rotor| rotor != 0.0) {
+    if joint.shape.constraints > 0 && armature.iter().any(|&rotor| rotor != 0.0) {
         reasons.push(format!(
-            "joint `{name}`: armature at a joint whose velocities do not commute (`{}`) is not compiled",
+            "joint `{name}`: a nonholonomic joint such as `{}` can have no armature",
             body.joint.kind.value
         ));
     }

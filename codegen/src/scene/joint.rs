@@ -116,6 +116,14 @@ impl<'a> Joint<'a> {
         self.entries_with(KernelKind::RetractDifferentialInverse, &given)
     }
 
+    /// Σ_k γ_k v_k by rows, at v.
+    pub fn gamma(&self, velocity: &[Sym]) -> Vec<Vec<Sym>> {
+        let given = [(self.derived.arguments.velocity.as_slice(), velocity)];
+        let entries = self.entries_with(KernelKind::Gamma, &given);
+        let rows = entries.chunks(velocity.len().max(1));
+        rows.map(<[Sym]>::to_vec).collect()
+    }
+
     /// The nearest point of the manifold.
     pub fn project(&self) -> Vec<Sym> {
         self.entries(KernelKind::Project)

@@ -192,11 +192,12 @@ fn random_trees_with_elements_agree() {
     let kinds = random::library();
     for case in random::cases(&kinds, 20, 100) {
         let mut random = ChaCha8Rng::seed_from_u64(case.seed);
-        let mut model = compiled::model("random", &case.mechanism);
-        model.elements = compiled::elements(&mut random, &case.mechanism);
+        let geared = compiled::geared(&mut random, &case.mechanism);
+        let mut model = compiled::model("random", &geared);
+        model.elements = compiled::elements(&mut random, &geared);
         let point = Point {
             place: format!("seed {}, with elements", case.seed),
-            mechanism: compiled::equipped(&case.mechanism, &model.elements),
+            mechanism: compiled::equipped(&geared, &model.elements),
             model,
             q: case.q,
             speeds: case.speeds,

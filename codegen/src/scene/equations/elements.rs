@@ -1,4 +1,4 @@
-//! What springs exert: efforts at their joints.
+//! What springs and rotors at joints exert.
 
 use super::Tree;
 use crate::scene::graph::{Argument, Sym};
@@ -52,6 +52,20 @@ impl Tree<'_> {
         let half = Sym::from(-0.5 * spring.stiffness);
         let moment = axial(&turn) * half;
         columns.iter().map(|column| dot(&column.angular, &moment)).collect()
+    }
+
+    /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one a freedom: what their turning takes where velocities do not commute.
+    pub(super) fn rotor_forces(&self, index: usize) -> Vec<Sym> {
+        if !self.has_armature(index) {
+            return vec![];
+        }
+        let speeds = &self.bodies[index].speeds;
+        let armature = &self.model.bodies[index].armature;
+        let momenta = armature.iter().zip(speeds);
+        let momenta: Vec<Sym> = momenta.map(|(&a, &v)| Sym::from(a) * v).collect();
+        let (_, joint) = self.joint(index);
+        let force = |row: &Vec<Sym>| row.iter().zip(&momenta).map(|(&g, &p)| g * p).sum();
+        joint.gamma(speeds).iter().map(force).collect()
     }
 
     /// The Q of a body's joint, and the joint there.
