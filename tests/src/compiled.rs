@@ -69,16 +69,15 @@ fn body(body: &TreeBody, armature: &[f64]) -> Body {
     }
 }
 
-/// The values of a compiled function at a state.
+/// The values of a compiled function at a state; `speeds` are the momenta where it takes these.
 pub fn evaluate(model: &Model, kind: Kind, q: &[f64], speeds: &[f64], inputs: &[f64]) -> Vec<f64> {
     let function = compile(model, kind).function;
     function
         .graph
         .evaluate(&function.outputs, |argument| match argument {
             Argument::Configuration => q.to_vec(),
-            Argument::Speeds => speeds.to_vec(),
+            Argument::Speeds | Argument::Momenta => speeds.to_vec(),
             Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
-            Argument::Momenta => vec![],
         })
 }
 

@@ -1,7 +1,7 @@
 //! The kernels of one joint of a scene, on the graph.
 
 use super::graph::{Sym, atan2, call, primitive, sin_cos};
-use super::spatial::{Mat3, Step, Twist, Vec3, simplified};
+use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
 use crate::derived::{Derived, KernelKind};
 use crate::emit::formula::{Binding, Node, Program};
 use crate::expr::{Function, Symbol};
@@ -122,6 +122,14 @@ impl<'a> Joint<'a> {
         let entries = self.entries_with(KernelKind::Gamma, &given);
         let rows = entries.chunks(velocity.len().max(1));
         rows.map(<[Sym]>::to_vec).collect()
+    }
+
+    /// `Ẋ̄^cᵀ h` at v̄.
+    pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
+        let parts = momentum.moment.iter().chain(&momentum.force);
+        let momentum: Vec<Sym> = parts.copied().collect();
+        let given = [(self.derived.arguments.wrench.as_slice(), momentum.as_slice())];
+        self.entries_with(KernelKind::BiasMomentum, &given)
     }
 
     /// The nearest point of the manifold.

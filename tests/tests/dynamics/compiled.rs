@@ -92,6 +92,47 @@ impl Point {
             &expected,
             bound,
         );
+        self.forms_agree(&mut tree, bound);
+        self.places_agree();
+    }
+
+    /// The port-Hamiltonian form; `bound` is that of solutions with M̄.
+    fn forms_agree(&self, tree: &mut Recursive, bound: f64) {
+        let (q, speeds, model) = (&self.q, &self.speeds, &self.model);
+        let evaluate = |kind, state: &[f64]| compiled::evaluate(model, kind, q, state, &self.inputs);
+        let mut momenta = vec![0.0; speeds.len()];
+        tree.momenta(q, speeds, &mut momenta).expect("sizes fit");
+        self.close("momenta", &evaluate(Kind::Momenta, speeds), &momenta, BOUND);
+        let found = evaluate(Kind::Speeds, &momenta);
+        self.close("speeds", &found, speeds, bound);
+
+        let (mut back, mut rates) = (speeds.clone(), momenta.clone());
+        let mut efforts = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&self.inputs);
+        tree.momentum_rates(q, &momenta, &mut efforts, &mut back, &mut rates)
+            .expect("M̄ is regular");
+        let found = evaluate(Kind::MomentumRates, &momenta);
+        let (found_speeds, found_rates) = found.split_at(speeds.len());
+        self.close("speeds with rates", found_speeds, &back, bound);
+        self.close("momentum rates", found_rates, &rates, bound);
+
+        let energy = tree.hamiltonian(q, &momenta).expect("M̄ is regular");
+        let energies = evaluate(Kind::Energies, speeds);
+        let scale = energies.iter().fold(energy.abs(), |most, part| most.max(part.abs()));
+        let relative = |found: f64| vec![(found - energy) / scale + 1.0];
+        self.close("energies", &relative(energies.iter().sum()), &[1.0], BOUND);
+        let hamiltonian = evaluate(Kind::Hamiltonian, &momenta);
+        self.close("hamiltonian", &relative(hamiltonian[0]), &[1.0], bound);
+    }
+
+    fn places_agree(&self) {
+        let kinematics = self.mechanism.kinematics(&self.q, &self.speeds);
+        let kinematics = kinematics.expect("sizes fit");
+        let expected = kinematics.bodies.iter().flat_map(|body| {
+            let rotation: Vec<f64> = body.pose.rotation.transpose().iter().copied().collect();
+            [rotation, body.pose.translation.as_slice().to_vec()].concat()
+        });
+        let expected: Vec<f64> = expected.collect();
+        self.close("poses", &self.compiled(Kind::Poses, &[]), &expected, BOUND);
     }
 
     fn close(&self, what: &str, found: &[f64], expected: &[f64], bound: f64) {

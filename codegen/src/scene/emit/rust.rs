@@ -86,6 +86,7 @@ fn equations(model: &Model, functions: &[Function]) -> TokenStream {
             })
         },
     };
+    let hamiltonian = hamiltonian_form(functions);
     quote! {
         /// These functions for the runtime, in double precision.
         pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations {
@@ -94,8 +95,59 @@ fn equations(model: &Model, functions: &[Function]) -> TokenStream {
             freedoms: #freedoms,
             speeds: #speeds,
             forward_dynamics: #forward,
+            #hamiltonian
         };
     }
+}
+
+/// The fields of that constant for the port-Hamiltonian form.
+fn hamiltonian_form(functions: &[Function]) -> TokenStream {
+    let field = |kind: Kind, value: TokenStream| {
+        let name = Ident::new(kind.name(), Span::call_site());
+        match functions.iter().any(|function| function.name == kind.name()) {
+            true => quote! { #name: Some(#value), },
+            false => quote! { #name: None, },
+        }
+    };
+    let map = |kind: Kind| {
+        let name = Ident::new(kind.name(), Span::call_site());
+        let value = quote! {
+            |q, v, out| {
+                if let (Some(q), Some(v), Some(out)) =
+                    (q.first_chunk(), v.first_chunk(), out.first_chunk_mut())
+                {
+                    *out = #name::<f64>(q, v);
+                }
+            }
+        };
+        field(kind, value)
+    };
+    let rates = quote! {
+        |q, p, tau, speeds, rates| {
+            if let (Some(q), Some(p), Some(tau), Some(speeds), Some(rates)) = (
+                q.first_chunk(),
+                p.first_chunk(),
+                tau.first_chunk(),
+                speeds.first_chunk_mut(),
+                rates.first_chunk_mut(),
+            ) {
+                [*speeds, *rates] = momentum_rates::<f64>(q, p, tau);
+            }
+        }
+    };
+    let energy = quote! {
+        |q, p| match (q.first_chunk(), p.first_chunk()) {
+            (Some(q), Some(p)) => hamiltonian::<f64>(q, p)[0],
+            _ => f64::NAN,
+        }
+    };
+    let fields = [
+        map(Kind::Momenta),
+        map(Kind::Speeds),
+        field(Kind::MomentumRates, rates),
+        field(Kind::Hamiltonian, energy),
+    ];
+    quote! { #(#fields)* }
 }
 
 /// Names of the bodies as parts of identifiers.

@@ -74,11 +74,18 @@ impl Tree<'_> {
                 right[place] = effort - forces[place];
             }
         }
-        self.solved(matrix, right)
+        self.solved(matrix, right, "acceleration")
     }
 
-    /// `M̄⁻¹ b`.
-    pub(super) fn solved(&self, mut matrix: Matrix, mut right: Vec<Sym>) -> Vec<Sym> {
+    /// v̄ with M̄ v̄ = p̄, the argument.
+    pub fn composite_speeds(&self) -> Vec<Sym> {
+        let count = self.model.sizes()[2];
+        let momenta = (0..count).map(|i| Sym::input(Argument::Momenta, i));
+        self.solved(self.mass_matrix(), momenta.collect(), "speed")
+    }
+
+    /// `M̄⁻¹ b`, with a name for what that is.
+    fn solved(&self, mut matrix: Matrix, mut right: Vec<Sym>, sought: &'static str) -> Vec<Sym> {
         let carriers = self.carriers();
         let sections = self.sections();
         let mut inverses = vec![Sym::zero(); right.len()];
@@ -97,9 +104,9 @@ impl Tree<'_> {
             }
         }
         for k in 0..right.len() {
-            section(sections[k], "acceleration");
+            section(sections[k], sought);
             let carried: Sym = carriers[k].iter().map(|&i| matrix[k][i] * right[i]).sum();
-            right[k] = ((right[k] - carried) * inverses[k]).named("acceleration");
+            right[k] = ((right[k] - carried) * inverses[k]).named(sought);
         }
         right
     }

@@ -1,11 +1,21 @@
 //! What springs and rotors at joints exert.
 
-use super::Tree;
-use crate::scene::graph::{Argument, Sym};
+use super::{Tree, number};
+use crate::scene::graph::{Argument, Sym, section};
 use crate::scene::joint::Joint;
-use crate::scene::spatial::{Mat3, Vec3, dot, product};
+use crate::scene::spatial::{Mat3, Twist, Vec3, Wrench, dot, product};
 use hamel::elements::{JointSpring, RotationSpring};
 use num_traits::Zero;
+
+/// A spring at a joint.
+struct Stretch<'a> {
+    /// The joint at rest.
+    rest: Joint<'a>,
+    /// ϕ.
+    phi: Vec<Sym>,
+    /// Kϕ.
+    load: Vec<Sym>,
+}
 
 impl Tree<'_> {
     /// The efforts of the springs at a body's joint, one a freedom; none where it has no spring.
@@ -22,14 +32,44 @@ impl Tree<'_> {
         each.reduce(add).unwrap_or_default()
     }
 
-    /// `τ = −S₀⁻ᵀ D⁻ᵀ K ϕ`.
-    fn joint_spring(&self, index: usize, spring: &JointSpring) -> Vec<Sym> {
-        let (q, joint) = self.joint(index);
+    /// Energy of the springs at joints and between points.
+    pub(super) fn spring_energy(&self) -> Sym {
+        let elements = &self.model.elements;
+        let half = Sym::from(0.5);
+        let joints = elements.joint_springs.iter().map(|spring| {
+            section(number(spring.body), "spring");
+            let Stretch { phi, load, .. } = self.stretch(spring);
+            phi.iter().zip(&load).map(|(&x, &l)| x * l).sum::<Sym>() * half
+        });
+        let turned = elements.rotation_springs.iter().map(|spring| {
+            section(number(spring.body), "spring");
+            let back = spring.rest.transpose().map(Sym::from);
+            let (_, joint) = self.joint(spring.body);
+            // (3 − tr R)/2 loses digits near rest; ¼ |R − 1|² is the same and keeps them.
+            let away = product(&joint.rotation(), &back) - Mat3::identity();
+            let squares = away.iter().map(|&entry| entry * entry);
+            squares.sum::<Sym>() * Sym::from(0.25 * spring.stiffness)
+        });
+        let points = elements.springs.iter().map(|spring| self.point_spring_energy(spring));
+        joints.chain(turned).chain(points).sum()
+    }
+
+    /// ϕ of a spring and Kϕ.
+    fn stretch(&self, spring: &JointSpring) -> Stretch<'_> {
+        let (q, _) = self.joint(spring.body);
+        let body = &self.model.bodies[spring.body];
         let rest: Vec<Sym> = spring.rest.iter().copied().map(Sym::from).collect();
-        let rest = Joint::new(&self.model.bodies[index].joint, &self.model.bodies[index].parameters, &rest, &[]);
+        let rest = Joint::new(&body.joint, &body.parameters, &rest, &[]);
         let phi: Vec<Sym> = rest.local(&q).into_iter().map(|entry| entry.named("stretch")).collect();
         let rows = spring.stiffness.chunks(phi.len().max(1));
-        let load: Vec<Sym> = rows.map(|row| weighted(row, &phi)).collect();
+        let load = rows.map(|row| weighted(row, &phi)).collect();
+        Stretch { rest, phi, load }
+    }
+
+    /// `τ = −S₀⁻ᵀ D⁻ᵀ K ϕ`.
+    fn joint_spring(&self, index: usize, spring: &JointSpring) -> Vec<Sym> {
+        let (_, joint) = self.joint(index);
+        let Stretch { rest, phi, load } = self.stretch(spring);
         let rates = joint.velocity_map_inverse();
         let effort = |column: &Vec<Sym>| {
             let rate = rest.retract_differential_inverse(&phi, column);
@@ -44,7 +84,7 @@ impl Tree<'_> {
         let rotation = joint.rotation();
         let back = spring.rest.transpose().map(Sym::from);
         let (parent, child) = (joint.freedoms_in_parent(), joint.freedoms());
-        let known = |columns: &[crate::scene::spatial::Twist]| columns.iter().flat_map(|column| column.angular.iter()).all(|entry| entry.number().is_some());
+        let known = |columns: &[Twist]| columns.iter().flat_map(|column| column.angular.iter()).all(|entry| entry.number().is_some());
         let (columns, turn) = match known(&child) && !known(&parent) {
             true => (child, product(&back, &rotation)),
             false => (parent, product(&rotation, &back)),
@@ -66,6 +106,14 @@ impl Tree<'_> {
         let (_, joint) = self.joint(index);
         let force = |row: &Vec<Sym>| row.iter().zip(&momenta).map(|(&g, &p)| g * p).sum();
         joint.gamma(speeds).iter().map(force).collect()
+    }
+
+    /// `Ẋ̄ᵀ h` of a body's joint, one a speed.
+    pub(super) fn bias_momentum(&self, index: usize, momentum: &Wrench) -> Vec<Sym> {
+        let body = &self.model.bodies[index];
+        let (q, _) = self.joint(index);
+        let speeds = &self.bodies[index].speeds;
+        Joint::new(&body.joint, &body.parameters, &q, speeds).bias_momentum(momentum)
     }
 
     /// The Q of a body's joint, and the joint there.

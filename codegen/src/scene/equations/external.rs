@@ -67,6 +67,19 @@ impl Tree<'_> {
         wrenches[body] = wrenches[body].plus(&own);
     }
 
+    /// `½ k (l − l₀)²`.
+    pub(super) fn point_spring_energy(&self, spring: &BodySpring) -> Sym {
+        let [from, to] = self.ends(spring);
+        let between = to.place - from.place;
+        let square = dot(&between, &between);
+        let half = Sym::from(0.5 * spring.stiffness);
+        if spring.length == 0.0 {
+            return half * square;
+        }
+        let stretch = call(Function::Sqrt, square) - Sym::from(spring.length);
+        half * stretch * stretch
+    }
+
     /// Both ends of a spring, seen from the last body that carries both.
     fn ends(&self, spring: &BodySpring) -> [Seen; 2] {
         let common = self.common(spring.bodies);

@@ -7,7 +7,9 @@
 pub mod articulated;
 mod composite;
 mod elements;
+mod energy;
 mod external;
+mod kinematics;
 mod newton_euler;
 
 pub use articulated::Bias;

@@ -23,6 +23,8 @@ pub struct Link {
     pub body: Pose<f64>,
     /// The inertia that is left to it, in its frame.
     pub inertia: Inertia,
+    /// First moment of what the world took off it, in world axes, kg m.
+    pub dropped: nalgebra::Vector3<f64>,
 }
 
 /// A constant factor of a placement.
@@ -35,6 +37,13 @@ pub enum Fixed {
 }
 
 impl Fixed {
+    /// A pose in factors.
+    pub fn steps(pose: &Pose<f64>) -> Vec<Self> {
+        let shift = clean(pose.translation);
+        let shift = (shift != nalgebra::Vector3::zeros()).then_some(Self::Shift(shift));
+        shift.into_iter().chain(rotation::turns(&pose.rotation)).collect()
+    }
+
     /// Their product.
     pub fn pose(steps: &[Self]) -> Pose<f64> {
         let poses = steps.iter().map(|step| match *step {
