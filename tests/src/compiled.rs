@@ -1,7 +1,9 @@
 //! Mechanisms as the scene compiler takes them, and what it makes of them in double precision.
 
 use crate::random;
-use hamel::elements::{BodySpring, BodyWrench, Element, JointSpring, RotationSpring, WrenchAxes};
+use hamel::elements::{
+    BodySpring, BodyWrench, Drive, Element, JointSpring, Law, RotationSpring, WrenchAxes,
+};
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
 use hamel_codegen::derived::Derived;
@@ -35,7 +37,7 @@ pub fn joint(name: &str) -> Option<Rc<Derived>> {
     })
 }
 
-/// A mechanism of the library's joints on which gravity alone acts, with its rotors.
+/// A mechanism of the library's joints on which gravity alone acts, with its rotors and drives.
 ///
 /// # Panics
 /// Where a joint is not of the library.
@@ -44,12 +46,16 @@ pub fn model(name: &str, mechanism: &Mechanism) -> Model {
     Model {
         name: name.to_owned(),
         gravity: *mechanism.gravity(),
-        bodies: bodies.map(|(index, owner)| body(owner, mechanism.armature(index))).collect(),
+        bodies: bodies
+            .map(|(index, owner)| {
+                body(owner, mechanism.armature(index), mechanism.is_driven(index))
+            })
+            .collect(),
         elements: Elements::default(),
     }
 }
 
-fn body(body: &TreeBody, armature: &[f64]) -> Body {
+fn body(body: &TreeBody, armature: &[f64], driven: bool) -> Body {
     let mut parameters = vec![];
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
@@ -66,6 +72,7 @@ fn body(body: &TreeBody, armature: &[f64]) -> Body {
         armature: armature.to_vec(),
         damping: vec![],
         effort: vec![],
+        driven,
     }
 }
 
@@ -181,4 +188,23 @@ pub fn geared(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
         }
     }
     geared
+}
+
+/// The mechanism with drives at a quarter of its joints.
+///
+/// # Panics
+/// Never: they fit.
+pub fn driven(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
+    let mut drives = vec![];
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        if random.random_bool(0.25) {
+            drives.push(Drive {
+                name: format!("drive of {body}"),
+                body,
+                laws: vec![Law::default(); owner.joint().layout().speeds],
+            });
+        }
+    }
+    let driven = mechanism.clone().with_drives(drives);
+    driven.unwrap_or_else(|errors| panic!("{errors:?}"))
 }

@@ -45,7 +45,6 @@ impl Model {
         let bodies = scene.bodies.iter().enumerate();
         let bodies: Vec<Option<Body>> = bodies
             .map(|(index, body)| {
-                reasons.extend(uncovered(body));
                 let kind = &body.joint.kind.value;
                 let Some(joint) = joints(kind) else {
                     let name = &body.joint.name.value;
@@ -119,18 +118,6 @@ fn wrench(wrench: &WrenchDescription) -> BodyWrench {
     }
 }
 
-/// What acts at a joint and is not compiled.
-fn uncovered(body: &BodyDescription) -> Vec<String> {
-    let name = &body.joint.name.value;
-    let mut reasons = vec![];
-    if body.forces.motion.is_some() {
-        reasons.push(format!(
-            "joint `{name}`: prescribed motions are not compiled"
-        ));
-    }
-    reasons
-}
-
 fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<String>> {
     let name = &body.joint.name.value;
     let mut reasons = vec![];
@@ -175,6 +162,7 @@ fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<Stri
             armature,
             damping,
             effort,
+            driven: forces.motion.is_some(),
         }),
     }
 }

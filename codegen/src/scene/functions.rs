@@ -111,7 +111,9 @@ impl Kind {
             Self::ForwardDynamics => solving(
                 model,
                 vec![
-                    (ARTICULATED, |tree| tree.articulated_accelerations(Bias::Within)),
+                    (ARTICULATED, |tree| {
+                        tree.articulated_accelerations(Bias::Within)
+                    }),
                     ("articulated bodies after inverse dynamics", |tree| {
                         tree.articulated_accelerations(Bias::Before)
                     }),
@@ -125,7 +127,9 @@ impl Kind {
             Self::BiasForces => vec![("Newton–Euler", |tree| tree.needed_efforts(None))],
             Self::MomentumRates => solving(
                 model,
-                vec![(ARTICULATED, |tree| tree.port_hamiltonian(Tree::articulated_speeds))],
+                vec![(ARTICULATED, |tree| {
+                    tree.port_hamiltonian(Tree::articulated_speeds)
+                })],
                 |tree| tree.port_hamiltonian(Tree::composite_speeds),
             ),
             Self::Momenta => vec![("momenta of what each joint carries", |tree| tree.momenta())],
@@ -136,7 +140,9 @@ impl Kind {
             ),
             Self::Hamiltonian => solving(
                 model,
-                vec![(ARTICULATED, |tree| vec![tree.hamiltonian(Tree::articulated_speeds)])],
+                vec![(ARTICULATED, |tree| {
+                    vec![tree.hamiltonian(Tree::articulated_speeds)]
+                })],
                 |tree| vec![tree.hamiltonian(Tree::composite_speeds)],
             ),
             Self::Energies => vec![("body by body", |tree| tree.energies())],
@@ -160,11 +166,7 @@ const ARTICULATED: &str = "articulated bodies";
 const COMPOSITE: &str = "composite bodies";
 
 /// The ways with that of M̄ factorised, where it may be the shortest.
-fn solving(
-    model: &Model,
-    mut ways: Vec<Way>,
-    factorised: fn(&Tree<'_>) -> Vec<Sym>,
-) -> Vec<Way> {
+fn solving(model: &Model, mut ways: Vec<Way>, factorised: fn(&Tree<'_>) -> Vec<Sym>) -> Vec<Way> {
     if worth_factorising(model) {
         ways.push(("composite bodies, factorised along the tree", factorised));
     }

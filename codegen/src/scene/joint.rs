@@ -128,7 +128,10 @@ impl<'a> Joint<'a> {
     pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
         let parts = momentum.moment.iter().chain(&momentum.force);
         let momentum: Vec<Sym> = parts.copied().collect();
-        let given = [(self.derived.arguments.wrench.as_slice(), momentum.as_slice())];
+        let given = [(
+            self.derived.arguments.wrench.as_slice(),
+            momentum.as_slice(),
+        )];
         self.entries_with(KernelKind::BiasMomentum, &given)
     }
 
@@ -156,32 +159,34 @@ impl<'a> Joint<'a> {
 }
 
 fn run(program: &Program, mut values: BTreeMap<Symbol, Sym>) -> Vec<Sym> {
-        for binding in &program.bindings {
-            match binding {
-                Binding::Value { name, value } => {
-                    let value = evaluate(value, &values);
-                    values.insert(name.clone(), value);
-                }
-                Binding::SinCos { sin, cos, angle } => {
-                    let (sine, cosine) = sin_cos(evaluate(angle, &values));
-                    let named = [(sin, sine), (cos, cosine)];
-                    let named = named.into_iter();
-                    values.extend(named.filter_map(|(name, value)| Some((name.clone()?, value))));
-                }
-                Binding::Call {
-                    primitive: function,
-                    argument,
-                    outputs,
-                } => {
-                    let arguments: Vec<Sym> =
-                        argument.iter().map(|part| evaluate(part, &values)).collect();
-                    let results = primitive(*function, &arguments);
-                    values.extend(outputs.iter().cloned().zip(results));
-                }
+    for binding in &program.bindings {
+        match binding {
+            Binding::Value { name, value } => {
+                let value = evaluate(value, &values);
+                values.insert(name.clone(), value);
+            }
+            Binding::SinCos { sin, cos, angle } => {
+                let (sine, cosine) = sin_cos(evaluate(angle, &values));
+                let named = [(sin, sine), (cos, cosine)];
+                let named = named.into_iter();
+                values.extend(named.filter_map(|(name, value)| Some((name.clone()?, value))));
+            }
+            Binding::Call {
+                primitive: function,
+                argument,
+                outputs,
+            } => {
+                let arguments: Vec<Sym> = argument
+                    .iter()
+                    .map(|part| evaluate(part, &values))
+                    .collect();
+                let results = primitive(*function, &arguments);
+                values.extend(outputs.iter().cloned().zip(results));
             }
         }
-        let outputs = program.outputs.iter();
-        outputs.map(|output| evaluate(output, &values)).collect()
+    }
+    let outputs = program.outputs.iter();
+    outputs.map(|output| evaluate(output, &values)).collect()
 }
 
 /// The columns of a matrix of six rows, given row by row.

@@ -58,6 +58,8 @@ pub struct Body {
     pub damping: Vec<f64>,
     /// Constant efforts, one a freedom.
     pub effort: Vec<f64>,
+    /// Whether the joint's motion is prescribed: its first entries of τ are its accelerations, and its entries of p̄ its speeds.
+    pub driven: bool,
 }
 
 /// Where a body's share lies in Q, in v and τ, and in v̄.

@@ -171,12 +171,17 @@ impl Compiled {
 
     /// `p̄̇ += S̄ᵀτ`: they are affine in τ, which depends on the v̄ that come with them.
     fn add_inputs(&self, q: &[f64], rates: &mut [f64]) {
-        for body in self.tree.mechanism().bodies() {
+        for (index, body) in self.tree.mechanism().bodies().iter().enumerate() {
             let ranges = body.ranges();
             let mut reduced = [0.0; 6];
             let reduced = &mut reduced[..ranges.speeds.len()];
             let tau = &self.inputs[0][ranges.freedoms.clone()];
-            body.joint().reduce_efforts(body.configuration(q), tau, reduced);
+            if self.tree.mechanism().is_driven(index) {
+                rates[ranges.speeds.clone()].copy_from_slice(&tau[..ranges.speeds.len()]);
+                continue;
+            }
+            body.joint()
+                .reduce_efforts(body.configuration(q), tau, reduced);
             for (rate, effort) in rates[ranges.speeds.clone()].iter_mut().zip(&*reduced) {
                 *rate += effort;
             }

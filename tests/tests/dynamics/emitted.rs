@@ -1,12 +1,13 @@
 //! A compiled module as it is committed (`tests/src/emitted`): it is what the compiler writes, it computes what the tree does in every
 //! scalar, and integrators take it.
 
-use hamel::compiled::{Compiled, CompiledError};
+use hamel::compiled::{Compiled, CompiledError, Equations};
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel::integrate::{Form, Integration, Method, Options, State};
 use hamel::scalar::F64x4;
+use hamel_codegen::scene::functions::Kind;
 use hamel_codegen::scene::scene;
-use hamel_tests::emitted::plate_cart_arm as module;
+use hamel_tests::emitted::{ball_spring, plate_cart_arm as module};
 use hamel_tests::scenes;
 use std::path::Path;
 use std::sync::Arc;
@@ -17,12 +18,23 @@ fn folder() -> &'static Path {
 
 #[test]
 fn the_committed_module_is_what_is_written() {
-    let build =
-        scene(folder().join("../scenes/plate_cart_arm.toml")).library(hamel_joints::specs());
-    let text = build
-        .module("plate_cart_arm.toml")
-        .unwrap_or_else(|error| panic!("{error}"));
-    let path = folder().join("src/emitted/plate_cart_arm.rs");
+    is_written("plate_cart_arm", Kind::ALL.to_vec());
+    let forms = vec![
+        Kind::ForwardDynamics,
+        Kind::MomentumRates,
+        Kind::Hamiltonian,
+    ];
+    is_written("report/ball_spring", forms);
+}
+
+fn is_written(name: &str, functions: Vec<Kind>) {
+    let file = folder().join(format!("../scenes/{name}.toml"));
+    let build = scene(&file).library(hamel_joints::specs());
+    let label = file.file_name().expect("it has one").to_string_lossy();
+    let text = build.functions(functions).module(&label);
+    let text = text.unwrap_or_else(|error| panic!("{error}"));
+    let path = folder().join("src/emitted").join(&*label);
+    let path = path.with_extension("rs");
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         std::fs::write(&path, &text).expect("the folder is there");
     }
@@ -71,29 +83,35 @@ fn every_scalar_gives_the_accelerations_of_the_tree() {
 
 #[test]
 fn integrators_take_compiled_equations() {
-    let scene = scenes::load("plate_cart_arm");
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        moves_as_the_tree("plate_cart_arm", &module::EQUATIONS, form);
+        moves_as_the_tree("report/ball_spring", &ball_spring::EQUATIONS, form);
+    }
+}
+
+fn moves_as_the_tree(name: &str, equations: &'static Equations, form: Form) {
+    let scene = scenes::load(name);
     let initial = State {
         time: 0.0,
         configuration: scene.configuration.clone(),
         speeds: scene.speeds.clone(),
     };
     let options = Options {
-        form: Form::Lagrangian,
+        form,
         method: Method::dormand_prince(1e-10),
-        t_end: 2.0,
+        t_end: 1.0,
         samples: vec![],
     };
     let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
     let expected = Integration::new(&mut tree, &initial, &options)
         .run()
         .expect("it moves");
-    let mut compiled =
-        Compiled::new(Arc::clone(&scene.mechanism), &module::EQUATIONS).expect("its scene");
+    let mut compiled = Compiled::new(Arc::clone(&scene.mechanism), equations).expect("its scene");
     let found = Integration::new(&mut compiled, &initial, &options)
         .run()
         .expect("it moves");
     let [found, expected] = [found, expected].map(|solution| solution.state.configuration);
-    // Both are within the tolerance of the motion, times what two seconds make of it.
+    // Both are within the tolerance of the motion, times what a second makes of it.
     assert!(difference(&found, &expected) < 1e-8);
 }
 

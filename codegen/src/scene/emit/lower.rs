@@ -330,9 +330,10 @@ impl Lowering<'_> {
                 let arguments = arguments.iter().map(|&value| self.read(value)).collect();
                 (Formula::Several(*function, arguments), LONGEST + 1)
             }
-            Operation::Part(of, result) => {
-                (Formula::Part(Box::new(self.part(*of).0), *result as usize), 0)
-            }
+            Operation::Part(of, result) => (
+                Formula::Part(Box::new(self.part(*of).0), *result as usize),
+                0,
+            ),
         }
     }
 

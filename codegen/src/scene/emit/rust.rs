@@ -104,7 +104,10 @@ fn equations(model: &Model, functions: &[Function]) -> TokenStream {
 fn hamiltonian_form(functions: &[Function]) -> TokenStream {
     let field = |kind: Kind, value: TokenStream| {
         let name = Ident::new(kind.name(), Span::call_site());
-        match functions.iter().any(|function| function.name == kind.name()) {
+        match functions
+            .iter()
+            .any(|function| function.name == kind.name())
+        {
             true => quote! { #name: Some(#value), },
             false => quote! { #name: None, },
         }

@@ -35,6 +35,8 @@ struct Start<'a> {
     world: Twist,
     /// The efforts at a body's joint, one a speed.
     efforts: &'a dyn Fn(usize) -> Vec<Sym>,
+    /// The argument that holds the rates of driven joints.
+    given: Argument,
     /// What is solved for.
     sought: &'static str,
 }
@@ -49,10 +51,13 @@ impl Tree<'_> {
         let efforts = |index: usize| {
             let taken = &before[self.bodies[index].share.speeds.clone()];
             let efforts = self.efforts(index, Some(Argument::Efforts)).into_iter();
-            efforts.zip(taken).map(|(tau, &taken)| tau - taken).collect()
+            efforts
+                .zip(taken)
+                .map(|(tau, &taken)| tau - taken)
+                .collect()
         };
         self.articulated(match bias {
-            Bias::Before => self.still(&efforts, "acceleration"),
+            Bias::Before => self.still(&efforts),
             Bias::Within => self.moving(&efforts),
         })
     }
@@ -63,22 +68,23 @@ impl Tree<'_> {
             let places = self.bodies[index].share.speeds.clone();
             places.map(|i| Sym::input(Argument::Momenta, i)).collect()
         };
-        self.articulated(self.still(&momenta, "speed"))
+        self.articulated(Start {
+            given: Argument::Momenta,
+            sought: "speed",
+            ..self.still(&momenta)
+        })
     }
 
     /// Nothing but efforts acts, and nothing moves.
-    fn still<'a>(
-        &self,
-        efforts: &'a dyn Fn(usize) -> Vec<Sym>,
-        sought: &'static str,
-    ) -> Start<'a> {
+    fn still<'a>(&self, efforts: &'a dyn Fn(usize) -> Vec<Sym>) -> Start<'a> {
         let count = self.bodies.len();
         Start {
             wrenches: vec![Wrench::zero(); count],
             biases: vec![Twist::zero(); count],
             world: Twist::zero(),
             efforts,
-            sought,
+            given: Argument::Efforts,
+            sought: "acceleration",
         }
     }
 
@@ -108,11 +114,15 @@ impl Tree<'_> {
                 linear: self.ground(),
             },
             efforts,
+            given: Argument::Efforts,
             sought: "acceleration",
         }
     }
 
-    fn articulated(&self, start: Start<'_>) -> Vec<Sym> {
+    fn articulated(&self, mut start: Start<'_>) -> Vec<Sym> {
+        let given: Vec<Option<Vec<Sym>>> = (0..self.bodies.len())
+            .map(|index| self.prescribed(index, start.given))
+            .collect();
         let links = self.links.iter();
         let mut inertias: Vec<Articulated> = links
             .map(|link| Articulated::rigid(&link.inertia.on_graph()))
@@ -121,9 +131,13 @@ impl Tree<'_> {
         let mut pivots: Vec<Vec<Pivot>> = self.bodies.iter().map(|_| vec![]).collect();
         for index in (0..self.bodies.len()).rev() {
             section(number(index), "effort");
-            let efforts = (start.efforts)(index);
-            pivots[index] =
-                self.eliminate(index, &mut inertias[index], &mut wrenches[index], efforts);
+            if let Some(given) = &given[index] {
+                start.biases[index] = start.biases[index].plus(&self.along(index, given));
+            } else {
+                let efforts = (start.efforts)(index);
+                pivots[index] =
+                    self.eliminate(index, &mut inertias[index], &mut wrenches[index], efforts);
+            }
             if let Some(parent) = self.bodies[index].parent {
                 section(number(index), "seen by parent");
                 let steps = &self.bodies[index].steps;
@@ -132,7 +146,7 @@ impl Tree<'_> {
                 inertias[parent] = inertias[parent].plus(&inertias[index].to_parent(steps));
             }
         }
-        self.outward(&start, &pivots)
+        self.outward(&start, &pivots, &given)
     }
 
     /// Takes the freedoms of a body's joint out of what it carries.
@@ -192,14 +206,26 @@ impl Tree<'_> {
         pivots
     }
 
-    fn outward(&self, start: &Start<'_>, pivots: &[Vec<Pivot>]) -> Vec<Sym> {
+    fn outward(
+        &self,
+        start: &Start<'_>,
+        pivots: &[Vec<Pivot>],
+        given: &[Option<Vec<Sym>>],
+    ) -> Vec<Sym> {
         let mut rates = vec![Sym::zero(); self.model.sizes()[2]];
         let mut accelerations: Vec<Twist> = vec![];
         for (index, body) in self.bodies.iter().enumerate() {
             section(number(index), start.sought);
-            let from = body.parent.map_or(&start.world, |parent| &accelerations[parent]);
+            let from = body
+                .parent
+                .map_or(&start.world, |parent| &accelerations[parent]);
             let base = carried(&body.steps, from).plus(&start.biases[index]);
             let places = body.share.speeds.clone();
+            if let Some(given) = &given[index] {
+                rates[places].copy_from_slice(given);
+                accelerations.push(base);
+                continue;
+            }
             let mut acceleration = base.clone();
             for (j, place) in places.clone().enumerate().rev() {
                 let Pivot {

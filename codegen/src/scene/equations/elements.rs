@@ -28,7 +28,8 @@ impl Tree<'_> {
         let each = springs
             .map(|spring| self.joint_spring(index, spring))
             .chain(turned.map(|spring| self.rotation_spring(index, spring)));
-        let add = |sum: Vec<Sym>, next: Vec<Sym>| sum.into_iter().zip(next).map(|(a, b)| a + b).collect();
+        let add =
+            |sum: Vec<Sym>, next: Vec<Sym>| sum.into_iter().zip(next).map(|(a, b)| a + b).collect();
         each.reduce(add).unwrap_or_default()
     }
 
@@ -50,7 +51,10 @@ impl Tree<'_> {
             let squares = away.iter().map(|&entry| entry * entry);
             squares.sum::<Sym>() * Sym::from(0.25 * spring.stiffness)
         });
-        let points = elements.springs.iter().map(|spring| self.point_spring_energy(spring));
+        let points = elements
+            .springs
+            .iter()
+            .map(|spring| self.point_spring_energy(spring));
         joints.chain(turned).chain(points).sum()
     }
 
@@ -60,7 +64,11 @@ impl Tree<'_> {
         let body = &self.model.bodies[spring.body];
         let rest: Vec<Sym> = spring.rest.iter().copied().map(Sym::from).collect();
         let rest = Joint::new(&body.joint, &body.parameters, &rest, &[]);
-        let phi: Vec<Sym> = rest.local(&q).into_iter().map(|entry| entry.named("stretch")).collect();
+        let phi: Vec<Sym> = rest
+            .local(&q)
+            .into_iter()
+            .map(|entry| entry.named("stretch"))
+            .collect();
         let rows = spring.stiffness.chunks(phi.len().max(1));
         let load = rows.map(|row| weighted(row, &phi)).collect();
         Stretch { rest, phi, load }
@@ -73,7 +81,11 @@ impl Tree<'_> {
         let rates = joint.velocity_map_inverse();
         let effort = |column: &Vec<Sym>| {
             let rate = rest.retract_differential_inverse(&phi, column);
-            -rate.iter().zip(&load).map(|(&rate, &load)| rate * load).sum::<Sym>()
+            -rate
+                .iter()
+                .zip(&load)
+                .map(|(&rate, &load)| rate * load)
+                .sum::<Sym>()
         };
         rates.iter().map(effort).collect()
     }
@@ -84,14 +96,22 @@ impl Tree<'_> {
         let rotation = joint.rotation();
         let back = spring.rest.transpose().map(Sym::from);
         let (parent, child) = (joint.freedoms_in_parent(), joint.freedoms());
-        let known = |columns: &[Twist]| columns.iter().flat_map(|column| column.angular.iter()).all(|entry| entry.number().is_some());
+        let known = |columns: &[Twist]| {
+            columns
+                .iter()
+                .flat_map(|column| column.angular.iter())
+                .all(|entry| entry.number().is_some())
+        };
         let (columns, turn) = match known(&child) && !known(&parent) {
             true => (child, product(&back, &rotation)),
             false => (parent, product(&rotation, &back)),
         };
         let half = Sym::from(-0.5 * spring.stiffness);
         let moment = axial(&turn) * half;
-        columns.iter().map(|column| dot(&column.angular, &moment)).collect()
+        columns
+            .iter()
+            .map(|column| dot(&column.angular, &moment))
+            .collect()
     }
 
     /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one a freedom: what their turning takes where velocities do not commute.
@@ -120,7 +140,9 @@ impl Tree<'_> {
     fn joint(&self, index: usize) -> (Vec<Sym>, Joint<'_>) {
         let body = &self.model.bodies[index];
         let places = self.bodies[index].share.configuration.clone();
-        let q: Vec<Sym> = places.map(|place| Sym::input(Argument::Configuration, place)).collect();
+        let q: Vec<Sym> = places
+            .map(|place| Sym::input(Argument::Configuration, place))
+            .collect();
         let joint = Joint::new(&body.joint, &body.parameters, &q, &[]);
         (q, joint)
     }
@@ -128,10 +150,18 @@ impl Tree<'_> {
 
 /// `Σ numbers · values`.
 fn weighted(numbers: &[f64], values: &[Sym]) -> Sym {
-    numbers.iter().zip(values).map(|(&number, &value)| Sym::from(number) * value).sum()
+    numbers
+        .iter()
+        .zip(values)
+        .map(|(&number, &value)| Sym::from(number) * value)
+        .sum()
 }
 
 /// The vector a with `a~ = M − Mᵀ`.
 fn axial(m: &Mat3) -> Vec3 {
-    Vec3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)])
+    Vec3::new(
+        m[(2, 1)] - m[(1, 2)],
+        m[(0, 2)] - m[(2, 0)],
+        m[(1, 0)] - m[(0, 1)],
+    )
 }

@@ -65,7 +65,9 @@ impl Tree<'_> {
         let mut momenta = vec![];
         for (index, body) in self.bodies.iter().enumerate() {
             section(number(index), "momentum");
-            let base = body.parent.map(|parent| carried(&body.steps, &twists[parent]));
+            let base = body
+                .parent
+                .map(|parent| carried(&body.steps, &twists[parent]));
             let twist = base.map_or(body.velocity.clone(), |base| base.plus(&body.velocity));
             momenta.push(self.links[index].inertia.on_graph().of(&twist));
             twists.push(twist);
@@ -84,6 +86,9 @@ impl Tree<'_> {
                 let rotors = rotors.map(|(k, &speed)| self.armature(index, j, k) * speed);
                 momenta[place] = body.columns[j].dot(&composites[index]) + rotors.sum::<Sym>();
             }
+            if self.model.bodies[index].driven {
+                momenta[body.share.speeds.clone()].copy_from_slice(&body.speeds);
+            }
             if let Some(parent) = body.parent {
                 let carried = wrench_to_parent(&body.steps, &composites[index]);
                 composites[parent] = composites[parent].plus(&carried);
@@ -100,10 +105,17 @@ impl Tree<'_> {
         speeds
     }
 
-    /// H = ½ p̄ᵀ v̄ + V from p̄, by a way to solve M̄ v̄ = p̄.
+    /// H = ½ p̄ᵀ v̄ + V from p̄, by a way to solve M̄ v̄ = p̄; energies, where joints are driven and p̄ is not all momenta.
     pub fn hamiltonian(&self, solve: fn(&Self) -> Vec<Sym>) -> Sym {
-        let speeds = solve(self).into_iter().enumerate();
-        let twice: Sym = speeds.map(|(i, speed)| Sym::input(Argument::Momenta, i) * speed).sum();
+        let speeds = solve(self);
+        if self.model.bodies.iter().any(|body| body.driven) {
+            let moving = Tree::at(self.model, self.links.clone(), &speeds);
+            return moving.energies().into_iter().sum();
+        }
+        let speeds = speeds.into_iter().enumerate();
+        let twice: Sym = speeds
+            .map(|(i, speed)| Sym::input(Argument::Momenta, i) * speed)
+            .sum();
         twice * Sym::from(0.5) + self.potential_energy()
     }
 
@@ -126,6 +138,9 @@ impl Tree<'_> {
             for (j, place) in body.share.speeds.clone().enumerate() {
                 rates[place] = efforts[j] + body.columns[j].dot(&turned) + moved[j];
             }
+            if let Some(given) = self.prescribed(index, Argument::Efforts) {
+                rates[body.share.speeds.clone()].copy_from_slice(&given);
+            }
             if let Some(parent) = body.parent {
                 let [momentum, wrench] = [&momenta[index], &wrenches[index]]
                     .map(|wrench| wrench_to_parent(&body.steps, wrench));
@@ -143,7 +158,10 @@ impl Tree<'_> {
         for (index, body) in self.bodies.iter().enumerate() {
             section(number(index), "weight");
             let ground = self.model.gravity.map(Sym::from);
-            let gravity = to_child(&body.steps, body.parent.map_or(&ground, |parent| &down[parent]));
+            let gravity = to_child(
+                &body.steps,
+                body.parent.map_or(&ground, |parent| &down[parent]),
+            );
             let inertia = self.links[index].inertia.on_graph();
             loads[index] = loads[index].plus(&Wrench {
                 moment: cross(&inertia.first, &gravity),

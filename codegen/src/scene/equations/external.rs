@@ -1,10 +1,10 @@
 //! What springs between points and wrenches from outside exert on bodies.
 
 use super::{Tree, number};
+use crate::expr::Function;
 use crate::scene::graph::{Sym, call, section};
 use crate::scene::prune::clean;
 use crate::scene::spatial::{Step, Vec3, Wrench, cross, dot};
-use crate::expr::Function;
 use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
 use nalgebra::Vector3;
 use num_traits::Zero;

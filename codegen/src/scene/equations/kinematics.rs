@@ -43,10 +43,15 @@ impl Tree<'_> {
         let mut entries = vec![];
         for (index, body) in self.bodies.iter().enumerate() {
             section(number(index), "pose");
-            let parent = body.parent.map_or_else(Frame::world, |parent| frames[parent].clone());
+            let parent = body
+                .parent
+                .map_or_else(Frame::world, |parent| frames[parent].clone());
             let frame = body.steps.iter().fold(parent, Frame::then);
             let fixed = Fixed::steps(&self.links[index].body);
-            let own = fixed.iter().map(Fixed::step).fold(frame.clone(), |frame, step| frame.then(&step));
+            let own = fixed
+                .iter()
+                .map(Fixed::step)
+                .fold(frame.clone(), |frame, step| frame.then(&step));
             entries.extend(own.rotation.transpose().iter().copied());
             entries.extend(own.origin.iter().copied());
             frames.push(frame);

@@ -110,6 +110,25 @@ impl<'a> Tree<'a> {
         }
     }
 
+    /// The rates of a body's joint where they are prescribed: the first of its entries of an argument.
+    fn prescribed(&self, index: usize, argument: Argument) -> Option<Vec<Sym>> {
+        let share = &self.bodies[index].share;
+        let start = match argument {
+            Argument::Efforts => share.freedoms.start,
+            _ => share.speeds.start,
+        };
+        let inputs = (0..share.speeds.len()).map(|j| Sym::input(argument, start + j));
+        self.model.bodies[index].driven.then(|| inputs.collect())
+    }
+
+    /// `X̄ x` of a body's joint.
+    fn along(&self, index: usize, x: &[Sym]) -> Twist {
+        let columns = self.bodies[index].columns.iter().zip(x);
+        columns.fold(Twist::zero(), |sum, (column, &x)| {
+            sum.plus(&column.times(x))
+        })
+    }
+
     /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers, the springs and the rotors of a body's joint.
     fn efforts(&self, index: usize, argument: Option<Argument>) -> Vec<Sym> {
         let (body, placed) = (&self.model.bodies[index], &self.bodies[index]);

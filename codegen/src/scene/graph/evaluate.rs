@@ -47,7 +47,8 @@ impl Graph {
                 Operation::Part(of, result) => {
                     let results = match &self.nodes[*of as usize].operation {
                         Operation::Several(function, arguments) => {
-                            let arguments: Vec<f64> = arguments.iter().copied().map(signed).collect();
+                            let arguments: Vec<f64> =
+                                arguments.iter().copied().map(signed).collect();
                             primitive(*function, &arguments)
                         }
                         _ => vec![],

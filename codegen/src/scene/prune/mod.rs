@@ -41,7 +41,10 @@ impl Fixed {
     pub fn steps(pose: &Pose<f64>) -> Vec<Self> {
         let shift = clean(pose.translation);
         let shift = (shift != nalgebra::Vector3::zeros()).then_some(Self::Shift(shift));
-        shift.into_iter().chain(rotation::turns(&pose.rotation)).collect()
+        shift
+            .into_iter()
+            .chain(rotation::turns(&pose.rotation))
+            .collect()
     }
 
     /// Their product.
