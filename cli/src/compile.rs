@@ -21,8 +21,8 @@ The module needs nothing but the crate `hamel`, allocates nothing and works with
 `hamel::scalar::Scalar`: f64, f32, SIMD lanes, dual numbers. Its constant EQUATIONS goes into `hamel::compiled::Compiled`, which every
 integrator takes. docs/compile.md says more.
 
-Not compiled, and refused with the element's name: constraints that couple joints, springs in local coordinates that have no closed
-form.
+Not compiled, and refused with the element's name: springs in local coordinates that have no closed form, rests and states to be found from a
+pose, more than three speeds that constraints make depend on others such that they can only be found together.
 
 Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a file that cannot be written; 2 wrong options.";
 

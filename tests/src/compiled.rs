@@ -2,14 +2,15 @@
 
 use crate::random;
 use hamel::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointSpring, Law, RotationSpring, WrenchAxes,
+    BodySpring, BodyWrench, Drive, Element, JointSpring, Law, PointConstraint, RotationSpring,
+    WrenchAxes,
 };
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
 use hamel_codegen::derived::Derived;
 use hamel_codegen::scene::functions::{Kind, compile};
 use hamel_codegen::scene::graph::Argument;
-use hamel_codegen::scene::model::{Body, Elements, Model};
+use hamel_codegen::scene::model::{Body, Coupling, Elements, Model};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;
@@ -52,6 +53,10 @@ pub fn model(name: &str, mechanism: &Mechanism) -> Model {
             })
             .collect(),
         elements: Elements::default(),
+        coupling: Coupling {
+            constraints: mechanism.constraints().to_vec(),
+            dependent: mechanism.dependent_speeds().to_vec(),
+        },
     }
 }
 
@@ -207,4 +212,23 @@ pub fn driven(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
     }
     let driven = mechanism.clone().with_drives(drives);
     driven.unwrap_or_else(|errors| panic!("{errors:?}"))
+}
+
+/// The mechanism with up to three constraints on points of any of its bodies, where its joints leave that many speeds free at `q`.
+pub fn coupled(random: &mut ChaCha8Rng, mechanism: Mechanism, q: &[f64]) -> Mechanism {
+    let count = mechanism.bodies().len();
+    let mut coupled = mechanism;
+    for _ in 0..3 {
+        let mut constraints = coupled.constraints().to_vec();
+        constraints.push(PointConstraint {
+            name: format!("constraint {}", constraints.len()),
+            body: random.random_range(0..count),
+            point: vector(random),
+            direction: vector(random),
+        });
+        if let Ok(more) = coupled.clone().with_constraints(constraints, q) {
+            coupled = more;
+        }
+    }
+    coupled
 }

@@ -1,4 +1,4 @@
-//! Springs at joints, as a scene gives them, with the numbers that the joint's own kernels make of them.
+//! Springs and states of joints, as a scene gives them, with the numbers that the joint's own kernels make of them.
 
 use super::graph::{Sym, record};
 use super::joint::Joint;
@@ -11,6 +11,8 @@ use nalgebra::{DMatrix, DVector, Matrix3};
 
 /// A joint of a scene whose type and parameters are known.
 pub struct Held<'a> {
+    /// What of it is asked for, in messages.
+    pub what: &'static str,
     /// Index of its body.
     pub index: usize,
     /// Its body.
@@ -65,7 +67,10 @@ impl Held<'_> {
     }
 
     fn refused(&self, reason: &str) -> String {
-        format!("spring of joint `{}`: {reason}", self.body.joint.name.value)
+        format!(
+            "{} of joint `{}`: {reason}",
+            self.what, self.body.joint.name.value
+        )
     }
 
     /// Whether a kernel is a formula: what iterates is not compiled.
@@ -92,8 +97,11 @@ impl Held<'_> {
         Ok(Matrix3::from_column_slice(&self.numbers(rotation)?))
     }
 
-    /// The Q at rest.
-    fn rest(&self, rest: &Position) -> Result<Vec<f64>, String> {
+    /// The Q of a spring's rest, or of time 0.
+    ///
+    /// # Errors
+    /// Numbers that do not fit the joint; a pose.
+    pub fn rest(&self, rest: &Position) -> Result<Vec<f64>, String> {
         let home = || self.numbers(self.at(&[], |joint| joint.home()));
         match rest {
             Position::Home => home(),
@@ -107,7 +115,7 @@ impl Held<'_> {
                 self.numbers(self.at(&home()?, |joint| joint.retract(&phi)))
             }
             Position::Pose(_) => Err(self.refused(
-                "to find the configuration of a pose takes iterations: give the rest by `configuration` or `phi`",
+                "to find the configuration of a pose takes iterations: give `configuration` or `phi`",
             )),
         }
     }
@@ -124,7 +132,7 @@ impl Held<'_> {
         match away.fold(0.0, f64::max) {
             away if away <= CONFIGURATION_TOLERANCE => Ok(projected),
             away => Err(self.refused(&format!(
-                "its rest is off the joint's manifold by {away:e}, more than {CONFIGURATION_TOLERANCE:e}"
+                "it is off the joint's manifold by {away:e}, more than {CONFIGURATION_TOLERANCE:e}"
             ))),
         }
     }
@@ -138,6 +146,6 @@ impl Held<'_> {
     fn numbers(&self, values: Vec<Sym>) -> Result<Vec<f64>, String> {
         let finite = |value: Sym| value.number().filter(|number| number.is_finite());
         let numbers: Option<Vec<f64>> = values.into_iter().map(finite).collect();
-        numbers.ok_or_else(|| self.refused("its rest is not finite"))
+        numbers.ok_or_else(|| self.refused("it is not finite"))
     }
 }

@@ -1,7 +1,7 @@
 //! From what a scene file says to what is compiled, with all that cannot be compiled named at once.
 
 use super::acting::Held;
-use super::model::{Body, Elements, Model};
+use super::model::{Body, Coupling, Elements, Model};
 use crate::derived::Derived;
 use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
 use hamel_scene::{BodyDescription, PointSpring, SceneDescription, WrenchDescription};
@@ -36,7 +36,7 @@ impl Model {
         scene: &SceneDescription,
         joints: impl Fn(&str) -> Option<Rc<Derived>>,
     ) -> Result<Self, Refused> {
-        let mut reasons = elsewhere(scene);
+        let mut reasons = vec![];
         let mut elements = Elements {
             springs: scene.springs.iter().map(spring).collect(),
             wrenches: scene.wrenches.iter().map(wrench).collect(),
@@ -55,6 +55,7 @@ impl Model {
                 };
                 let compiled = compiled(body, joint).and_then(|compiled| {
                     let held = Held {
+                        what: "spring",
                         index,
                         body,
                         joint: &compiled.joint,
@@ -66,31 +67,26 @@ impl Model {
                 compiled.map_err(|more| reasons.extend(more)).ok()
             })
             .collect();
-        match bodies.into_iter().collect::<Option<Vec<Body>>>() {
-            Some(bodies) if reasons.is_empty() => Ok(Self {
-                name: scene.name.clone(),
-                gravity: scene.gravity,
-                bodies,
-                elements,
-            }),
-            _ => Err(Refused {
-                scene: scene.name.clone(),
-                reasons,
-            }),
+        let refused = |reasons| Refused {
+            scene: scene.name.clone(),
+            reasons,
+        };
+        let Some(bodies) = bodies.into_iter().collect::<Option<Vec<Body>>>() else {
+            return Err(refused(reasons));
+        };
+        if !reasons.is_empty() {
+            return Err(refused(reasons));
         }
+        let mut model = Self {
+            name: scene.name.clone(),
+            gravity: scene.gravity,
+            bodies,
+            elements,
+            coupling: Coupling::default(),
+        };
+        model.couple(scene).map_err(refused)?;
+        Ok(model)
     }
-}
-
-/// What acts between bodies and is not compiled.
-fn elsewhere(scene: &SceneDescription) -> Vec<String> {
-    let mut reasons = vec![];
-    for constraint in &scene.constraints {
-        let name = &constraint.name.value;
-        reasons.push(format!(
-            "constraint `{name}`: constraints that couple joints are not compiled"
-        ));
-    }
-    reasons
 }
 
 fn spring(spring: &PointSpring) -> BodySpring {

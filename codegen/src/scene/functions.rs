@@ -108,18 +108,22 @@ impl Kind {
     /// The recursions that compute it.
     fn ways(self, model: &Model) -> Vec<Way> {
         match self {
-            Self::ForwardDynamics => solving(
-                model,
-                vec![
-                    (ARTICULATED, |tree| {
-                        tree.articulated_accelerations(Bias::Within)
-                    }),
-                    ("articulated bodies after inverse dynamics", |tree| {
+            Self::ForwardDynamics => {
+                let mut ways = solving(
+                    model,
+                    [
+                        |tree| tree.articulated_accelerations(Bias::Within),
+                        |tree| tree.composite_accelerations(),
+                        |tree| tree.coupled_accelerations(),
+                    ],
+                );
+                if model.coupling.constraints.is_empty() {
+                    ways.push(("articulated bodies after inverse dynamics", |tree| {
                         tree.articulated_accelerations(Bias::Before)
-                    }),
-                ],
-                |tree| tree.composite_accelerations(),
-            ),
+                    }));
+                }
+                ways
+            }
             Self::InverseDynamics => vec![("Newton–Euler", |tree| {
                 tree.needed_efforts(Some(Argument::Accelerations))
             })],
@@ -127,23 +131,28 @@ impl Kind {
             Self::BiasForces => vec![("Newton–Euler", |tree| tree.needed_efforts(None))],
             Self::MomentumRates => solving(
                 model,
-                vec![(ARTICULATED, |tree| {
-                    tree.port_hamiltonian(Tree::articulated_speeds)
-                })],
-                |tree| tree.port_hamiltonian(Tree::composite_speeds),
+                [
+                    |tree| tree.port_hamiltonian(Tree::articulated_speeds),
+                    |tree| tree.port_hamiltonian(Tree::composite_speeds),
+                    |tree| tree.port_hamiltonian(Tree::coupled_speeds),
+                ],
             ),
             Self::Momenta => vec![("momenta of what each joint carries", |tree| tree.momenta())],
             Self::Speeds => solving(
                 model,
-                vec![(ARTICULATED, |tree| tree.articulated_speeds())],
-                |tree| tree.composite_speeds(),
+                [
+                    |tree| tree.articulated_speeds(),
+                    |tree| tree.composite_speeds(),
+                    |tree| tree.coupled_speeds(),
+                ],
             ),
             Self::Hamiltonian => solving(
                 model,
-                vec![(ARTICULATED, |tree| {
-                    vec![tree.hamiltonian(Tree::articulated_speeds)]
-                })],
-                |tree| vec![tree.hamiltonian(Tree::composite_speeds)],
+                [
+                    |tree| vec![tree.hamiltonian(Tree::articulated_speeds)],
+                    |tree| vec![tree.hamiltonian(Tree::composite_speeds)],
+                    |tree| vec![tree.hamiltonian(Tree::coupled_speeds)],
+                ],
             ),
             Self::Energies => vec![("body by body", |tree| tree.energies())],
             Self::Poses => vec![("body by body", |tree| tree.poses())],
@@ -165,8 +174,12 @@ const ARTICULATED: &str = "articulated bodies";
 /// Name of the recursion that finds M̄.
 const COMPOSITE: &str = "composite bodies";
 
-/// The ways with that of M̄ factorised, where it may be the shortest.
-fn solving(model: &Model, mut ways: Vec<Way>, factorised: fn(&Tree<'_>) -> Vec<Sym>) -> Vec<Way> {
+/// The ways to solve with M̄: joint by joint; of M̄ factorised, where it may be the shorter; and where constraints couple joints.
+fn solving(model: &Model, [articulated, factorised, coupled]: [Run; 3]) -> Vec<Way> {
+    if !model.coupling.constraints.is_empty() {
+        return vec![("independent speeds of coupled joints", coupled)];
+    }
+    let mut ways = vec![(ARTICULATED, articulated)];
     if worth_factorising(model) {
         ways.push(("composite bodies, factorised along the tree", factorised));
     }
@@ -191,7 +204,9 @@ fn worth_factorising(model: &Model) -> bool {
 }
 
 /// A recursion with its name.
-type Way = (&'static str, fn(&Tree<'_>) -> Vec<Sym>);
+type Way = (&'static str, Run);
+/// What computes the results.
+type Run = fn(&Tree<'_>) -> Vec<Sym>;
 
 /// A function as it was chosen.
 #[derive(Clone, Debug)]
@@ -228,7 +243,7 @@ pub fn compile_with(model: &Model, links: &[Link], kind: Kind) -> Chosen {
     }
 }
 
-fn write(model: &Model, links: &[Link], kind: Kind, way: fn(&Tree<'_>) -> Vec<Sym>) -> Function {
+fn write(model: &Model, links: &[Link], kind: Kind, way: Run) -> Function {
     let (outputs, graph) = record(|| {
         let tree = Tree::new(model, links.to_vec());
         way(&tree).into_iter().map(Sym::value).collect::<Vec<_>>()

@@ -20,6 +20,7 @@
 
 mod acting;
 mod build;
+mod couple;
 mod describe;
 pub mod emit;
 pub mod equations;

@@ -1,7 +1,7 @@
 //! What is compiled: a tree of bodies with numbers for all that does not change.
 
 use crate::derived::Derived;
-use hamel::elements::{BodySpring, BodyWrench, JointSpring, RotationSpring};
+use hamel::elements::{BodySpring, BodyWrench, JointSpring, PointConstraint, RotationSpring};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -18,6 +18,8 @@ pub struct Model {
     pub bodies: Vec<Body>,
     /// What acts beside gravity and what the bodies' own joints have.
     pub elements: Elements,
+    /// What couples joints.
+    pub coupling: Coupling,
 }
 
 /// Springs and wrenches, as the runtime has them.
@@ -31,6 +33,15 @@ pub struct Elements {
     pub springs: Vec<BodySpring>,
     /// Wrenches from outside.
     pub wrenches: Vec<BodyWrench>,
+}
+
+/// Constraints that couple joints.
+#[derive(Clone, Debug, Default)]
+pub struct Coupling {
+    /// Forbidden velocities of points.
+    pub constraints: Vec<PointConstraint>,
+    /// The speeds that depend on the others, one a constraint.
+    pub dependent: Vec<usize>,
 }
 
 /// One body and the joint that it hangs on.

@@ -287,7 +287,11 @@ impl Dynamics for Compiled {
         }
         inputs.fill(0.0);
         efforts(speeds, inputs);
-        self.add_inputs(q, rates);
+        match self.tree.mechanism().constraints() {
+            [] => self.add_inputs(q, rates),
+            // What inputs make of dependent speeds falls to others: the module knows how.
+            _ => momentum_rates(q, momenta, inputs, speeds, rates),
+        }
         Ok(())
     }
 

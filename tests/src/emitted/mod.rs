@@ -1,8 +1,8 @@
 //! Compiled scenes as a user has them: what `hamel compile` writes, committed. The test `emitted` keeps them as they are written.
 
-/// Both forms of `scenes/report/ball_spring.toml`: a logarithm of rotations.
+/// Both forms of `data/scenes/geodesic_springs.toml`: logarithms of rotations.
 #[rustfmt::skip]
-pub mod ball_spring;
+pub mod geodesic_springs;
 /// `scenes/plate_cart_arm.toml`.
 #[rustfmt::skip]
 pub mod plate_cart_arm;

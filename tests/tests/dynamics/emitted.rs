@@ -7,10 +7,14 @@ use hamel::integrate::{Form, Integration, Method, Options, State};
 use hamel::scalar::F64x4;
 use hamel_codegen::scene::functions::Kind;
 use hamel_codegen::scene::scene;
-use hamel_tests::emitted::{ball_spring, plate_cart_arm as module};
+use hamel_scene::Scene;
+use hamel_tests::emitted::{geodesic_springs, plate_cart_arm as module};
 use hamel_tests::scenes;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Springs by logarithms of rotations.
+const SPRINGS: &str = "data/scenes/geodesic_springs.toml";
 
 fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -18,17 +22,17 @@ fn folder() -> &'static Path {
 
 #[test]
 fn the_committed_module_is_what_is_written() {
-    is_written("plate_cart_arm", Kind::ALL.to_vec());
+    is_written("../scenes/plate_cart_arm.toml", Kind::ALL.to_vec());
     let forms = vec![
         Kind::ForwardDynamics,
         Kind::MomentumRates,
         Kind::Hamiltonian,
     ];
-    is_written("report/ball_spring", forms);
+    is_written(SPRINGS, forms);
 }
 
-fn is_written(name: &str, functions: Vec<Kind>) {
-    let file = folder().join(format!("../scenes/{name}.toml"));
+fn is_written(file: &str, functions: Vec<Kind>) {
+    let file = folder().join(file);
     let build = scene(&file).library(hamel_joints::specs());
     let label = file.file_name().expect("it has one").to_string_lossy();
     let text = build.functions(functions).module(&label);
@@ -83,14 +87,15 @@ fn every_scalar_gives_the_accelerations_of_the_tree() {
 
 #[test]
 fn integrators_take_compiled_equations() {
+    let springs = Scene::load(folder().join(SPRINGS), &hamel_joints::registry());
+    let springs = springs.unwrap_or_else(|errors| panic!("{errors}"));
     for form in [Form::Lagrangian, Form::Hamiltonian] {
-        moves_as_the_tree("plate_cart_arm", &module::EQUATIONS, form);
-        moves_as_the_tree("report/ball_spring", &ball_spring::EQUATIONS, form);
+        moves_as_the_tree(&scenes::load("plate_cart_arm"), &module::EQUATIONS, form);
+        moves_as_the_tree(&springs, &geodesic_springs::EQUATIONS, form);
     }
 }
 
-fn moves_as_the_tree(name: &str, equations: &'static Equations, form: Form) {
-    let scene = scenes::load(name);
+fn moves_as_the_tree(scene: &Scene, equations: &'static Equations, form: Form) {
     let initial = State {
         time: 0.0,
         configuration: scene.configuration.clone(),
@@ -124,7 +129,7 @@ fn another_mechanism_is_refused() {
     let text = std::fs::read_to_string(folder().join("../scenes/plate_cart_arm.toml"))
         .expect("a file of the project");
     let heavier = text.replacen("mass = 12.0", "mass = 13.0", 1);
-    let heavier = hamel_scene::Scene::parse(&heavier, "heavier", &hamel_joints::registry());
+    let heavier = Scene::parse(&heavier, "heavier", &hamel_joints::registry());
     let heavier = heavier.unwrap_or_else(|errors| panic!("{errors}"));
     let error = Compiled::new(heavier.mechanism, &module::EQUATIONS).expect_err("a mass differs");
     assert!(matches!(error, CompiledError::Other { .. }), "{error}");

@@ -1,5 +1,6 @@
 //! Energies, momenta, and the port-Hamiltonian right-hand side.
 
+use super::coupling::Coupling;
 use super::{Tree, carried, number, to_child, wrench_to_parent};
 use crate::scene::graph::{Argument, Sym, section};
 use crate::scene::spatial::{Step, Twist, Vec3, Wrench, cross, dot};
@@ -60,7 +61,7 @@ impl Tree<'_> {
     }
 
     /// Twist and momentum of each body, in its frame.
-    fn motions(&self) -> (Vec<Twist>, Vec<Wrench>) {
+    pub(super) fn motions(&self) -> (Vec<Twist>, Vec<Wrench>) {
         let mut twists: Vec<Twist> = vec![];
         let mut momenta = vec![];
         for (index, body) in self.bodies.iter().enumerate() {
@@ -75,8 +76,22 @@ impl Tree<'_> {
         (twists, momenta)
     }
 
-    /// p̄ = M̄ v̄.
+    /// p̄ = M̄ v̄; entries of driven joints are their speeds.
     pub fn momenta(&self) -> Vec<Sym> {
+        let mut momenta = self.tree_momenta();
+        if let Some(coupling) = self.coupling() {
+            momenta = self.coupled_momenta(&coupling, &momenta);
+        }
+        for (index, body) in self.bodies.iter().enumerate() {
+            if self.model.bodies[index].driven {
+                momenta[body.share.speeds.clone()].copy_from_slice(&body.speeds);
+            }
+        }
+        momenta
+    }
+
+    /// `M v̄` of the tree.
+    fn tree_momenta(&self) -> Vec<Sym> {
         let (_, mut composites) = self.motions();
         let mut momenta = vec![Sym::zero(); self.model.sizes()[2]];
         for (index, body) in self.bodies.iter().enumerate().rev() {
@@ -85,9 +100,6 @@ impl Tree<'_> {
                 let rotors = body.speeds.iter().enumerate();
                 let rotors = rotors.map(|(k, &speed)| self.armature(index, j, k) * speed);
                 momenta[place] = body.columns[j].dot(&composites[index]) + rotors.sum::<Sym>();
-            }
-            if self.model.bodies[index].driven {
-                momenta[body.share.speeds.clone()].copy_from_slice(&body.speeds);
             }
             if let Some(parent) = body.parent {
                 let carried = wrench_to_parent(&body.steps, &composites[index]);
@@ -112,34 +124,48 @@ impl Tree<'_> {
             let moving = Tree::at(self.model, self.links.clone(), &speeds);
             return moving.energies().into_iter().sum();
         }
+        let dependent = &self.model.coupling.dependent;
         let speeds = speeds.into_iter().enumerate();
+        let speeds = speeds.filter(|(place, _)| !dependent.contains(place));
         let twice: Sym = speeds
             .map(|(i, speed)| Sym::input(Argument::Momenta, i) * speed)
             .sum();
         twice * Sym::from(0.5) + self.potential_energy()
     }
 
-    /// p̄̇ᵢ = τ̄ᵢ + X̄ᵢᵀ (fᵢ + ad_{Vᵢ}ᵀ hᵢ) + Ẋ̄ᵢᵀ hᵢ, with h and f the momenta of, and the wrenches on, all that a joint carries.
+    /// p̄̇; entries of driven joints are their accelerations.
     fn momentum_rates(&self) -> Vec<Sym> {
+        let coupling = self.coupling();
+        let mut rates = self.tree_rates(coupling.as_ref());
+        if let Some(coupling) = &coupling {
+            rates = self.coupled_momenta(coupling, &rates);
+        }
+        for (index, body) in self.bodies.iter().enumerate() {
+            if let Some(given) = self.prescribed(index, Argument::Efforts) {
+                rates[body.share.speeds.clone()].copy_from_slice(&given);
+            }
+        }
+        rates
+    }
+
+    /// p̄̇ᵢ = τ̄ᵢ + X̄ᵢᵀ (fᵢ + ad_{Vᵢ}ᵀ hᵢ) + Ẋ̄ᵢᵀ hᵢ, with h and f the momenta of, and the wrenches on, all that a joint carries.
+    fn tree_rates(&self, coupling: Option<&Coupling>) -> Vec<Sym> {
         let (twists, mut momenta) = self.motions();
         let mut wrenches = self.loads();
+        if let Some(coupling) = coupling {
+            for (body, weighted) in self.coupling_wrenches(coupling, &self.tree_momenta()) {
+                wrenches[body] = wrenches[body].plus(&bracket_dual(&twists[body], &weighted));
+                momenta[body] = momenta[body].plus(&weighted.times(Sym::Number(-1.0)));
+            }
+        }
         let mut rates = vec![Sym::zero(); self.model.sizes()[2]];
         for (index, body) in self.bodies.iter().enumerate().rev() {
             section(number(index), "momentum rate");
-            let (momentum, twist) = (&momenta[index], &twists[index]);
-            let turned = Wrench {
-                moment: wrenches[index].moment
-                    - cross(&twist.angular, &momentum.moment)
-                    - cross(&twist.linear, &momentum.force),
-                force: wrenches[index].force - cross(&twist.angular, &momentum.force),
-            };
-            let moved = self.bias_momentum(index, momentum);
+            let turned = wrenches[index].plus(&bracket_dual(&twists[index], &momenta[index]));
+            let moved = self.bias_momentum(index, &momenta[index]);
             let efforts = self.efforts(index, Some(Argument::Efforts));
             for (j, place) in body.share.speeds.clone().enumerate() {
                 rates[place] = efforts[j] + body.columns[j].dot(&turned) + moved[j];
-            }
-            if let Some(given) = self.prescribed(index, Argument::Efforts) {
-                rates[body.share.speeds.clone()].copy_from_slice(&given);
             }
             if let Some(parent) = body.parent {
                 let [momentum, wrench] = [&momenta[index], &wrenches[index]]
@@ -170,5 +196,13 @@ impl Tree<'_> {
             down.push(gravity);
         }
         loads
+    }
+}
+
+/// `ad_Vᵀ h`.
+fn bracket_dual(twist: &Twist, momentum: &Wrench) -> Wrench {
+    Wrench {
+        moment: -cross(&twist.angular, &momentum.moment) - cross(&twist.linear, &momentum.force),
+        force: -cross(&twist.angular, &momentum.force),
     }
 }

@@ -93,7 +93,7 @@ impl Tree<'_> {
     }
 
     /// A point given in the body frame, in the frame of its equations.
-    fn point(&self, body: usize, point: &Vector3<f64>) -> Vec3 {
+    pub(super) fn point(&self, body: usize, point: &Vector3<f64>) -> Vec3 {
         clean(self.links[body].body.transform_point(point)).map(Sym::from)
     }
 
@@ -132,7 +132,7 @@ impl Tree<'_> {
     }
 
     /// The bodies from one to the last before `from`, which carries it.
-    fn path(&self, from: Option<usize>, body: usize) -> Vec<usize> {
+    pub(super) fn path(&self, from: Option<usize>, body: usize) -> Vec<usize> {
         let parent = |&index: &usize| self.bodies[index].parent;
         let up = std::iter::successors(Some(body), parent);
         up.take_while(|&index| Some(index) != from).collect()

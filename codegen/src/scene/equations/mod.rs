@@ -6,11 +6,13 @@
 
 pub mod articulated;
 mod composite;
+mod coupling;
 mod elements;
 mod energy;
 mod external;
 mod kinematics;
 mod newton_euler;
+mod solve;
 
 pub use articulated::Bias;
 
