@@ -309,8 +309,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ),
         );
     let lower_composite_inertia_25 = n(1.2) * (lower_joint_18 * n(0.25));
-    // upper: effort (43 additions, 54 multiplications, 2 function calls)
-    let upper_effort = T::rotation_vector(
+    // upper: spring (37 additions, 54 multiplications, 2 function calls)
+    let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
             (-q[6])
                 .mul_add(
@@ -359,43 +359,44 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ),
         ),
     );
-    let upper_effort_2 = upper_effort[0] * n(30.0);
-    let upper_effort_3 = upper_effort[1] * n(20.0);
-    let upper_effort_4 = upper_effort[2] * n(10.0);
-    let upper_effort_5 = upper_effort[0] * upper_effort[0];
-    let upper_effort_6 = upper_effort[1] * upper_effort[1];
-    let upper_effort_7 = upper_effort_5 + upper_effort_6;
-    let upper_effort_8 = upper_effort[2] * upper_effort[2];
-    let upper_effort_9 = (upper_effort_7 + upper_effort_8).dexp_inverse(0);
-    let upper_effort_10 = upper_effort[2] * n(0.5);
-    let upper_effort_11 = upper_effort_9 * (upper_effort[0] * upper_effort[1]);
-    let upper_effort_12 = upper_effort[1] * n(0.5);
-    let upper_effort_13 = upper_effort_9 * (upper_effort[0] * upper_effort[2]);
-    let upper_effort_14 = upper_effort_3
+    let upper_spring_2 = upper_spring[0] * n(30.0);
+    let upper_spring_3 = upper_spring[1] * n(20.0);
+    let upper_spring_4 = upper_spring[2] * n(10.0);
+    let upper_spring_5 = upper_spring[0] * upper_spring[0];
+    let upper_spring_6 = upper_spring[1] * upper_spring[1];
+    let upper_spring_7 = upper_spring_5 + upper_spring_6;
+    let upper_spring_8 = upper_spring[2] * upper_spring[2];
+    let upper_spring_9 = (upper_spring_7 + upper_spring_8).dexp_inverse(0);
+    let upper_spring_10 = upper_spring[2] * n(0.5);
+    let upper_spring_11 = upper_spring_9 * (upper_spring[0] * upper_spring[1]);
+    let upper_spring_12 = upper_spring[1] * n(0.5);
+    let upper_spring_13 = upper_spring_9 * (upper_spring[0] * upper_spring[2]);
+    let upper_spring_14 = upper_spring_3
         .mul_add(
-            upper_effort_10 + upper_effort_11,
-            upper_effort_2
-                * ((-upper_effort_9).mul_add(upper_effort_6 + upper_effort_8, n(1.0))),
+            upper_spring_10 + upper_spring_11,
+            upper_spring_2
+                * ((-upper_spring_9).mul_add(upper_spring_6 + upper_spring_8, n(1.0))),
         );
-    let upper_effort_15 = upper_effort[0] * n(0.5);
-    let upper_effort_16 = upper_effort_9 * (upper_effort[1] * upper_effort[2]);
-    let upper_effort_17 = (-upper_effort_3)
+    let upper_spring_15 = upper_spring[0] * n(0.5);
+    let upper_spring_16 = upper_spring_9 * (upper_spring[1] * upper_spring[2]);
+    let upper_spring_17 = (-upper_spring_3)
         .mul_add(
-            (-upper_effort_9).mul_add(upper_effort_5 + upper_effort_8, n(1.0)),
-            upper_effort_2 * (upper_effort_10 - upper_effort_11),
+            (-upper_spring_9).mul_add(upper_spring_5 + upper_spring_8, n(1.0)),
+            upper_spring_2 * (upper_spring_10 - upper_spring_11),
         );
-    let upper_effort_18 = (-upper_effort_3)
+    let upper_spring_18 = (-upper_spring_3)
         .mul_add(
-            upper_effort_15 - upper_effort_16,
-            upper_effort_4
+            upper_spring_15 - upper_spring_16,
+            upper_spring_4
                 .mul_add(
-                    (-upper_effort_7).mul_add(upper_effort_9, n(1.0)),
-                    upper_effort_2 * (upper_effort_12 + upper_effort_13),
+                    (-upper_spring_7).mul_add(upper_spring_9, n(1.0)),
+                    upper_spring_2 * (upper_spring_12 + upper_spring_13),
                 ),
         );
-    let upper_effort_19 = (-upper_effort_4)
+    // upper: effort (6 additions)
+    let upper_effort = (-upper_spring_4)
         .mul_add(
-            upper_effort_12 - upper_effort_13,
+            upper_spring_12 - upper_spring_13,
             (-v[2])
                 .mul_add(
                     upper_force_2,
@@ -405,12 +406,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                             v[1]
                                 .mul_add(
                                     upper_force_3,
-                                    lower_effort_4 + upper_effort_14 - tau[0],
+                                    lower_effort_4 + upper_spring_14 - tau[0],
                                 ),
                         ),
                 ),
         );
-    let upper_effort_20 = (-v[1])
+    let upper_effort_2 = (-v[1])
         .mul_add(
             upper_force,
             upper_acceleration_2
@@ -419,149 +420,143 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     v[0]
                         .mul_add(
                             upper_force_2,
-                            lower_effort_3 + upper_effort_18 - tau[2],
+                            lower_effort_3 + upper_spring_18 - tau[2],
                         ),
                 ),
         );
-    // lower: effort (57 additions, 75 multiplications, 2 function calls)
-    let lower_effort_6 = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
-    let lower_effort_7 = lower_effort_6[0] * n(15.0);
-    let lower_effort_8 = lower_effort_6[1] * n(15.0);
-    let lower_effort_9 = lower_effort_6[2] * n(15.0);
-    let lower_effort_10 = q[9] * q[9];
-    let lower_effort_11 = (-n(2.0)).mul_add(lower_joint_7 + lower_effort_10, n(1.0));
-    let lower_effort_12 = (-n(2.0)).mul_add(lower_joint + lower_effort_10, n(1.0));
-    let lower_effort_13 = lower_joint_13
-        .mul_add(lower_effort_6[2], lower_joint_16 * lower_effort_6[1]);
-    let lower_effort_14 = lower_joint_16
-        .mul_add(lower_effort_6[0], lower_effort_6[2] * lower_effort_11);
-    let lower_effort_15 = (-lower_effort_6[1])
-        .mul_add(lower_effort_11, lower_joint_13 * lower_effort_6[0]);
-    let lower_effort_16 = (lower_effort_6[2]
+    // lower: spring (48 additions, 72 multiplications, 2 function calls)
+    let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
+    let lower_spring_2 = lower_spring[0] * n(15.0);
+    let lower_spring_3 = lower_spring[1] * n(15.0);
+    let lower_spring_4 = lower_spring[2] * n(15.0);
+    let lower_spring_5 = q[9] * q[9];
+    let lower_spring_6 = (-n(2.0)).mul_add(lower_joint_7 + lower_spring_5, n(1.0));
+    let lower_spring_7 = (-n(2.0)).mul_add(lower_joint + lower_spring_5, n(1.0));
+    let lower_spring_8 = lower_joint_13
+        .mul_add(lower_spring[2], lower_joint_16 * lower_spring[1]);
+    let lower_spring_9 = lower_joint_16
+        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
+    let lower_spring_10 = (-lower_spring[1])
+        .mul_add(lower_spring_6, lower_joint_13 * lower_spring[0]);
+    let lower_spring_11 = (lower_spring[2]
         .mul_add(
-            lower_effort_6[2],
-            lower_effort_6[1]
-                .mul_add(lower_effort_6[1], lower_effort_6[0] * lower_effort_6[0]),
+            lower_spring[2],
+            lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
         ))
         .dexp_inverse(0);
-    let lower_effort_17 = (-n(0.5))
+    let lower_spring_12 = (-n(0.5))
         .mul_add(
-            lower_effort_13,
-            lower_effort_16
+            lower_spring_8,
+            lower_spring_11
                 .mul_add(
-                    (-lower_effort_6[2])
-                        .mul_add(lower_effort_14, lower_effort_6[1] * lower_effort_15),
-                    lower_effort_11,
+                    (-lower_spring[2])
+                        .mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
+                    lower_spring_6,
                 ),
         );
-    let lower_effort_18 = (-lower_effort_16)
+    let lower_spring_13 = (-lower_spring_11)
         .mul_add(
-            lower_effort_6[0]
-                .mul_add(lower_effort_15, lower_effort_6[2] * lower_effort_13),
-            n(0.5).mul_add(lower_effort_14, lower_joint_13),
+            lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
+            n(0.5).mul_add(lower_spring_9, lower_joint_13),
         );
-    let lower_effort_19 = (-lower_effort_16)
+    let lower_spring_14 = (-lower_spring_11)
         .mul_add(
-            lower_effort_6[1]
-                .mul_add(lower_effort_13, lower_effort_6[0] * lower_effort_14),
-            (-n(0.5)).mul_add(lower_effort_15, lower_joint_16),
+            lower_spring[1].mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
+            (-n(0.5)).mul_add(lower_spring_10, lower_joint_16),
         );
-    let lower_effort_20 = (-lower_effort_6[2])
-        .mul_add(lower_effort_12, lower_joint_17 * lower_effort_6[1]);
-    let lower_effort_21 = lower_joint_17
-        .mul_add(lower_effort_6[0], lower_joint_11 * lower_effort_6[2]);
-    let lower_effort_22 = lower_joint_11
-        .mul_add(lower_effort_6[1], lower_effort_6[0] * lower_effort_12);
-    let lower_effort_23 = (-lower_effort_16)
+    let lower_spring_15 = (-lower_spring[2])
+        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[1]);
+    let lower_spring_16 = lower_joint_17
+        .mul_add(lower_spring[0], lower_joint_11 * lower_spring[2]);
+    let lower_spring_17 = lower_joint_11
+        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
+    let lower_spring_18 = (-lower_spring_11)
         .mul_add(
-            lower_effort_6[2]
-                .mul_add(lower_effort_21, lower_effort_6[1] * lower_effort_22),
-            (-n(0.5)).mul_add(lower_effort_20, lower_joint_11),
+            lower_spring[2].mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
+            (-n(0.5)).mul_add(lower_spring_15, lower_joint_11),
         );
-    let lower_effort_24 = (-n(0.5))
+    let lower_spring_19 = (-n(0.5))
         .mul_add(
-            lower_effort_21,
-            lower_effort_16
+            lower_spring_16,
+            lower_spring_11
                 .mul_add(
-                    (-lower_effort_6[0])
-                        .mul_add(lower_effort_22, lower_effort_6[2] * lower_effort_20),
-                    lower_effort_12,
+                    (-lower_spring[0])
+                        .mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
+                    lower_spring_7,
                 ),
         );
-    let lower_effort_25 = (-lower_effort_16)
+    let lower_spring_20 = (-lower_spring_11)
         .mul_add(
-            lower_effort_6[1]
-                .mul_add(lower_effort_20, lower_effort_6[0] * lower_effort_21),
-            n(0.5).mul_add(lower_effort_22, lower_joint_17),
+            lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
+            n(0.5).mul_add(lower_spring_17, lower_joint_17),
         );
-    let lower_effort_26 = (-lower_joint_15)
-        .mul_add(lower_effort_6[2], lower_joint_18 * lower_effort_6[1]);
-    let lower_effort_27 = lower_joint_18
-        .mul_add(lower_effort_6[0], lower_joint_12 * lower_effort_6[2]);
-    let lower_effort_28 = lower_joint_12
-        .mul_add(lower_effort_6[1], lower_joint_15 * lower_effort_6[0]);
-    let lower_effort_29 = (-lower_effort_16)
+    let lower_spring_21 = (-lower_joint_15)
+        .mul_add(lower_spring[2], lower_joint_18 * lower_spring[1]);
+    let lower_spring_22 = lower_joint_18
+        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
+    let lower_spring_23 = lower_joint_12
+        .mul_add(lower_spring[1], lower_joint_15 * lower_spring[0]);
+    let lower_spring_24 = (-lower_spring_11)
         .mul_add(
-            lower_effort_6[2]
-                .mul_add(lower_effort_27, lower_effort_6[1] * lower_effort_28),
-            (-n(0.5)).mul_add(lower_effort_26, lower_joint_12),
+            lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
+            (-n(0.5)).mul_add(lower_spring_21, lower_joint_12),
         );
-    let lower_effort_30 = (-n(0.5))
+    let lower_spring_25 = (-n(0.5))
         .mul_add(
-            lower_effort_27,
-            lower_effort_16
+            lower_spring_22,
+            lower_spring_11
                 .mul_add(
-                    (-lower_effort_6[0])
-                        .mul_add(lower_effort_28, lower_effort_6[2] * lower_effort_26),
+                    (-lower_spring[0])
+                        .mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
                     lower_joint_15,
                 ),
         );
-    let lower_effort_31 = (-lower_effort_16)
+    let lower_spring_26 = (-lower_spring_11)
         .mul_add(
-            lower_effort_6[1]
-                .mul_add(lower_effort_26, lower_effort_6[0] * lower_effort_27),
-            n(0.5).mul_add(lower_effort_28, lower_joint_18),
+            lower_spring[1].mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
+            n(0.5).mul_add(lower_spring_23, lower_joint_18),
         );
-    let lower_effort_32 = (-v[3])
+    // lower: effort (9 additions, 3 multiplications)
+    let lower_effort_6 = (-v[3])
         .mul_add(
             n(0.1),
-            (-lower_effort_9)
+            (-lower_spring_4)
                 .mul_add(
-                    lower_effort_19,
-                    lower_effort_8
+                    lower_spring_14,
+                    lower_spring_3
                         .mul_add(
-                            lower_effort_18,
-                            lower_effort_7.mul_add(lower_effort_17, tau[3]),
+                            lower_spring_13,
+                            lower_spring_2.mul_add(lower_spring_12, tau[3]),
                         ),
                 ),
         );
-    let lower_effort_33 = (-lower_effort_9)
+    let lower_effort_7 = (-lower_spring_4)
         .mul_add(
-            lower_effort_25,
-            (-lower_effort_8)
+            lower_spring_20,
+            (-lower_spring_3)
                 .mul_add(
-                    lower_effort_24,
+                    lower_spring_19,
                     v[4]
                         .mul_add(
                             n(0.1),
-                            lower_effort_7.mul_add(lower_effort_23, -tau[4]),
+                            lower_spring_2.mul_add(lower_spring_18, -tau[4]),
                         ),
                 ),
         );
-    let lower_effort_34 = (-v[5])
+    let lower_effort_8 = (-v[5])
         .mul_add(
             n(0.1),
-            (-lower_effort_9)
+            (-lower_spring_4)
                 .mul_add(
-                    lower_effort_31,
-                    (-lower_effort_8)
+                    lower_spring_26,
+                    (-lower_spring_3)
                         .mul_add(
-                            lower_effort_30,
-                            lower_effort_7.mul_add(lower_effort_29, tau[5]),
+                            lower_spring_25,
+                            lower_spring_2.mul_add(lower_spring_24, tau[5]),
                         ),
                 ),
         );
-    let lower_effort_35 = lower_effort_3 - lower_effort_34;
+    let lower_effort_9 = lower_effort_3 - lower_effort_8;
     // lower: factor (43 additions, 55 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
@@ -584,8 +579,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         );
     let lower_factor_6 = (-lower_composite_inertia_23)
         .mul_add(lower_factor_2, lower_composite_inertia_16);
-    let lower_factor_7 = (-lower_effort_35)
-        .mul_add(lower_factor_2, lower_effort_2 - lower_effort_33);
+    let lower_factor_7 = (-lower_effort_9)
+        .mul_add(lower_factor_2, lower_effort_2 - lower_effort_7);
     let lower_factor_8 = lower_composite_inertia_8 * lower_factor;
     let lower_factor_9 = (-lower_composite_inertia_24)
         .mul_add(
@@ -615,13 +610,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         );
     let lower_factor_11 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_12 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_13 = lower_effort_35
+    let lower_factor_13 = lower_effort_9
         .mul_add(
             lower_factor_12,
-            upper_effort_4
+            upper_spring_4
                 .mul_add(
-                    upper_effort_15 + upper_effort_16,
-                    upper_force_4 - lower_effort_5 - upper_effort_17 - tau[1],
+                    upper_spring_15 + upper_spring_16,
+                    upper_force_4 - lower_effort_5 - upper_spring_17 - tau[1],
                 ),
         );
     let lower_factor_14 = lower_composite_inertia_23 * lower_factor;
@@ -640,7 +635,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_20 = (-lower_factor_7)
         .mul_add(
             lower_factor_16,
-            (-lower_effort_35).mul_add(lower_factor_8, lower_effort - lower_effort_32),
+            (-lower_effort_9).mul_add(lower_factor_8, lower_effort - lower_effort_6),
         );
     let lower_factor_21 = lower_factor_4 * lower_factor_15;
     let lower_factor_22 = (-lower_factor_5)
@@ -697,7 +692,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-lower_factor_7)
                 .mul_add(
                     lower_factor_21,
-                    (-lower_effort_35).mul_add(lower_factor_11, upper_effort_20),
+                    (-lower_effort_9).mul_add(lower_factor_11, upper_effort_2),
                 ),
         );
     let lower_factor_32 = lower_factor_18 * lower_factor_26;
@@ -766,7 +761,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     (-lower_factor_7)
                         .mul_add(
                             lower_factor_25,
-                            (-lower_effort_35).mul_add(lower_factor_14, upper_effort_19),
+                            (-lower_effort_9).mul_add(lower_factor_14, upper_effort),
                         ),
                 ),
         );
@@ -835,7 +830,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         lower_acceleration_8,
         -(lower_factor
             * ((-lower_composite_inertia_23)
-                .mul_add(upper_acceleration_4, lower_effort_35 - lower_acceleration_9))),
+                .mul_add(upper_acceleration_4, lower_effort_9 - lower_acceleration_9))),
     ]
 }
 
@@ -1316,7 +1311,139 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 upper_weight_2,
                 lower_joint_12.mul_add(upper_weight_3, lower_joint_10 * upper_weight),
             ));
-    // lower: momentum rate (109 additions, 139 multiplications, 2 function calls)
+    // lower: spring (48 additions, 72 multiplications, 2 function calls)
+    let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
+    let lower_spring_2 = lower_spring[0] * n(15.0);
+    let lower_spring_3 = lower_spring[1] * n(15.0);
+    let lower_spring_4 = lower_spring[2] * n(15.0);
+    let lower_spring_5 = q[9] * q[9];
+    let lower_spring_6 = (-n(2.0)).mul_add(lower_joint_7 + lower_spring_5, n(1.0));
+    let lower_spring_7 = (-n(2.0)).mul_add(lower_joint + lower_spring_5, n(1.0));
+    let lower_spring_8 = lower_joint_13
+        .mul_add(lower_spring[2], lower_joint_16 * lower_spring[1]);
+    let lower_spring_9 = lower_joint_16
+        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
+    let lower_spring_10 = (-lower_spring[1])
+        .mul_add(lower_spring_6, lower_joint_13 * lower_spring[0]);
+    let lower_spring_11 = (lower_spring[2]
+        .mul_add(
+            lower_spring[2],
+            lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
+        ))
+        .dexp_inverse(0);
+    let lower_spring_12 = (-lower_spring_8)
+        .mul_add(
+            n(0.5),
+            lower_spring_11
+                .mul_add(
+                    (-lower_spring[2])
+                        .mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
+                    lower_spring_6,
+                ),
+        );
+    let lower_spring_13 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
+            lower_spring_9.mul_add(n(0.5), lower_joint_13),
+        );
+    let lower_spring_14 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[1].mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
+            (-lower_spring_10).mul_add(n(0.5), lower_joint_16),
+        );
+    let lower_spring_15 = (-lower_spring[2])
+        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[1]);
+    let lower_spring_16 = lower_joint_17
+        .mul_add(lower_spring[0], lower_joint_11 * lower_spring[2]);
+    let lower_spring_17 = lower_joint_11
+        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
+    let lower_spring_18 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[2].mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
+            (-n(0.5)).mul_add(lower_spring_15, lower_joint_11),
+        );
+    let lower_spring_19 = (-n(0.5))
+        .mul_add(
+            lower_spring_16,
+            lower_spring_11
+                .mul_add(
+                    (-lower_spring[0])
+                        .mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
+                    lower_spring_7,
+                ),
+        );
+    let lower_spring_20 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
+            n(0.5).mul_add(lower_spring_17, lower_joint_17),
+        );
+    let lower_spring_21 = (-lower_joint_15)
+        .mul_add(lower_spring[2], lower_joint_18 * lower_spring[1]);
+    let lower_spring_22 = lower_joint_18
+        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
+    let lower_spring_23 = lower_joint_12
+        .mul_add(lower_spring[1], lower_joint_15 * lower_spring[0]);
+    let lower_spring_24 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
+            (-n(0.5)).mul_add(lower_spring_21, lower_joint_12),
+        );
+    let lower_spring_25 = (-n(0.5))
+        .mul_add(
+            lower_spring_22,
+            lower_spring_11
+                .mul_add(
+                    (-lower_spring[0])
+                        .mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
+                    lower_joint_15,
+                ),
+        );
+    let lower_spring_26 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[1].mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
+            n(0.5).mul_add(lower_spring_23, lower_joint_18),
+        );
+    // lower: effort (6 additions, 3 multiplications)
+    let lower_effort = (-lower_speed)
+        .mul_add(
+            n(0.1),
+            (-lower_spring_4)
+                .mul_add(
+                    lower_spring_14,
+                    lower_spring_3
+                        .mul_add(
+                            lower_spring_13,
+                            lower_spring_2.mul_add(lower_spring_12, tau[3]),
+                        ),
+                ),
+        );
+    let lower_effort_2 = (-lower_spring_4)
+        .mul_add(
+            lower_spring_20,
+            (-lower_spring_3)
+                .mul_add(
+                    lower_spring_19,
+                    lower_speed_3
+                        .mul_add(
+                            n(0.1),
+                            lower_spring_2.mul_add(lower_spring_18, -tau[4]),
+                        ),
+                ),
+        );
+    let lower_effort_3 = (-lower_speed_5)
+        .mul_add(
+            n(0.1),
+            (-lower_spring_4)
+                .mul_add(
+                    lower_spring_26,
+                    (-lower_spring_3)
+                        .mul_add(
+                            lower_spring_25,
+                            lower_spring_2.mul_add(lower_spring_24, tau[5]),
+                        ),
+                ),
+        );
+    // lower: momentum rate (55 additions, 64 multiplications)
     let lower_momentum_rate = (-lower_momentum_4)
         .mul_add(
             lower_momentum_12,
@@ -1378,185 +1505,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ),
             lower_momentum_10,
         );
-    let lower_momentum_rate_10 = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
-    let lower_momentum_rate_11 = lower_momentum_rate_10[0] * n(15.0);
-    let lower_momentum_rate_12 = lower_momentum_rate_10[1] * n(15.0);
-    let lower_momentum_rate_13 = lower_momentum_rate_10[2] * n(15.0);
-    let lower_momentum_rate_14 = q[9] * q[9];
-    let lower_momentum_rate_15 = (-n(2.0))
-        .mul_add(lower_joint_7 + lower_momentum_rate_14, n(1.0));
-    let lower_momentum_rate_16 = (-n(2.0))
-        .mul_add(lower_joint + lower_momentum_rate_14, n(1.0));
-    let lower_momentum_rate_17 = lower_joint_13
-        .mul_add(lower_momentum_rate_10[2], lower_joint_16 * lower_momentum_rate_10[1]);
-    let lower_momentum_rate_18 = lower_joint_16
-        .mul_add(
-            lower_momentum_rate_10[0],
-            lower_momentum_rate_10[2] * lower_momentum_rate_15,
-        );
-    let lower_momentum_rate_19 = (-lower_momentum_rate_10[1])
-        .mul_add(lower_momentum_rate_15, lower_joint_13 * lower_momentum_rate_10[0]);
-    let lower_momentum_rate_20 = (lower_momentum_rate_10[2]
-        .mul_add(
-            lower_momentum_rate_10[2],
-            lower_momentum_rate_10[1]
-                .mul_add(
-                    lower_momentum_rate_10[1],
-                    lower_momentum_rate_10[0] * lower_momentum_rate_10[0],
-                ),
-        ))
-        .dexp_inverse(0);
-    let lower_momentum_rate_21 = (-lower_momentum_rate_17)
-        .mul_add(
-            n(0.5),
-            lower_momentum_rate_20
-                .mul_add(
-                    (-lower_momentum_rate_10[2])
-                        .mul_add(
-                            lower_momentum_rate_18,
-                            lower_momentum_rate_10[1] * lower_momentum_rate_19,
-                        ),
-                    lower_momentum_rate_15,
-                ),
-        );
-    let lower_momentum_rate_22 = (-lower_momentum_rate_20)
-        .mul_add(
-            lower_momentum_rate_10[0]
-                .mul_add(
-                    lower_momentum_rate_19,
-                    lower_momentum_rate_10[2] * lower_momentum_rate_17,
-                ),
-            lower_momentum_rate_18.mul_add(n(0.5), lower_joint_13),
-        );
-    let lower_momentum_rate_23 = (-lower_momentum_rate_20)
-        .mul_add(
-            lower_momentum_rate_10[1]
-                .mul_add(
-                    lower_momentum_rate_17,
-                    lower_momentum_rate_10[0] * lower_momentum_rate_18,
-                ),
-            (-lower_momentum_rate_19).mul_add(n(0.5), lower_joint_16),
-        );
-    let lower_momentum_rate_24 = (-lower_momentum_rate_10[2])
-        .mul_add(lower_momentum_rate_16, lower_joint_17 * lower_momentum_rate_10[1]);
-    let lower_momentum_rate_25 = lower_joint_17
-        .mul_add(lower_momentum_rate_10[0], lower_joint_11 * lower_momentum_rate_10[2]);
-    let lower_momentum_rate_26 = lower_joint_11
-        .mul_add(
-            lower_momentum_rate_10[1],
-            lower_momentum_rate_10[0] * lower_momentum_rate_16,
-        );
-    let lower_momentum_rate_27 = (-lower_momentum_rate_20)
-        .mul_add(
-            lower_momentum_rate_10[2]
-                .mul_add(
-                    lower_momentum_rate_25,
-                    lower_momentum_rate_10[1] * lower_momentum_rate_26,
-                ),
-            (-n(0.5)).mul_add(lower_momentum_rate_24, lower_joint_11),
-        );
-    let lower_momentum_rate_28 = (-n(0.5))
-        .mul_add(
-            lower_momentum_rate_25,
-            lower_momentum_rate_20
-                .mul_add(
-                    (-lower_momentum_rate_10[0])
-                        .mul_add(
-                            lower_momentum_rate_26,
-                            lower_momentum_rate_10[2] * lower_momentum_rate_24,
-                        ),
-                    lower_momentum_rate_16,
-                ),
-        );
-    let lower_momentum_rate_29 = (-lower_momentum_rate_20)
-        .mul_add(
-            lower_momentum_rate_10[1]
-                .mul_add(
-                    lower_momentum_rate_24,
-                    lower_momentum_rate_10[0] * lower_momentum_rate_25,
-                ),
-            n(0.5).mul_add(lower_momentum_rate_26, lower_joint_17),
-        );
-    let lower_momentum_rate_30 = (-lower_joint_15)
-        .mul_add(lower_momentum_rate_10[2], lower_joint_18 * lower_momentum_rate_10[1]);
-    let lower_momentum_rate_31 = lower_joint_18
-        .mul_add(lower_momentum_rate_10[0], lower_joint_12 * lower_momentum_rate_10[2]);
-    let lower_momentum_rate_32 = lower_joint_12
-        .mul_add(lower_momentum_rate_10[1], lower_joint_15 * lower_momentum_rate_10[0]);
-    let lower_momentum_rate_33 = (-lower_momentum_rate_20)
-        .mul_add(
-            lower_momentum_rate_10[2]
-                .mul_add(
-                    lower_momentum_rate_31,
-                    lower_momentum_rate_10[1] * lower_momentum_rate_32,
-                ),
-            (-n(0.5)).mul_add(lower_momentum_rate_30, lower_joint_12),
-        );
-    let lower_momentum_rate_34 = (-n(0.5))
-        .mul_add(
-            lower_momentum_rate_31,
-            lower_momentum_rate_20
-                .mul_add(
-                    (-lower_momentum_rate_10[0])
-                        .mul_add(
-                            lower_momentum_rate_32,
-                            lower_momentum_rate_10[2] * lower_momentum_rate_30,
-                        ),
-                    lower_joint_15,
-                ),
-        );
-    let lower_momentum_rate_35 = (-lower_momentum_rate_20)
-        .mul_add(
-            lower_momentum_rate_10[1]
-                .mul_add(
-                    lower_momentum_rate_30,
-                    lower_momentum_rate_10[0] * lower_momentum_rate_31,
-                ),
-            n(0.5).mul_add(lower_momentum_rate_32, lower_joint_18),
-        );
-    let lower_momentum_rate_36 = (-lower_speed)
-        .mul_add(
-            n(0.1),
-            (-lower_momentum_rate_13)
-                .mul_add(
-                    lower_momentum_rate_23,
-                    lower_momentum_rate_12
-                        .mul_add(
-                            lower_momentum_rate_22,
-                            lower_momentum_rate_11
-                                .mul_add(lower_momentum_rate_21, tau[3]),
-                        ),
-                ),
-        );
-    let lower_momentum_rate_37 = (-lower_momentum_rate_13)
-        .mul_add(
-            lower_momentum_rate_29,
-            (-lower_momentum_rate_12)
-                .mul_add(
-                    lower_momentum_rate_28,
-                    lower_speed_3
-                        .mul_add(
-                            n(0.1),
-                            lower_momentum_rate_11
-                                .mul_add(lower_momentum_rate_27, -tau[4]),
-                        ),
-                ),
-        );
-    let lower_momentum_rate_38 = (-lower_speed_5)
-        .mul_add(
-            n(0.1),
-            (-lower_momentum_rate_13)
-                .mul_add(
-                    lower_momentum_rate_35,
-                    (-lower_momentum_rate_12)
-                        .mul_add(
-                            lower_momentum_rate_34,
-                            lower_momentum_rate_11
-                                .mul_add(lower_momentum_rate_33, tau[5]),
-                        ),
-                ),
-        );
-    let lower_momentum_rate_39 = (-lower_joint_16)
+    let lower_momentum_rate_10 = (-lower_joint_16)
         .mul_add(
             lower_momentum_rate,
             (-lower_joint_10)
@@ -1568,13 +1517,12 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                             lower_joint_13
                                 .mul_add(
                                     lower_momentum_rate_3,
-                                    lower_speed_3
-                                        .mul_add(lower_momentum_rate_7, lower_momentum_rate_36),
+                                    lower_speed_3.mul_add(lower_momentum_rate_7, lower_effort),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_rate_40 = (-lower_joint_17)
+    let lower_momentum_rate_11 = (-lower_joint_17)
         .mul_add(
             lower_momentum_rate,
             (-lower_joint_11)
@@ -1586,13 +1534,12 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                             lower_joint_14
                                 .mul_add(
                                     lower_momentum_rate_3,
-                                    lower_speed
-                                        .mul_add(lower_momentum_rate_7, lower_momentum_rate_37),
+                                    lower_speed.mul_add(lower_momentum_rate_7, lower_effort_2),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_rate_41 = (-lower_speed)
+    let lower_momentum_rate_12 = (-lower_speed)
         .mul_add(
             lower_momentum_rate_8,
             lower_joint_18
@@ -1605,12 +1552,12 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                                 .mul_add(
                                     lower_momentum_rate_2,
                                     lower_speed_3
-                                        .mul_add(lower_momentum_rate_9, -lower_momentum_rate_38),
+                                        .mul_add(lower_momentum_rate_9, -lower_effort_3),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_rate_42 = n(0.6)
+    let lower_momentum_rate_13 = n(0.6)
         .mul_add(
             (-lower_joint_14)
                 .mul_add(lower_momentum_13, lower_joint_11 * lower_momentum_12),
@@ -1621,7 +1568,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         .mul_add(lower_momentum_11, lower_joint_10 * lower_momentum_10),
                 ),
         );
-    let lower_momentum_rate_43 = (-n(0.6))
+    let lower_momentum_rate_14 = (-n(0.6))
         .mul_add(
             (-lower_joint_13)
                 .mul_add(lower_momentum_13, lower_joint_10 * lower_momentum_12),
@@ -1632,10 +1579,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         .mul_add(lower_momentum_11, lower_joint_11 * lower_momentum_10),
                 ),
         );
-    let lower_momentum_rate_44 = n(0.06)
-        .mul_add(upper_speed_3, n(0.59).mul_add(upper_speed, lower_momentum_rate_42));
-    let lower_momentum_rate_45 = n(0.62).mul_add(upper_speed_2, -lower_momentum_rate_43);
-    let lower_momentum_rate_46 = (-lower_joint_15)
+    let lower_momentum_rate_15 = n(0.06)
+        .mul_add(upper_speed_3, n(0.59).mul_add(upper_speed, lower_momentum_rate_13));
+    let lower_momentum_rate_16 = n(0.62).mul_add(upper_speed_2, -lower_momentum_rate_14);
+    let lower_momentum_rate_17 = (-lower_joint_15)
         .mul_add(
             lower_momentum_11,
             lower_joint_18
@@ -1649,7 +1596,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_momentum_rate_47 = (-lower_joint_14)
+    let lower_momentum_rate_18 = (-lower_joint_14)
         .mul_add(
             lower_weight_2,
             lower_joint_11
@@ -1658,34 +1605,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     n(0.2).mul_add(upper_weight_3, n(1.2) * upper_weight),
                 ),
         );
-    // upper: momentum rate (49 additions, 60 multiplications, 2 function calls)
-    let upper_momentum_rate = (-upper_speed_3)
-        .mul_add(
-            lower_momentum_rate_45,
-            (-lower_joint_13)
-                .mul_add(
-                    lower_weight_2,
-                    upper_speed_2
-                        .mul_add(
-                            lower_momentum_rate_46,
-                            lower_joint_10.mul_add(lower_weight, n(1.2) * upper_weight_2),
-                        ),
-                ),
-        );
-    let upper_momentum_rate_2 = (-upper_speed_2)
-        .mul_add(
-            lower_momentum_rate_44,
-            upper_speed
-                .mul_add(
-                    lower_momentum_rate_45,
-                    lower_joint_15
-                        .mul_add(
-                            lower_weight_2,
-                            lower_joint_12.mul_add(lower_weight, n(0.2) * upper_weight_2),
-                        ),
-                ),
-        );
-    let upper_momentum_rate_3 = T::rotation_vector(
+    // upper: spring (37 additions, 54 multiplications, 2 function calls)
+    let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
             (-q[6])
                 .mul_add(
@@ -1734,57 +1655,77 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ),
         ),
     );
-    let upper_momentum_rate_4 = upper_momentum_rate_3[0] * n(30.0);
-    let upper_momentum_rate_5 = upper_momentum_rate_3[1] * n(20.0);
-    let upper_momentum_rate_6 = upper_momentum_rate_3[2] * n(10.0);
-    let upper_momentum_rate_7 = upper_momentum_rate_3[0] * upper_momentum_rate_3[0];
-    let upper_momentum_rate_8 = upper_momentum_rate_3[1] * upper_momentum_rate_3[1];
-    let upper_momentum_rate_9 = upper_momentum_rate_7 + upper_momentum_rate_8;
-    let upper_momentum_rate_10 = upper_momentum_rate_3[2] * upper_momentum_rate_3[2];
-    let upper_momentum_rate_11 = (upper_momentum_rate_9 + upper_momentum_rate_10)
-        .dexp_inverse(0);
-    let upper_momentum_rate_12 = n(0.5) * upper_momentum_rate_3[2];
-    let upper_momentum_rate_13 = upper_momentum_rate_11
-        * (upper_momentum_rate_3[0] * upper_momentum_rate_3[1]);
-    let upper_momentum_rate_14 = n(0.5) * upper_momentum_rate_3[1];
-    let upper_momentum_rate_15 = upper_momentum_rate_11
-        * (upper_momentum_rate_3[0] * upper_momentum_rate_3[2]);
-    let upper_momentum_rate_16 = upper_momentum_rate_5
+    let upper_spring_2 = upper_spring[0] * n(30.0);
+    let upper_spring_3 = upper_spring[1] * n(20.0);
+    let upper_spring_4 = upper_spring[2] * n(10.0);
+    let upper_spring_5 = upper_spring[0] * upper_spring[0];
+    let upper_spring_6 = upper_spring[1] * upper_spring[1];
+    let upper_spring_7 = upper_spring_5 + upper_spring_6;
+    let upper_spring_8 = upper_spring[2] * upper_spring[2];
+    let upper_spring_9 = (upper_spring_7 + upper_spring_8).dexp_inverse(0);
+    let upper_spring_10 = n(0.5) * upper_spring[2];
+    let upper_spring_11 = upper_spring_9 * (upper_spring[0] * upper_spring[1]);
+    let upper_spring_12 = n(0.5) * upper_spring[1];
+    let upper_spring_13 = upper_spring_9 * (upper_spring[0] * upper_spring[2]);
+    let upper_spring_14 = upper_spring_3
         .mul_add(
-            upper_momentum_rate_12 + upper_momentum_rate_13,
-            upper_momentum_rate_4
-                * ((-upper_momentum_rate_11)
-                    .mul_add(upper_momentum_rate_8 + upper_momentum_rate_10, n(1.0))),
+            upper_spring_10 + upper_spring_11,
+            upper_spring_2
+                * ((-upper_spring_9).mul_add(upper_spring_6 + upper_spring_8, n(1.0))),
         );
-    let upper_momentum_rate_17 = n(0.5) * upper_momentum_rate_3[0];
-    let upper_momentum_rate_18 = upper_momentum_rate_11
-        * (upper_momentum_rate_3[1] * upper_momentum_rate_3[2]);
-    let upper_momentum_rate_19 = (-upper_momentum_rate_5)
+    let upper_spring_15 = n(0.5) * upper_spring[0];
+    let upper_spring_16 = upper_spring_9 * (upper_spring[1] * upper_spring[2]);
+    let upper_spring_17 = (-upper_spring_3)
         .mul_add(
-            (-upper_momentum_rate_11)
-                .mul_add(upper_momentum_rate_7 + upper_momentum_rate_10, n(1.0)),
-            upper_momentum_rate_4 * (upper_momentum_rate_12 - upper_momentum_rate_13),
+            (-upper_spring_9).mul_add(upper_spring_5 + upper_spring_8, n(1.0)),
+            upper_spring_2 * (upper_spring_10 - upper_spring_11),
         );
-    let upper_momentum_rate_20 = (-upper_momentum_rate_5)
+    let upper_spring_18 = (-upper_spring_3)
         .mul_add(
-            upper_momentum_rate_17 - upper_momentum_rate_18,
-            upper_momentum_rate_6
+            upper_spring_15 - upper_spring_16,
+            upper_spring_4
                 .mul_add(
-                    (-upper_momentum_rate_9).mul_add(upper_momentum_rate_11, n(1.0)),
-                    upper_momentum_rate_4
-                        * (upper_momentum_rate_14 + upper_momentum_rate_15),
+                    (-upper_spring_7).mul_add(upper_spring_9, n(1.0)),
+                    upper_spring_2 * (upper_spring_12 + upper_spring_13),
                 ),
         );
-    let upper_momentum_rate_21 = (-upper_momentum_rate_6)
+    // upper: momentum rate (9 additions, 6 multiplications)
+    let upper_momentum_rate = (-upper_speed_3)
         .mul_add(
-            upper_momentum_rate_17 + upper_momentum_rate_18,
-            (-upper_speed_3)
+            lower_momentum_rate_16,
+            (-lower_joint_13)
                 .mul_add(
-                    lower_momentum_rate_44,
+                    lower_weight_2,
+                    upper_speed_2
+                        .mul_add(
+                            lower_momentum_rate_17,
+                            lower_joint_10.mul_add(lower_weight, n(1.2) * upper_weight_2),
+                        ),
+                ),
+        );
+    let upper_momentum_rate_2 = (-upper_speed_2)
+        .mul_add(
+            lower_momentum_rate_15,
+            upper_speed
+                .mul_add(
+                    lower_momentum_rate_16,
+                    lower_joint_15
+                        .mul_add(
+                            lower_weight_2,
+                            lower_joint_12.mul_add(lower_weight, n(0.2) * upper_weight_2),
+                        ),
+                ),
+        );
+    let upper_momentum_rate_3 = (-upper_speed_3)
+        .mul_add(
+            lower_momentum_rate_15,
+            (-upper_spring_4)
+                .mul_add(
+                    upper_spring_15 + upper_spring_16,
                     upper_speed
                         .mul_add(
-                            lower_momentum_rate_46,
-                            lower_momentum_rate_47 + upper_momentum_rate_19 + tau[1],
+                            lower_momentum_rate_17,
+                            upper_spring_17 + tau[1] + lower_momentum_rate_18,
                         ),
                 ),
         );
@@ -1798,16 +1739,16 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             lower_speed_5,
         ],
         [
-            upper_momentum_rate_6
+            upper_spring_4
                 .mul_add(
-                    upper_momentum_rate_14 - upper_momentum_rate_15,
-                    tau[0] - upper_momentum_rate - upper_momentum_rate_16,
+                    upper_spring_12 - upper_spring_13,
+                    tau[0] - upper_spring_14 - upper_momentum_rate,
                 ),
-            upper_momentum_rate_21,
-            tau[2] - upper_momentum_rate_2 - upper_momentum_rate_20,
-            lower_momentum_rate_39,
-            -lower_momentum_rate_40,
-            -lower_momentum_rate_41,
+            upper_momentum_rate_3,
+            tau[2] - upper_spring_18 - upper_momentum_rate_2,
+            lower_momentum_rate_10,
+            -lower_momentum_rate_11,
+            -lower_momentum_rate_12,
         ],
     ]
 }

@@ -6,3 +6,6 @@ pub mod geodesic_springs;
 /// `scenes/plate_cart_arm.toml`.
 #[rustfmt::skip]
 pub mod plate_cart_arm;
+/// Both forms of `scenes/snakeboard.toml`: constraints that couple joints, and a prescribed motion.
+#[rustfmt::skip]
+pub mod snakeboard;

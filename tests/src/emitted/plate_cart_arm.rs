@@ -2563,7 +2563,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                     cart_momentum_5
                         .mul_add(
                             end_effector_momentum_rate_15,
-                            end_effector_momentum_rate_13 + tau[1],
+                            tau[1] + end_effector_momentum_rate_13,
                         ),
                 ),
             (-cart_momentum_4).mul_add(end_effector_momentum_rate_15, tau[2]),

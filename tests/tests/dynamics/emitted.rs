@@ -8,7 +8,7 @@ use hamel::scalar::F64x4;
 use hamel_codegen::scene::functions::Kind;
 use hamel_codegen::scene::scene;
 use hamel_scene::Scene;
-use hamel_tests::emitted::{geodesic_springs, plate_cart_arm as module};
+use hamel_tests::emitted::{geodesic_springs, plate_cart_arm as module, snakeboard};
 use hamel_tests::scenes;
 use std::path::Path;
 use std::sync::Arc;
@@ -28,7 +28,8 @@ fn the_committed_module_is_what_is_written() {
         Kind::MomentumRates,
         Kind::Hamiltonian,
     ];
-    is_written(SPRINGS, forms);
+    is_written(SPRINGS, forms.clone());
+    is_written("../scenes/snakeboard.toml", forms);
 }
 
 fn is_written(file: &str, functions: Vec<Kind>) {
@@ -91,6 +92,7 @@ fn integrators_take_compiled_equations() {
     let springs = springs.unwrap_or_else(|errors| panic!("{errors}"));
     for form in [Form::Lagrangian, Form::Hamiltonian] {
         moves_as_the_tree(&scenes::load("plate_cart_arm"), &module::EQUATIONS, form);
+        moves_as_the_tree(&scenes::load("snakeboard"), &snakeboard::EQUATIONS, form);
         moves_as_the_tree(&springs, &geodesic_springs::EQUATIONS, form);
     }
 }

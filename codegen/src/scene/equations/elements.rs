@@ -5,7 +5,6 @@ use crate::scene::graph::{Argument, Sym, section};
 use crate::scene::joint::Joint;
 use crate::scene::spatial::{Mat3, Twist, Vec3, Wrench, dot, product};
 use hamel::elements::{JointSpring, RotationSpring};
-use num_traits::Zero;
 
 /// A spring at a joint.
 struct Stretch<'a> {
@@ -64,11 +63,7 @@ impl Tree<'_> {
         let body = &self.model.bodies[spring.body];
         let rest: Vec<Sym> = spring.rest.iter().copied().map(Sym::from).collect();
         let rest = Joint::new(&body.joint, &body.parameters, &rest, &[]);
-        let phi: Vec<Sym> = rest
-            .local(&q)
-            .into_iter()
-            .map(|entry| entry.named("stretch"))
-            .collect();
+        let phi = rest.local(&q);
         let rows = spring.stiffness.chunks(phi.len().max(1));
         let load = rows.map(|row| weighted(row, &phi)).collect();
         Stretch { rest, phi, load }

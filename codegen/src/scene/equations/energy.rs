@@ -160,10 +160,10 @@ impl Tree<'_> {
         }
         let mut rates = vec![Sym::zero(); self.model.sizes()[2]];
         for (index, body) in self.bodies.iter().enumerate().rev() {
+            let efforts = self.efforts(index, Some(Argument::Efforts));
             section(number(index), "momentum rate");
             let turned = wrenches[index].plus(&bracket_dual(&twists[index], &momenta[index]));
             let moved = self.bias_momentum(index, &momenta[index]);
-            let efforts = self.efforts(index, Some(Argument::Efforts));
             for (j, place) in body.share.speeds.clone().enumerate() {
                 rates[place] = efforts[j] + body.columns[j].dot(&turned) + moved[j];
             }

@@ -7,7 +7,6 @@ use crate::scene::prune::clean;
 use crate::scene::spatial::{Step, Vec3, Wrench, cross, dot};
 use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
 use nalgebra::Vector3;
-use num_traits::Zero;
 
 /// Added to squares of lengths, m²: so far below what is measured that it changes no digit, and enough for a spring whose points coincide
 /// to exert no force instead of none that is a number. The smallest normal single.

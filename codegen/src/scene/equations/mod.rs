@@ -134,8 +134,11 @@ impl<'a> Tree<'a> {
     /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers, the springs and the rotors of a body's joint.
     fn efforts(&self, index: usize, argument: Option<Argument>) -> Vec<Sym> {
         let (body, placed) = (&self.model.bodies[index], &self.bodies[index]);
+        section(number(index), "spring");
         let springs = self.spring_efforts(index);
+        section(number(index), "rotors");
         let rotors = self.rotor_forces(index);
+        section(number(index), "effort");
         let of = |forces: &[Sym], k: usize| forces.get(k).copied().unwrap_or_else(Sym::zero);
         let freedom = |(k, place): (usize, usize)| {
             let given = argument.map_or(Sym::zero(), |argument| Sym::input(argument, place));
