@@ -11,7 +11,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   hamel compile panda.urdf -o panda.rs
-      writes forward and inverse dynamics, mass matrix and bias forces as functions
+      writes forward and inverse dynamics, mass matrix, the port-Hamiltonian form, energies and poses as functions
   hamel compile anymal.urdf --floating-base --function forward-dynamics -o anymal.rs
       one function alone
   hamel compile scenes/plate_cart_arm.toml --explain
@@ -21,8 +21,8 @@ The module needs nothing but the crate `hamel`, allocates nothing and works with
 `hamel::scalar::Scalar`: f64, f32, SIMD lanes, dual numbers. Its constant EQUATIONS goes into `hamel::compiled::Compiled`, which every
 integrator takes. docs/compile.md says more.
 
-Not compiled, and refused with the element's name: springs, wrenches, prescribed motions, constraints that couple joints, armature at
-joints whose velocities do not commute.
+Not compiled, and refused with the element's name: springs in local coordinates that have no closed form, rests and states to be found from a
+pose, more than three speeds that constraints make depend on others such that they can only be found together.
 
 Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a file that cannot be written; 2 wrong options.";
 
@@ -62,6 +62,18 @@ pub enum FunctionName {
     MassMatrix,
     /// Efforts at no acceleration
     BiasForces,
+    /// v̄ and p̄̇ from Q, p̄ and τ
+    MomentumRates,
+    /// p̄ from Q and v̄
+    Momenta,
+    /// v̄ from Q and p̄
+    SpeedsFromMomenta,
+    /// H from Q and p̄
+    Hamiltonian,
+    /// Kinetic and potential energy
+    Energies,
+    /// Where the bodies are
+    Poses,
 }
 
 impl FunctionName {
@@ -71,6 +83,12 @@ impl FunctionName {
             Self::InverseDynamics => Kind::InverseDynamics,
             Self::MassMatrix => Kind::MassMatrix,
             Self::BiasForces => Kind::BiasForces,
+            Self::MomentumRates => Kind::MomentumRates,
+            Self::Momenta => Kind::Momenta,
+            Self::SpeedsFromMomenta => Kind::Speeds,
+            Self::Hamiltonian => Kind::Hamiltonian,
+            Self::Energies => Kind::Energies,
+            Self::Poses => Kind::Poses,
         }
     }
 }

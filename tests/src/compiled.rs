@@ -1,14 +1,23 @@
 //! Mechanisms as the scene compiler takes them, and what it makes of them in double precision.
 
+use crate::random;
+use hamel::elements::{
+    BodySpring, BodyWrench, Drive, Element, JointSpring, Law, PointConstraint, RotationSpring,
+    WrenchAxes,
+};
 use hamel::mechanism::{Body as TreeBody, Mechanism};
+use hamel::nalgebra::{DMatrix, Vector3};
 use hamel_codegen::derived::Derived;
 use hamel_codegen::scene::functions::{Kind, Loops, compile_with};
 use hamel_codegen::scene::graph::Argument;
-use hamel_codegen::scene::model::{Body, Model};
+use hamel_codegen::scene::model::{Body, Coupling, Elements, Model};
 use hamel_codegen::scene::prune::{Pruning, prune};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 thread_local! {
     /// The library's joints, each derived when it is first asked for.
@@ -30,19 +39,29 @@ pub fn joint(name: &str) -> Option<Rc<Derived>> {
     })
 }
 
-/// A mechanism of the library's joints on which gravity alone acts.
+/// A mechanism of the library's joints on which gravity alone acts, with its rotors and drives.
 ///
 /// # Panics
 /// Where a joint is not of the library.
 pub fn model(name: &str, mechanism: &Mechanism) -> Model {
+    let bodies = mechanism.bodies().iter().enumerate();
     Model {
         name: name.to_owned(),
         gravity: *mechanism.gravity(),
-        bodies: mechanism.bodies().iter().map(body).collect(),
+        bodies: bodies
+            .map(|(index, owner)| {
+                body(owner, mechanism.armature(index), mechanism.is_driven(index))
+            })
+            .collect(),
+        elements: Elements::default(),
+        coupling: Coupling {
+            constraints: mechanism.constraints().to_vec(),
+            dependent: mechanism.dependent_speeds().to_vec(),
+        },
     }
 }
 
-fn body(body: &TreeBody) -> Body {
+fn body(body: &TreeBody, armature: &[f64], driven: bool) -> Body {
     let mut parameters = vec![];
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
@@ -56,13 +75,14 @@ fn body(body: &TreeBody) -> Body {
         placement: *body.placement(),
         child_placement: *body.child_placement(),
         mass: *body.mass(),
-        armature: vec![],
+        armature: armature.to_vec(),
         damping: vec![],
         effort: vec![],
+        driven,
     }
 }
 
-/// The values of a compiled function at a state.
+/// The values of a compiled function at a state; `speeds` are the momenta where it takes these.
 pub fn evaluate(
     model: &Model,
     (kind, loops): (Kind, Loops),
@@ -74,8 +94,147 @@ pub fn evaluate(
     let function = compile_with(model, &links, kind, loops).function;
     function.evaluate(|argument| match argument {
         Argument::Configuration => q.to_vec(),
-        Argument::Speeds => speeds.to_vec(),
+        Argument::Speeds | Argument::Momenta => speeds.to_vec(),
         Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
-        Argument::Momenta => vec![],
     })
+}
+
+/// Random elements for a mechanism: springs of both kinds at half of its joints each, springs between points of every third body and of any
+/// other or the world, and wrenches in both axes.
+pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
+    let mut elements = Elements::default();
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        let rest = random::configuration(random, mechanism);
+        let rest = owner.configuration(&rest).to_vec();
+        if random.random_bool(0.5) {
+            let size = owner.ranges().freedoms.len();
+            let root = DMatrix::from_vec(size, size, random::numbers(random, size * size));
+            let stiffness = match random.random_bool(0.5) {
+                true => &root * root.transpose(),
+                false => DMatrix::identity(size, size) * 0.8,
+            };
+            elements.joint_springs.push(JointSpring {
+                name: format!("spring {body}"),
+                body,
+                stiffness: stiffness.as_slice().to_vec(),
+                rest: rest.clone(),
+            });
+        }
+        if random.random_bool(0.5) {
+            elements.rotation_springs.push(RotationSpring {
+                name: format!("rotation spring {body}"),
+                body,
+                stiffness: random.random_range(0.5..2.0),
+                rest: owner.joint().pose(&rest).rotation,
+            });
+        }
+    }
+    let count = mechanism.bodies().len();
+    for body in (0..count).step_by(3) {
+        let other = random.random_range(0..=count);
+        let mut of = |some: f64| if random.random_bool(0.5) { some } else { 0.0 };
+        let (stiffness, damping, length) = (of(2.0), of(0.7), of(0.6));
+        elements.springs.push(BodySpring {
+            name: format!("spring of {body}"),
+            bodies: [(other < count).then_some(other), Some(body)],
+            points: [vector(random), vector(random)],
+            stiffness,
+            damping,
+            length,
+        });
+        elements.wrenches.push(BodyWrench {
+            name: format!("wrench on {body}"),
+            body,
+            point: vector(random),
+            force: vector(random),
+            moment: vector(random),
+            axes: match random.random_bool(0.5) {
+                true => WrenchAxes::World,
+                false => WrenchAxes::Body,
+            },
+        });
+    }
+    elements
+}
+
+fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
+    Vector3::from_vec(random::numbers(random, 3))
+}
+
+/// The mechanism with these elements.
+///
+/// # Panics
+/// Where one does not fit it.
+pub fn equipped(mechanism: &Mechanism, elements: &Elements) -> Arc<Mechanism> {
+    let mut all: Vec<Arc<dyn Element>> = vec![];
+    for spring in &elements.joint_springs {
+        all.push(Arc::new(spring.clone()));
+    }
+    for spring in &elements.rotation_springs {
+        all.push(Arc::new(spring.clone()));
+    }
+    for spring in &elements.springs {
+        all.push(Arc::new(spring.clone()));
+    }
+    for wrench in &elements.wrenches {
+        all.push(Arc::new(wrench.clone()));
+    }
+    let equipped = mechanism.clone().with_elements(all);
+    Arc::new(equipped.unwrap_or_else(|errors| panic!("{errors:?}")))
+}
+
+/// The mechanism with random rotors at half of its holonomic joints.
+///
+/// # Panics
+/// Never: they fit.
+pub fn geared(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
+    let mut geared = mechanism.clone();
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        let layout = owner.joint().layout();
+        if layout.constraints == 0 && random.random_bool(0.5) {
+            let rotors = random::numbers(random, layout.freedoms);
+            let rotors: Vec<f64> = rotors.into_iter().map(f64::abs).collect();
+            let with = geared.with_armature(body, &rotors);
+            geared = with.unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+    geared
+}
+
+/// The mechanism with drives at a quarter of its joints.
+///
+/// # Panics
+/// Never: they fit.
+pub fn driven(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
+    let mut drives = vec![];
+    for (body, owner) in mechanism.bodies().iter().enumerate() {
+        if random.random_bool(0.25) {
+            drives.push(Drive {
+                name: format!("drive of {body}"),
+                body,
+                laws: vec![Law::default(); owner.joint().layout().speeds],
+            });
+        }
+    }
+    let driven = mechanism.clone().with_drives(drives);
+    driven.unwrap_or_else(|errors| panic!("{errors:?}"))
+}
+
+/// The mechanism with up to three constraints on points of any of its bodies, where its joints leave that many speeds free at `q`.
+pub fn coupled(random: &mut ChaCha8Rng, mechanism: Mechanism, q: &[f64]) -> Mechanism {
+    let count = mechanism.bodies().len();
+    let mut coupled = mechanism;
+    for _ in 0..3 {
+        let mut constraints = coupled.constraints().to_vec();
+        constraints.push(PointConstraint {
+            name: format!("constraint {}", constraints.len()),
+            body: random.random_range(0..count),
+            point: vector(random),
+            direction: vector(random),
+        });
+        if let Ok(more) = coupled.clone().with_constraints(constraints, q) {
+            coupled = more;
+        }
+    }
+    coupled
 }

@@ -1,8 +1,10 @@
 //! From what a scene file says to what is compiled, with all that cannot be compiled named at once.
 
-use super::model::{Body, Model};
-use crate::derived::{Derived, KernelKind, Structure};
-use hamel_scene::{BodyDescription, SceneDescription};
+use super::acting::Held;
+use super::model::{Body, Coupling, Elements, Model};
+use crate::derived::Derived;
+use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
+use hamel_scene::{BodyDescription, PointSpring, SceneDescription, WrenchDescription};
 use std::rc::Rc;
 
 /// Why a scene cannot be compiled: one line for each reason.
@@ -34,11 +36,15 @@ impl Model {
         scene: &SceneDescription,
         joints: impl Fn(&str) -> Option<Rc<Derived>>,
     ) -> Result<Self, Refused> {
-        let mut reasons = elsewhere(scene);
-        let bodies = scene.bodies.iter();
+        let mut reasons = vec![];
+        let mut elements = Elements {
+            springs: scene.springs.iter().map(spring).collect(),
+            wrenches: scene.wrenches.iter().map(wrench).collect(),
+            ..Elements::default()
+        };
+        let bodies = scene.bodies.iter().enumerate();
         let bodies: Vec<Option<Body>> = bodies
-            .map(|body| {
-                reasons.extend(uncovered(body));
+            .map(|(index, body)| {
                 let kind = &body.joint.kind.value;
                 let Some(joint) = joints(kind) else {
                     let name = &body.joint.name.value;
@@ -47,65 +53,65 @@ impl Model {
                     ));
                     return None;
                 };
-                compiled(body, joint)
-                    .map_err(|more| reasons.extend(more))
-                    .ok()
+                let compiled = compiled(body, joint).and_then(|compiled| {
+                    let held = Held {
+                        what: "spring",
+                        index,
+                        body,
+                        joint: &compiled.joint,
+                        parameters: &compiled.parameters,
+                    };
+                    let added = held.add_spring(&mut elements);
+                    added.map(|()| compiled).map_err(|reason| vec![reason])
+                });
+                compiled.map_err(|more| reasons.extend(more)).ok()
             })
             .collect();
-        match bodies.into_iter().collect::<Option<Vec<Body>>>() {
-            Some(bodies) if reasons.is_empty() => Ok(Self {
-                name: scene.name.clone(),
-                gravity: scene.gravity,
-                bodies,
-            }),
-            _ => Err(Refused {
-                scene: scene.name.clone(),
-                reasons,
-            }),
+        let refused = |reasons| Refused {
+            scene: scene.name.clone(),
+            reasons,
+        };
+        let Some(bodies) = bodies.into_iter().collect::<Option<Vec<Body>>>() else {
+            return Err(refused(reasons));
+        };
+        if !reasons.is_empty() {
+            return Err(refused(reasons));
         }
+        let mut model = Self {
+            name: scene.name.clone(),
+            gravity: scene.gravity,
+            bodies,
+            elements,
+            coupling: Coupling::default(),
+        };
+        model.couple(scene).map_err(refused)?;
+        Ok(model)
     }
 }
 
-/// What acts between bodies, which is not compiled.
-fn elsewhere(scene: &SceneDescription) -> Vec<String> {
-    let springs = scene.springs.len();
-    let mut reasons = vec![];
-    if springs > 0 {
-        reasons.push(format!(
-            "{springs} spring(s) between points: these are not compiled"
-        ));
+fn spring(spring: &PointSpring) -> BodySpring {
+    BodySpring {
+        name: String::new(),
+        bodies: [spring.from.body, spring.to.body],
+        points: [spring.from.point, spring.to.point],
+        stiffness: spring.stiffness,
+        damping: spring.damping,
+        length: spring.length,
     }
-    for wrench in &scene.wrenches {
-        let body = scene
-            .bodies
-            .get(wrench.body)
-            .map_or("?", |body| body.name.value.as_str());
-        reasons.push(format!(
-            "a wrench on body `{body}`: wrenches are not compiled"
-        ));
-    }
-    for constraint in &scene.constraints {
-        let name = &constraint.name.value;
-        reasons.push(format!(
-            "constraint `{name}`: constraints that couple joints are not compiled"
-        ));
-    }
-    reasons
 }
 
-/// What acts at a joint and is not compiled.
-fn uncovered(body: &BodyDescription) -> Vec<String> {
-    let name = &body.joint.name.value;
-    let mut reasons = vec![];
-    if body.forces.spring.is_some() {
-        reasons.push(format!("joint `{name}`: springs are not compiled"));
+fn wrench(wrench: &WrenchDescription) -> BodyWrench {
+    BodyWrench {
+        name: String::new(),
+        body: wrench.body,
+        point: wrench.point,
+        force: wrench.force,
+        moment: wrench.moment,
+        axes: match wrench.axes {
+            hamel_scene::WrenchAxes::World => WrenchAxes::World,
+            hamel_scene::WrenchAxes::Body => WrenchAxes::Body,
+        },
     }
-    if body.forces.motion.is_some() {
-        reasons.push(format!(
-            "joint `{name}`: prescribed motions are not compiled"
-        ));
-    }
-    reasons
 }
 
 fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<String>> {
@@ -131,12 +137,9 @@ fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<Stri
         .effort
         .as_ref()
         .map_or(vec![], |found| found.value.clone());
-    let turns = joint
-        .kernel(KernelKind::Gamma)
-        .is_some_and(|gamma| gamma.structure != Structure::Zero);
-    if turns && armature.iter().any(|&rotor| rotor != 0.0) {
+    if joint.shape.constraints > 0 && armature.iter().any(|&rotor| rotor != 0.0) {
         reasons.push(format!(
-            "joint `{name}`: armature at a joint whose velocities do not commute (`{}`) is not compiled",
+            "joint `{name}`: a nonholonomic joint such as `{}` can have no armature",
             body.joint.kind.value
         ));
     }
@@ -155,6 +158,7 @@ fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<Stri
             armature,
             damping,
             effort,
+            driven: forces.motion.is_some(),
         }),
     }
 }

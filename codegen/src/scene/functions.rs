@@ -18,15 +18,33 @@ pub enum Kind {
     MassMatrix,
     /// The efforts τ̄ that no acceleration takes at Q and v̄.
     BiasForces,
+    /// v̄ and p̄̇ from Q, p̄ and τ: (27), (35).
+    MomentumRates,
+    /// p̄ from Q and v̄.
+    Momenta,
+    /// v̄ from Q and p̄.
+    Speeds,
+    /// H from Q and p̄.
+    Hamiltonian,
+    /// Kinetic and potential energy from Q and v̄.
+    Energies,
+    /// Poses of all bodies from Q.
+    Poses,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 10] = [
         Self::ForwardDynamics,
         Self::InverseDynamics,
         Self::MassMatrix,
         Self::BiasForces,
+        Self::MomentumRates,
+        Self::Momenta,
+        Self::Speeds,
+        Self::Hamiltonian,
+        Self::Energies,
+        Self::Poses,
     ];
 
     /// Its name, in emitted code as well.
@@ -36,6 +54,12 @@ impl Kind {
             Self::InverseDynamics => "inverse_dynamics",
             Self::MassMatrix => "mass_matrix",
             Self::BiasForces => "bias_forces",
+            Self::MomentumRates => "momentum_rates",
+            Self::Momenta => "momenta",
+            Self::Speeds => "speeds_from_momenta",
+            Self::Hamiltonian => "hamiltonian",
+            Self::Energies => "energies",
+            Self::Poses => "poses",
         }
     }
 
@@ -48,6 +72,14 @@ impl Kind {
             }
             Self::MassMatrix => "Mass matrix M̄ by rows.",
             Self::BiasForces => "Efforts τ̄ = S̄ᵀτ that no acceleration takes at Q and v̄.",
+            Self::MomentumRates => "v̄ and p̄̇ from Q, p̄ and τ, (27), (35).",
+            Self::Momenta => "Momenta p̄ = M̄ v̄.",
+            Self::Speeds => "v̄ = M̄⁻¹ p̄.",
+            Self::Hamiltonian => "H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.",
+            Self::Energies => "Kinetic and potential energy, J.",
+            Self::Poses => {
+                "For each body its rotation to world axes by rows, and its origin in the world, m."
+            }
         }
     }
 
@@ -61,8 +93,16 @@ impl Kind {
                 Argument::Speeds,
                 Argument::Accelerations,
             ],
-            Self::MassMatrix => &[Argument::Configuration],
-            Self::BiasForces => &[Argument::Configuration, Argument::Speeds],
+            Self::MassMatrix | Self::Poses => &[Argument::Configuration],
+            Self::BiasForces | Self::Momenta | Self::Energies => {
+                &[Argument::Configuration, Argument::Speeds]
+            }
+            Self::MomentumRates => &[
+                Argument::Configuration,
+                Argument::Momenta,
+                Argument::Efforts,
+            ],
+            Self::Speeds | Self::Hamiltonian => &[Argument::Configuration, Argument::Momenta],
         }
     }
 
@@ -70,17 +110,17 @@ impl Kind {
     fn ways(self, model: &Model) -> Vec<Way> {
         match self {
             Self::ForwardDynamics => {
-                let mut ways: Vec<Way> = vec![
-                    ("articulated bodies", |tree| {
-                        tree.articulated_accelerations(Bias::Within)
-                    }),
-                    ("articulated bodies after inverse dynamics", |tree| {
+                let mut ways = solving(
+                    model,
+                    [
+                        |tree| tree.articulated_accelerations(Bias::Within),
+                        |tree| tree.composite_accelerations(),
+                        |tree| tree.coupled_accelerations(),
+                    ],
+                );
+                if model.coupling.constraints.is_empty() {
+                    ways.push(("articulated bodies after inverse dynamics", |tree| {
                         tree.articulated_accelerations(Bias::Before)
-                    }),
-                ];
-                if worth_factorising(model) {
-                    ways.push(("composite bodies, factorised along the tree", |tree| {
-                        tree.composite_accelerations()
                     }));
                 }
                 ways
@@ -88,14 +128,67 @@ impl Kind {
             Self::InverseDynamics => vec![("Newton–Euler", |tree| {
                 tree.needed_efforts(Some(Argument::Accelerations))
             })],
-            Self::MassMatrix => vec![("composite bodies", |tree| tree.mass_matrix().concat())],
+            Self::MassMatrix => vec![(COMPOSITE, |tree| tree.mass_matrix().concat())],
             Self::BiasForces => vec![("Newton–Euler", |tree| tree.needed_efforts(None))],
+            Self::MomentumRates => solving(
+                model,
+                [
+                    |tree| tree.port_hamiltonian(Tree::articulated_speeds),
+                    |tree| tree.port_hamiltonian(Tree::composite_speeds),
+                    |tree| tree.port_hamiltonian(Tree::coupled_speeds),
+                ],
+            ),
+            Self::Momenta => vec![("momenta of what each joint carries", |tree| tree.momenta())],
+            Self::Speeds => solving(
+                model,
+                [
+                    |tree| tree.articulated_speeds(),
+                    |tree| tree.composite_speeds(),
+                    |tree| tree.coupled_speeds(),
+                ],
+            ),
+            Self::Hamiltonian => solving(
+                model,
+                [
+                    |tree| vec![tree.hamiltonian(Tree::articulated_speeds)],
+                    |tree| vec![tree.hamiltonian(Tree::composite_speeds)],
+                    |tree| vec![tree.hamiltonian(Tree::coupled_speeds)],
+                ],
+            ),
+            Self::Energies => vec![("body by body", |tree| tree.energies())],
+            Self::Poses => vec![("body by body", |tree| tree.poses())],
+        }
+    }
+
+    /// The columns of its result: 1 for a vector.
+    fn columns(self, speeds: usize) -> usize {
+        match self {
+            Self::MassMatrix | Self::MomentumRates => speeds.max(1),
+            Self::Poses => 12,
+            _ => 1,
         }
     }
 }
 
+/// Name of the recursion that eliminates joint by joint.
+const ARTICULATED: &str = "articulated bodies";
+/// Name of the recursion that finds M̄.
+const COMPOSITE: &str = "composite bodies";
+
+/// The ways to solve with M̄: joint by joint; of M̄ factorised, where it may be the shorter; and where constraints couple joints.
+fn solving(model: &Model, [articulated, factorised, coupled]: [Run; 3]) -> Vec<Way> {
+    if !model.coupling.constraints.is_empty() {
+        return vec![("independent speeds of coupled joints", coupled)];
+    }
+    let mut ways = vec![(ARTICULATED, articulated)];
+    if worth_factorising(model) {
+        ways.push(("composite bodies, factorised along the tree", factorised));
+    }
+    ways
+}
+
 /// Operations of articulated bodies for one speed: about the most that was counted.
-const ARTICULATED: usize = 400;
+const MOST: usize = 400;
 
 /// Whether factorising M̄ along the tree can take fewer operations than articulated bodies: a speed with n before it on its way to the
 /// root takes n².
@@ -108,7 +201,7 @@ fn worth_factorising(model: &Model) -> bool {
         before.push(depth + speeds);
         operations += (depth..depth + speeds).map(|n| n * n).sum::<usize>();
     }
-    operations < ARTICULATED * model.sizes()[2]
+    operations < MOST * model.sizes()[2]
 }
 
 /// Operations of a function from which on like bodies are looped over, if that halves what is written.
@@ -152,7 +245,9 @@ pub enum Loops {
 }
 
 /// A recursion with its name.
-type Way = (&'static str, fn(&Tree<'_>) -> Vec<Sym>);
+type Way = (&'static str, Run);
+/// What computes the results.
+type Run = fn(&Tree<'_>) -> Vec<Sym>;
 
 /// A function as it was chosen.
 #[derive(Clone, Debug)]
@@ -219,13 +314,7 @@ pub fn compile_with(model: &Model, links: &[Link], kind: Kind, loops: Loops) -> 
     }
 }
 
-fn write(
-    model: &Model,
-    links: &[Link],
-    kind: Kind,
-    loops: Loops,
-    way: fn(&Tree<'_>) -> Vec<Sym>,
-) -> Function {
+fn write(model: &Model, links: &[Link], kind: Kind, loops: Loops, way: Run) -> Function {
     let build = || -> Vec<Value> {
         let tree = Tree::new(model, links.to_vec());
         way(&tree).into_iter().map(Sym::value).collect()
@@ -266,10 +355,7 @@ fn function(
         arguments: arguments
             .map(|&argument| (argument, size(argument)))
             .collect(),
-        columns: match kind {
-            Kind::MassMatrix => speeds.max(1),
-            _ => 1,
-        },
+        columns: kind.columns(speeds),
         graph,
         outputs,
         plan,

@@ -1,7 +1,7 @@
 //! The kernels of one joint of a scene, on the graph.
 
-use super::graph::{Sym, atan2, call, sin_cos};
-use super::spatial::{Mat3, Step, Twist, Vec3, simplified};
+use super::graph::{Sym, atan2, call, primitive, sin_cos};
+use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
 use crate::derived::{Derived, KernelKind};
 use crate::emit::formula::{Binding, Node, Program};
 use crate::expr::{Function, Symbol};
@@ -50,6 +50,12 @@ impl<'a> Joint<'a> {
         simplified(steps)
     }
 
+    /// The rotation of H(Q).
+    pub fn rotation(&self) -> Mat3 {
+        let entries = self.entries(KernelKind::Pose);
+        Mat3::from_fn(|i, j| entries.get(3 * i + j).copied().unwrap_or(Sym::Number(0.0)))
+    }
+
     /// The columns of X^c.
     pub fn freedoms(&self) -> Vec<Twist> {
         let entries = self.entries(KernelKind::TwistMapChild);
@@ -74,36 +80,113 @@ impl<'a> Joint<'a> {
         columns(&entries, 1).pop().unwrap_or_else(Twist::zero)
     }
 
+    /// The columns of X.
+    pub fn freedoms_in_parent(&self) -> Vec<Twist> {
+        let entries = self.entries(KernelKind::TwistMap);
+        columns(&entries, self.derived.shape.freedoms)
+    }
+
+    /// S₀⁻¹ by columns.
+    pub fn velocity_map_inverse(&self) -> Vec<Vec<Sym>> {
+        let freedoms = self.derived.shape.freedoms;
+        let entries = self.entries(KernelKind::VelocityMapInverse);
+        let column = |j: usize| entries.iter().skip(j).step_by(freedoms).copied().collect();
+        (0..freedoms).map(column).collect()
+    }
+
+    /// Φ(Q, ϕ).
+    pub fn retract(&self, phi: &[Sym]) -> Vec<Sym> {
+        let given = [(self.derived.arguments.local.as_slice(), phi)];
+        self.entries_with(KernelKind::Retract, &given)
+    }
+
+    /// ϕ with Φ(Q, ϕ) = Q′.
+    pub fn local(&self, target: &[Sym]) -> Vec<Sym> {
+        let given = [(self.derived.arguments.target.as_slice(), target)];
+        self.entries_with(KernelKind::Local, &given)
+    }
+
+    /// ϕ̇ at ϕ, from S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ).
+    pub fn retract_differential_inverse(&self, phi: &[Sym], rate: &[Sym]) -> Vec<Sym> {
+        let arguments = &self.derived.arguments;
+        let given = [
+            (arguments.local.as_slice(), phi),
+            (arguments.velocity.as_slice(), rate),
+        ];
+        self.entries_with(KernelKind::RetractDifferentialInverse, &given)
+    }
+
+    /// Σ_k γ_k v_k by rows, at v.
+    pub fn gamma(&self, velocity: &[Sym]) -> Vec<Vec<Sym>> {
+        let given = [(self.derived.arguments.velocity.as_slice(), velocity)];
+        let entries = self.entries_with(KernelKind::Gamma, &given);
+        let rows = entries.chunks(velocity.len().max(1));
+        rows.map(<[Sym]>::to_vec).collect()
+    }
+
+    /// `Ẋ̄^cᵀ h` at v̄.
+    pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
+        let parts = momentum.moment.iter().chain(&momentum.force);
+        let momentum: Vec<Sym> = parts.copied().collect();
+        let given = [(
+            self.derived.arguments.wrench.as_slice(),
+            momentum.as_slice(),
+        )];
+        self.entries_with(KernelKind::BiasMomentum, &given)
+    }
+
+    /// The nearest point of the manifold.
+    pub fn project(&self) -> Vec<Sym> {
+        self.entries(KernelKind::Project)
+    }
+
     /// The entries of a kernel's results, row by row; none where the joint has no such kernel.
     fn entries(&self, kind: KernelKind) -> Vec<Sym> {
+        self.entries_with(kind, &[])
+    }
+
+    /// The same with values for more symbols.
+    fn entries_with(&self, kind: KernelKind, given: &[(&[Symbol], &[Sym])]) -> Vec<Sym> {
         let Some(kernel) = self.derived.kernel(kind) else {
             return vec![];
         };
-        let program = self.derived.program(kernel);
-        self.run(&program)
-    }
-
-    fn run(&self, program: &Program) -> Vec<Sym> {
         let mut values = self.values.clone();
-        for binding in &program.bindings {
-            match binding {
-                Binding::Value { name, value } => {
-                    let value = evaluate(value, &values);
-                    values.insert(name.clone(), value);
-                }
-                Binding::SinCos { sin, cos, angle } => {
-                    let (sine, cosine) = sin_cos(evaluate(angle, &values));
-                    let named = [(sin, sine), (cos, cosine)];
-                    let named = named.into_iter();
-                    values.extend(named.filter_map(|(name, value)| Some((name.clone()?, value))));
-                }
-                // Finite maps alone call the runtime, and none is evaluated here.
-                Binding::Call { .. } => {}
+        for (symbols, given) in given {
+            values.extend(symbols.iter().cloned().zip(given.iter().copied()));
+        }
+        run(&self.derived.program(kernel), values)
+    }
+}
+
+fn run(program: &Program, mut values: BTreeMap<Symbol, Sym>) -> Vec<Sym> {
+    for binding in &program.bindings {
+        match binding {
+            Binding::Value { name, value } => {
+                let value = evaluate(value, &values);
+                values.insert(name.clone(), value);
+            }
+            Binding::SinCos { sin, cos, angle } => {
+                let (sine, cosine) = sin_cos(evaluate(angle, &values));
+                let named = [(sin, sine), (cos, cosine)];
+                let named = named.into_iter();
+                values.extend(named.filter_map(|(name, value)| Some((name.clone()?, value))));
+            }
+            Binding::Call {
+                primitive: function,
+                argument,
+                outputs,
+            } => {
+                let arguments: Vec<Sym> = argument
+                    .iter()
+                    .map(|part| evaluate(part, &values))
+                    .collect();
+                let results = primitive(*function, &arguments);
+                values.extend(outputs.iter().cloned().zip(results));
             }
         }
-        let outputs = program.outputs.iter();
-        outputs.map(|output| evaluate(output, &values)).collect()
     }
+    let outputs = program.outputs.iter();
+    outputs.map(|output| evaluate(output, &values)).collect()
 }
 
 /// The columns of a matrix of six rows, given row by row.

@@ -21,8 +21,10 @@
 //!
 //! [`Build`] is for build scripts; `hamel compile` does the same from the command line.
 
+mod acting;
 pub mod alike;
 mod build;
+mod couple;
 mod describe;
 pub mod emit;
 pub mod equations;

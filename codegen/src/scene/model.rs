@@ -1,6 +1,7 @@
 //! What is compiled: a tree of bodies with numbers for all that does not change.
 
 use crate::derived::Derived;
+use hamel::elements::{BodySpring, BodyWrench, JointSpring, PointConstraint, RotationSpring};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -15,6 +16,32 @@ pub struct Model {
     pub gravity: Vector3<f64>,
     /// The bodies, each after its parent.
     pub bodies: Vec<Body>,
+    /// What acts beside gravity and what the bodies' own joints have.
+    pub elements: Elements,
+    /// What couples joints.
+    pub coupling: Coupling,
+}
+
+/// Springs and wrenches, as the runtime has them.
+#[derive(Clone, Debug, Default)]
+pub struct Elements {
+    /// Springs at joints in local coordinates.
+    pub joint_springs: Vec<JointSpring>,
+    /// Springs at joints that are smooth at every attitude.
+    pub rotation_springs: Vec<RotationSpring>,
+    /// Springs and dampers between points.
+    pub springs: Vec<BodySpring>,
+    /// Wrenches from outside.
+    pub wrenches: Vec<BodyWrench>,
+}
+
+/// Constraints that couple joints.
+#[derive(Clone, Debug, Default)]
+pub struct Coupling {
+    /// Forbidden velocities of points.
+    pub constraints: Vec<PointConstraint>,
+    /// The speeds that depend on the others, one a constraint.
+    pub dependent: Vec<usize>,
 }
 
 /// One body and the joint that it hangs on.
@@ -42,6 +69,8 @@ pub struct Body {
     pub damping: Vec<f64>,
     /// Constant efforts, one a freedom.
     pub effort: Vec<f64>,
+    /// Whether the joint's motion is prescribed: its first entries of τ are its accelerations, and its entries of p̄ its speeds.
+    pub driven: bool,
 }
 
 /// Where a body's share lies in Q, in v and τ, and in v̄.

@@ -11,6 +11,15 @@ pub use tree::{Compiled, CompiledError};
 /// v̄̇ from Q, v̄ and τ, into the last argument; sizes are those of [`Equations`].
 pub type ForwardDynamics = fn(&[f64], &[f64], &[f64], &mut [f64]);
 
+/// p̄ from Q and v̄, or v̄ from Q and p̄, into the last argument.
+pub type MomentumMap = fn(&[f64], &[f64], &mut [f64]);
+
+/// v̄ and p̄̇ from Q, p̄ and τ, into the last two arguments.
+pub type MomentumRates = fn(&[f64], &[f64], &[f64], &mut [f64], &mut [f64]);
+
+/// H from Q and p̄.
+pub type Hamiltonian = fn(&[f64], &[f64]) -> f64;
+
 /// What an emitted module holds: functions of one scene. The constant `EQUATIONS` of that module.
 #[derive(Clone, Copy, Debug)]
 pub struct Equations {
@@ -24,4 +33,12 @@ pub struct Equations {
     pub speeds: usize,
     /// (24), (34), where the module has it.
     pub forward_dynamics: Option<ForwardDynamics>,
+    /// p̄ = M̄ v̄, where the module has it.
+    pub momenta: Option<MomentumMap>,
+    /// v̄ = M̄⁻¹ p̄, where the module has it.
+    pub speeds_from_momenta: Option<MomentumMap>,
+    /// (27), (35), where the module has it.
+    pub momentum_rates: Option<MomentumRates>,
+    /// H, where the module has it.
+    pub hamiltonian: Option<Hamiltonian>,
 }

@@ -24,10 +24,10 @@ pub enum CompiledError {
         /// Of the module.
         found: usize,
     },
-    /// Accelerations at home differ.
+    /// Rates at home differ.
     #[error(
-        "the equations compiled for `{scene}` are those of another mechanism: at home, speed `{speed}` of joint `{joint}` is \
-         accelerated by {found:e}, not {expected:e}; compile its scene again"
+        "the equations compiled for `{scene}` are those of another mechanism: at home, `{speed}` of joint `{joint}` has the rate \
+         {found:e}, not {expected:e}; compile its scene again"
     )]
     Other {
         /// The scene that was compiled.
@@ -46,7 +46,7 @@ pub enum CompiledError {
     Dynamics(#[from] DynamicsError),
 }
 
-/// How far accelerations at home may differ, relative to the largest: what conditioning leaves of doubles in the worst of tested robots
+/// How far rates at home may differ, relative to the largest: what conditioning leaves of doubles in the worst of tested robots
 /// is 1e-8; another mass or length shows in the leading digits.
 const AGREEMENT: f64 = 1e-6;
 
@@ -55,6 +55,8 @@ const AGREEMENT: f64 = 1e-6;
 pub struct Compiled {
     equations: &'static Equations,
     tree: Recursive,
+    /// τ of the inputs, and none.
+    inputs: [vec::Vec<f64>; 2],
 }
 
 impl Compiled {
@@ -86,29 +88,43 @@ impl Compiled {
                 });
             }
         }
-        let compiled = Self {
+        let mut compiled = Self {
             equations,
             tree: Recursive::new(mechanism),
+            inputs: core::array::from_fn(|_| vec![0.0; equations.freedoms]),
         };
-        compiled.compared()
+        compiled.compare()?;
+        Ok(compiled)
     }
 
-    /// This, if it accelerates as the tree does at home, with speeds and efforts that differ from each other.
-    fn compared(mut self) -> Result<Self, CompiledError> {
-        let Some(forward) = self.equations.forward_dynamics else {
-            return Ok(self);
-        };
-        let mechanism = Arc::clone(self.tree.mechanism());
-        let q = mechanism.home();
+    /// Holds the rates of both forms at home against the tree's, with speeds, momenta and efforts that differ from each other.
+    fn compare(&mut self) -> Result<(), CompiledError> {
+        let q = self.tree.mechanism().home();
         let numbers = |count: usize| (0..count).map(|i| 0.1 + 0.01 * i as f64).collect();
         let mut speeds: vec::Vec<f64> = numbers(self.equations.speeds);
         let efforts: vec::Vec<f64> = numbers(self.equations.freedoms);
         self.tree.complete_speeds(&q, &mut speeds)?;
         let mut expected = vec![0.0; speeds.len()];
         let mut found = expected.clone();
-        self.tree
-            .accelerations(&q, &speeds, &efforts, &mut expected)?;
-        forward(&q, &speeds, &efforts, &mut found);
+        if let Some(forward) = self.equations.forward_dynamics {
+            self.tree
+                .accelerations(&q, &speeds, &efforts, &mut expected)?;
+            forward(&q, &speeds, &efforts, &mut found);
+            self.close(&found, &expected)?;
+        }
+        if let Some(momentum_rates) = self.equations.momentum_rates {
+            let mut momenta = vec![0.0; speeds.len()];
+            self.tree.momenta(&q, &speeds, &mut momenta)?;
+            let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&efforts);
+            self.tree
+                .momentum_rates(&q, &momenta, &mut given, &mut speeds, &mut expected)?;
+            momentum_rates(&q, &momenta, &efforts, &mut speeds, &mut found);
+            self.close(&found, &expected)?;
+        }
+        Ok(())
+    }
+
+    fn close(&self, found: &[f64], expected: &[f64]) -> Result<(), CompiledError> {
         let largest = expected
             .iter()
             .fold(0.0_f64, |most, rate| most.max(rate.abs()));
@@ -117,8 +133,8 @@ impl Compiled {
             // So that NaN differs.
             !agrees
         };
-        match found.iter().zip(&expected).position(differs) {
-            None => Ok(self),
+        match found.iter().zip(expected).position(differs) {
+            None => Ok(()),
             Some(place) => Err(self.other(place, expected[place], found[place])),
         }
     }
@@ -139,6 +155,36 @@ impl Compiled {
             speed,
             expected,
             found,
+        }
+    }
+
+    fn check_state(&self, q: &[f64], speeds: [(&'static str, usize); 2]) -> Result<(), StateError> {
+        let Equations {
+            configuration,
+            speeds: count,
+            ..
+        } = *self.equations;
+        check_size(WHOLE, "configuration", configuration, q.len())?;
+        let mut speeds = speeds.into_iter();
+        speeds.try_for_each(|(quantity, found)| check_size(WHOLE, quantity, count, found))
+    }
+
+    /// `p̄̇ += S̄ᵀτ`: they are affine in τ, which depends on the v̄ that come with them.
+    fn add_inputs(&self, q: &[f64], rates: &mut [f64]) {
+        for (index, body) in self.tree.mechanism().bodies().iter().enumerate() {
+            let ranges = body.ranges();
+            let mut reduced = [0.0; 6];
+            let reduced = &mut reduced[..ranges.speeds.len()];
+            let tau = &self.inputs[0][ranges.freedoms.clone()];
+            if self.tree.mechanism().is_driven(index) {
+                rates[ranges.speeds.clone()].copy_from_slice(&tau[..ranges.speeds.len()]);
+                continue;
+            }
+            body.joint()
+                .reduce_efforts(body.configuration(q), tau, reduced);
+            for (rate, effort) in rates[ranges.speeds.clone()].iter_mut().zip(&*reduced) {
+                *rate += effort;
+            }
         }
     }
 
@@ -196,7 +242,12 @@ impl Dynamics for Compiled {
         speeds: &[f64],
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.tree.momenta(q, speeds, momenta)
+        let Some(map) = self.equations.momenta else {
+            return self.tree.momenta(q, speeds, momenta);
+        };
+        self.check_state(q, [("speeds", speeds.len()), ("momenta", momenta.len())])?;
+        map(q, speeds, momenta);
+        Ok(())
     }
 
     fn speeds(
@@ -205,6 +256,14 @@ impl Dynamics for Compiled {
         momenta: &[f64],
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
+        let Some(map) = self.equations.speeds_from_momenta else {
+            return self.tree.speeds(q, momenta, speeds);
+        };
+        self.check_state(q, [("momenta", momenta.len()), ("speeds", speeds.len())])?;
+        map(q, momenta, speeds);
+        if speeds.iter().all(|speed| speed.is_finite()) {
+            return Ok(());
+        }
         self.tree.speeds(q, momenta, speeds)
     }
 
@@ -216,10 +275,35 @@ impl Dynamics for Compiled {
         speeds: &mut [f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.tree.momentum_rates(q, momenta, efforts, speeds, rates)
+        let Some(momentum_rates) = self.equations.momentum_rates else {
+            return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
+        };
+        self.check_state(q, [("momenta", momenta.len()), ("speeds", speeds.len())])?;
+        self.check_state(q, [("rates", rates.len()), ("momenta", momenta.len())])?;
+        let [inputs, none] = &mut self.inputs;
+        momentum_rates(q, momenta, none, speeds, rates);
+        if !speeds.iter().chain(&*rates).all(|rate| rate.is_finite()) {
+            return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
+        }
+        inputs.fill(0.0);
+        efforts(speeds, inputs);
+        match self.tree.mechanism().constraints() {
+            [] => self.add_inputs(q, rates),
+            // What inputs make of dependent speeds falls to others: the module knows how.
+            _ => momentum_rates(q, momenta, inputs, speeds, rates),
+        }
+        Ok(())
     }
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
-        self.tree.hamiltonian(q, momenta)
+        let Some(hamiltonian) = self.equations.hamiltonian else {
+            return self.tree.hamiltonian(q, momenta);
+        };
+        self.check_state(q, [("momenta", momenta.len()); 2])?;
+        let energy = hamiltonian(q, momenta);
+        match energy.is_finite() {
+            true => Ok(energy),
+            false => self.tree.hamiltonian(q, momenta),
+        }
     }
 }

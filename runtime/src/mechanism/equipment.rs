@@ -146,7 +146,7 @@ impl Mechanism {
             let mut ranges = drives.map(|drive| &self.bodies[drive.body].ranges.speeds);
             ranges.any(|range| range.contains(&speed))
         };
-        self.equipment.dependent = dependent(matrix, taken).map_err(|rows| {
+        self.equipment.dependent = dependent_columns(matrix, taken).map_err(|rows| {
             let refused = rows.into_iter().map(|(row, ratio)| {
                 let constraint = self.equipment.constraints[row].name.clone();
                 MechanismError::DependentConstraint {
@@ -232,9 +232,12 @@ fn share(pivot: f64, largest: f64) -> f64 {
     }
 }
 
-/// One column for each row of `matrix`, by elimination with pivoting among the columns that are not `taken`, in the order of the rows; else all
-/// rows that depend on the others, each with the ratio of its largest remainder to the largest entry of `matrix`.
-fn dependent(
+/// Which speeds constraints make depend on the others: one column of `matrix` for each of its rows, by elimination with pivoting among the columns
+/// that are not `taken`, in the order of the rows. Of the columns whose pivots are good enough the last is chosen.
+///
+/// # Errors
+/// All rows that depend on the others, each with the ratio of its largest remainder to the largest entry of `matrix`.
+pub fn dependent_columns(
     mut matrix: DMatrix<f64>,
     taken: impl Fn(usize) -> bool,
 ) -> Result<Vec<usize>, Vec<(usize, f64)>> {

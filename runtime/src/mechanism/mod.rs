@@ -16,6 +16,7 @@ mod reach;
 pub use body::{Body, BodySpec, Ranges};
 pub use check::CONFIGURATION_TOLERANCE;
 pub(crate) use check::{WHOLE, check_size};
+pub use equipment::dependent_columns;
 pub use error::{Loci, MechanismError, StateError};
 pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;

@@ -1,31 +1,49 @@
 //! A compiled module as it is committed (`tests/src/emitted`): it is what the compiler writes, it computes what the tree does in every
 //! scalar, and integrators take it.
 
-use hamel::compiled::{Compiled, CompiledError};
+use hamel::compiled::{Compiled, CompiledError, Equations};
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel::integrate::{Form, Integration, Method, Options, State};
 use hamel::scalar::F64x4;
+use hamel_codegen::scene::functions::Kind;
 use hamel_codegen::scene::scene;
 use hamel_scene::Scene;
-use hamel_tests::emitted::{ball_chain, plate_cart_arm as module};
+use hamel_tests::emitted::{ball_chain, geodesic_springs, plate_cart_arm as module, snakeboard};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Springs by logarithms of rotations.
+const SPRINGS: &str = "data/scenes/geodesic_springs.toml";
+
 fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// What the compiler writes for a scene of this folder, committed under its name.
-fn is_what_is_written(scene_file: &str, name: &str) {
-    let build = scene(folder().join(scene_file)).library(hamel_joints::specs());
-    let label = format!("{name}.toml");
-    let module = build
-        .module(&label)
-        .unwrap_or_else(|error| panic!("{error}"));
-    let path = folder().join(format!("src/emitted/{name}.rs"));
+#[test]
+fn the_committed_modules_are_what_is_written() {
+    is_written("../scenes/plate_cart_arm.toml", Kind::ALL.to_vec());
+    let forms = vec![
+        Kind::ForwardDynamics,
+        Kind::MomentumRates,
+        Kind::Hamiltonian,
+    ];
+    is_written(SPRINGS, forms.clone());
+    let dynamics = vec![Kind::ForwardDynamics, Kind::InverseDynamics];
+    is_written("data/scenes/ball_chain.toml", dynamics);
+    is_written("../scenes/snakeboard.toml", forms);
+}
+
+fn is_written(file: &str, functions: Vec<Kind>) {
+    let file = folder().join(file);
+    let build = scene(&file).library(hamel_joints::specs());
+    let label = file.file_name().expect("it has one").to_string_lossy();
+    let module = build.functions(functions).module(&label);
+    let module = module.unwrap_or_else(|error| panic!("{error}"));
+    let path = folder().join("src/emitted").join(&*label);
+    let path = path.with_extension("rs");
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         std::fs::write(&path, &module.text).expect("the folder is there");
     }
@@ -39,13 +57,14 @@ fn is_what_is_written(scene_file: &str, name: &str) {
 #[test]
 fn the_committed_modules_are_what_is_written() {
     is_what_is_written("../scenes/plate_cart_arm.toml", "plate_cart_arm");
-    is_what_is_written("data/ball_chain.toml", "ball_chain");
+    is_what_is_written("data/scenes/ball_chain.toml", "ball_chain");
 }
 
 /// Loops over like links, in compiled Rust.
 #[test]
 fn loops_give_the_values_of_the_tree() {
-    let text = std::fs::read_to_string(folder().join("data/ball_chain.toml")).expect("a file");
+    let text =
+        std::fs::read_to_string(folder().join("data/scenes/ball_chain.toml")).expect("a file");
     let scene = Scene::parse(&text, "ball_chain", &hamel_joints::registry());
     let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
     let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
@@ -113,29 +132,37 @@ fn every_scalar_gives_the_accelerations_of_the_tree() {
 
 #[test]
 fn integrators_take_compiled_equations() {
-    let scene = scenes::load("plate_cart_arm");
+    let springs = Scene::load(folder().join(SPRINGS), &hamel_joints::registry());
+    let springs = springs.unwrap_or_else(|errors| panic!("{errors}"));
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        moves_as_the_tree(&scenes::load("plate_cart_arm"), &module::EQUATIONS, form);
+        moves_as_the_tree(&scenes::load("snakeboard"), &snakeboard::EQUATIONS, form);
+        moves_as_the_tree(&springs, &geodesic_springs::EQUATIONS, form);
+    }
+}
+
+fn moves_as_the_tree(scene: &Scene, equations: &'static Equations, form: Form) {
     let initial = State {
         time: 0.0,
         configuration: scene.configuration.clone(),
         speeds: scene.speeds.clone(),
     };
     let options = Options {
-        form: Form::Lagrangian,
+        form,
         method: Method::dormand_prince(1e-10),
-        t_end: 2.0,
+        t_end: 1.0,
         samples: vec![],
     };
     let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
     let expected = Integration::new(&mut tree, &initial, &options)
         .run()
         .expect("it moves");
-    let mut compiled =
-        Compiled::new(Arc::clone(&scene.mechanism), &module::EQUATIONS).expect("its scene");
+    let mut compiled = Compiled::new(Arc::clone(&scene.mechanism), equations).expect("its scene");
     let found = Integration::new(&mut compiled, &initial, &options)
         .run()
         .expect("it moves");
     let [found, expected] = [found, expected].map(|solution| solution.state.configuration);
-    // Both are within the tolerance of the motion, times what two seconds make of it.
+    // Both are within the tolerance of the motion, times what a second makes of it.
     assert!(difference(&found, &expected) < 1e-8);
 }
 

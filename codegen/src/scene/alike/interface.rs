@@ -1,6 +1,7 @@
 //! What a block reads and leaves, and its structure: blocks of equal structure differ in numbers and places alone.
 
 use super::Blocks;
+use crate::derived::Primitive;
 use crate::expr::Function;
 use crate::scene::graph::{Argument, Graph, Operation, Value};
 use rustc_hash::FxHashMap;
@@ -26,6 +27,8 @@ enum Token {
     Quotient,
     Opposite,
     Call(Function),
+    Several(Primitive),
+    Part(u32),
     /// The operand of a function is negated.
     Negative,
     /// A node of the block.
@@ -121,21 +124,30 @@ impl Reader<'_> {
             Operation::Quotient(..) => Token::Quotient,
             Operation::Opposite(_) => Token::Opposite,
             Operation::Call(function, ..) => Token::Call(*function),
+            Operation::Several(function, _) => Token::Several(*function),
+            Operation::Part(_, result) => Token::Part(*result),
             Operation::Input(..) | Operation::Constant(_) => return,
         };
         self.interface.structure.push(token);
-        if let Operation::Call(_, first, second) = operation {
-            for value in std::iter::once(first).chain(second) {
-                if value.negative {
-                    self.interface.structure.push(Token::Negative);
-                }
-                self.operand(value.node);
+        match operation {
+            Operation::Call(_, first, second) => {
+                std::iter::once(first)
+                    .chain(second)
+                    .for_each(|&value| self.signed(value));
             }
-            return;
+            Operation::Several(_, values) => values.iter().for_each(|&value| self.signed(value)),
+            plain => plain
+                .operands()
+                .into_iter()
+                .for_each(|node| self.operand(node)),
         }
-        for operand in operation.operands() {
-            self.operand(operand);
+    }
+
+    fn signed(&mut self, value: Value) {
+        if value.negative {
+            self.interface.structure.push(Token::Negative);
         }
+        self.operand(value.node);
     }
 
     fn operand(&mut self, node: u32) {

@@ -2,15 +2,14 @@
 
 use super::lines::{Formula, Line, Loop, Place};
 use super::{Function, Lowered};
-use crate::expr::Function as Known;
 use crate::scene::alike::Read;
 use crate::scene::graph::Argument;
+use crate::scene::graph::known::{call, primitive};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
 impl Function {
-    /// The results; `argument` holds the scalars of each argument. What is missing there is NaN, and so is a function that the standard
-    /// library does not have.
+    /// The results; `argument` holds the scalars of each argument. What is missing there is NaN.
     pub fn evaluate(&self, argument: impl Fn(Argument) -> Vec<f64>) -> Vec<f64> {
         let lowered = Lowered::new(self, &[], &[]);
         let given = |&(name, _): &(Argument, usize)| (Read::Argument(name), argument(name));
@@ -22,6 +21,7 @@ impl Function {
                 .collect(),
             results: vec![f64::NAN; self.outputs.len()],
             names: FxHashMap::default(),
+            lists: FxHashMap::default(),
             turn: Turn::default(),
         };
         lowered.lines.iter().for_each(|line| state.line(line));
@@ -47,6 +47,8 @@ struct State {
     rows: BTreeMap<usize, Vec<Vec<f64>>>,
     results: Vec<f64>,
     names: FxHashMap<String, f64>,
+    /// Results of functions that have several.
+    lists: FxHashMap<String, Vec<f64>>,
     turn: Turn,
 }
 
@@ -54,6 +56,11 @@ impl State {
     fn line(&mut self, line: &Line) {
         match line {
             Line::Heading(_) => {}
+            Line::Value(name, Formula::Several(function, arguments)) => {
+                let arguments: Vec<f64> = arguments.iter().map(|one| self.value(one)).collect();
+                let results = primitive(*function, &arguments);
+                self.lists.insert(name.clone(), results);
+            }
             Line::Value(name, formula) => {
                 let value = self.value(formula);
                 self.names.insert(name.clone(), value);
@@ -153,21 +160,20 @@ impl State {
             Formula::Quotient(a, b) => self.value(a) / self.value(b),
             Formula::Negative(inner) => -self.value(inner),
             Formula::Call(function, arguments) => {
-                let arguments: Vec<f64> = arguments.iter().map(|one| self.value(one)).collect();
-                call(*function, &arguments)
+                let mut arguments = arguments.iter().map(|one| self.value(one));
+                let first = arguments.next().unwrap_or(f64::NAN);
+                call(*function, first, arguments.next())
             }
+            Formula::Part(of, result) => {
+                let Formula::Name(name) = &**of else {
+                    return f64::NAN;
+                };
+                let results = self.lists.get(name);
+                let result = results.and_then(|results| results.get(*result));
+                result.copied().unwrap_or(f64::NAN)
+            }
+            // Has a line of its own.
+            Formula::Several(..) => f64::NAN,
         }
-    }
-}
-
-fn call(function: Known, arguments: &[f64]) -> f64 {
-    match (function, arguments) {
-        (Known::Sin, [a]) => a.sin(),
-        (Known::Cos, [a]) => a.cos(),
-        (Known::Exp, [a]) => a.exp(),
-        (Known::Ln, [a]) => a.ln(),
-        (Known::Sqrt, [a]) => a.sqrt(),
-        (Known::Atan2, [y, x]) => y.atan2(*x),
-        _ => f64::NAN,
     }
 }

@@ -1,5 +1,6 @@
 //! What a function consists of once it is lowered: formulas, lines, loops.
 
+use crate::derived::Primitive;
 use crate::expr::Function as Known;
 use crate::scene::alike::Read;
 use crate::scene::graph::Operations;
@@ -68,6 +69,10 @@ pub enum Formula {
     Negative(Box<Formula>),
     /// A function.
     Call(Known, Vec<Formula>),
+    /// A function of the runtime with several results.
+    Several(Primitive, Vec<Formula>),
+    /// One of the results that a name stands for.
+    Part(Box<Formula>, usize),
 }
 
 impl Formula {
@@ -103,6 +108,7 @@ impl Formula {
                 | Self::Source(..)
                 | Self::Row(..)
                 | Self::Name(_)
+                | Self::Part(..)
         )
     }
 }

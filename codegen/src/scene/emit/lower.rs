@@ -176,6 +176,15 @@ impl Lowering<'_> {
                     .collect();
                 (Formula::Call(*function, arguments), LONGEST)
             }
+            // Always a line of its own.
+            Operation::Several(function, arguments) => {
+                let arguments = arguments.iter().map(|&value| self.read(value)).collect();
+                (Formula::Several(*function, arguments), LONGEST + 1)
+            }
+            Operation::Part(of, result) => {
+                let all = Box::new(self.part(*of).0);
+                (Formula::Part(all, *result as usize), 0)
+            }
         }
     }
 

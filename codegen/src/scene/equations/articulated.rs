@@ -4,6 +4,7 @@ use super::newton_euler::Spin;
 use super::{Tree, carried, number, wrench_to_parent};
 use crate::scene::graph::{Argument, Sym, section};
 use crate::scene::spatial::{Articulated, Twist, Vec3, Wrench};
+use num_traits::Zero;
 
 /// The elimination of one speed.
 struct Pivot {
@@ -24,66 +25,137 @@ pub enum Bias {
     Before,
 }
 
+/// What the recursion starts from.
+struct Start<'a> {
+    /// What each body's velocity and what acts on it take, in its frame.
+    wrenches: Vec<Wrench>,
+    /// The part of each body's acceleration that neither its parent's nor v̄̇ makes.
+    biases: Vec<Twist>,
+    /// Acceleration of the world that stands for gravity.
+    world: Twist,
+    /// The efforts at a body's joint, one a speed.
+    efforts: &'a dyn Fn(usize) -> Vec<Sym>,
+    /// The argument that holds the rates of driven joints.
+    given: Argument,
+    /// What is solved for.
+    sought: &'static str,
+}
+
 impl Tree<'_> {
     /// v̄̇ from the efforts of the argument and of the scene.
     pub fn articulated_accelerations(&self, bias: Bias) -> Vec<Sym> {
-        let velocities = self.angular_velocities();
         let before = match bias {
             Bias::Before => self.inverse_dynamics(None),
-            Bias::Within => vec![Sym::Number(0.0); self.model.sizes()[2]],
+            Bias::Within => vec![Sym::zero(); self.model.sizes()[2]],
         };
+        let efforts = |index: usize| {
+            let taken = &before[self.bodies[index].share.speeds.clone()];
+            let efforts = self.efforts(index, Some(Argument::Efforts)).into_iter();
+            efforts
+                .zip(taken)
+                .map(|(tau, &taken)| tau - taken)
+                .collect()
+        };
+        self.articulated(match bias {
+            Bias::Before => self.still(&efforts),
+            Bias::Within => self.moving(&efforts),
+        })
+    }
+
+    /// v̄ with M̄ v̄ = p̄, the argument.
+    pub fn articulated_speeds(&self) -> Vec<Sym> {
+        let momenta = |index: usize| {
+            let places = self.bodies[index].share.speeds.clone();
+            places.map(|i| Sym::input(Argument::Momenta, i)).collect()
+        };
+        self.articulated(Start {
+            given: Argument::Momenta,
+            sought: "speed",
+            ..self.still(&momenta)
+        })
+    }
+
+    /// Nothing but efforts acts, and nothing moves.
+    fn still<'a>(&self, efforts: &'a dyn Fn(usize) -> Vec<Sym>) -> Start<'a> {
         let count = self.bodies.len();
-        let mut inertias: Vec<Articulated> = vec![];
+        Start {
+            wrenches: vec![Wrench::zero(); count],
+            biases: vec![Twist::zero(); count],
+            world: Twist::zero(),
+            efforts,
+            given: Argument::Efforts,
+            sought: "acceleration",
+        }
+    }
+
+    /// The bodies as they move, with all that acts on them.
+    fn moving<'a>(&self, efforts: &'a dyn Fn(usize) -> Vec<Sym>) -> Start<'a> {
+        let velocities = self.angular_velocities();
+        let external = self.external();
         let mut wrenches: Vec<Wrench> = vec![];
         let mut biases: Vec<Twist> = vec![];
-        for index in 0..count {
+        for (index, external) in external.iter().enumerate() {
             section(number(index), "bias");
             let rigid = self.links[index].inertia.on_graph();
-            inertias.push(Articulated::rigid(&rigid));
-            let within = bias == Bias::Within;
             let spin = Spin::new(&velocities[index].0, &Vec3::zeros());
-            wrenches.push(if within {
-                spin.wrench(&rigid, &Vec3::zeros())
-            } else {
-                Wrench::zero()
+            let needed = spin.wrench(&rigid, &Vec3::zeros());
+            wrenches.push(needed.plus(&external.times(Sym::Number(-1.0))));
+            let own = self.bias(index, &velocities);
+            biases.push(match self.bodies[index].parent {
+                None => own,
+                Some(parent) => own.plus(&self.centripetal(index, &velocities[parent].0)),
             });
-            let own = match (within, self.bodies[index].parent) {
-                (false, _) => Twist::zero(),
-                (true, None) => self.bias(index, &velocities),
-                (true, Some(parent)) => self
-                    .bias(index, &velocities)
-                    .plus(&self.centripetal(index, &velocities[parent].0)),
-            };
-            biases.push(own);
         }
-        let mut pivots: Vec<Vec<Pivot>> = (0..count).map(|_| vec![]).collect();
-        let mut seen: Vec<Vec<(Articulated, Wrench)>> = (0..count).map(|_| vec![]).collect();
-        for index in (0..count).rev() {
+        Start {
+            wrenches,
+            biases,
+            world: Twist {
+                angular: Vec3::zeros(),
+                linear: self.ground(),
+            },
+            efforts,
+            given: Argument::Efforts,
+            sought: "acceleration",
+        }
+    }
+
+    fn articulated(&self, mut start: Start<'_>) -> Vec<Sym> {
+        let given: Vec<Option<Vec<Sym>>> = (0..self.bodies.len())
+            .map(|index| self.prescribed(index, start.given))
+            .collect();
+        let links = self.links.iter();
+        let mut inertias: Vec<Articulated> = links
+            .map(|link| Articulated::rigid(&link.inertia.on_graph()))
+            .collect();
+        let mut wrenches = start.wrenches.clone();
+        let mut pivots: Vec<Vec<Pivot>> = self.bodies.iter().map(|_| vec![]).collect();
+        let mut seen: Vec<Vec<(Articulated, Wrench)>> =
+            self.bodies.iter().map(|_| vec![]).collect();
+        for index in (0..self.bodies.len()).rev() {
             section(number(index), "carried");
             for (inertia, wrench) in std::mem::take(&mut seen[index]) {
                 inertias[index] = inertias[index].plus(&inertia);
                 wrenches[index] = wrenches[index].plus(&wrench);
             }
-            let efforts = self.efforts(index, Some(Argument::Efforts));
-            let places = self.bodies[index].share.speeds.clone();
-            let efforts: Vec<Sym> = efforts
-                .iter()
-                .zip(&before[places])
-                .map(|(&tau, &taken)| tau - taken)
-                .collect();
-            pivots[index] =
-                self.eliminate(index, &mut inertias[index], &mut wrenches[index], efforts);
+            section(number(index), "effort");
+            if let Some(given) = &given[index] {
+                start.biases[index] = start.biases[index].plus(&self.along(index, given));
+            } else {
+                let efforts = (start.efforts)(index);
+                pivots[index] =
+                    self.eliminate(index, &mut inertias[index], &mut wrenches[index], efforts);
+            }
             if let Some(parent) = self.bodies[index].parent {
                 section(number(index), "seen by parent");
                 let steps = &self.bodies[index].steps;
-                let wrench = wrenches[index].plus(&inertias[index].of(&biases[index]));
+                let wrench = wrenches[index].plus(&inertias[index].of(&start.biases[index]));
                 seen[parent].push((
                     inertias[index].to_parent(steps).settled(),
                     wrench_to_parent(steps, &wrench).settled(),
                 ));
             }
         }
-        self.outward(bias, &biases, &pivots)
+        self.outward(&start, &pivots, &given)
     }
 
     /// Takes the freedoms of a body's joint out of what it carries.
@@ -143,21 +215,26 @@ impl Tree<'_> {
         pivots
     }
 
-    fn outward(&self, bias: Bias, biases: &[Twist], pivots: &[Vec<Pivot>]) -> Vec<Sym> {
-        let mut rates = vec![Sym::Number(0.0); self.model.sizes()[2]];
+    fn outward(
+        &self,
+        start: &Start<'_>,
+        pivots: &[Vec<Pivot>],
+        given: &[Option<Vec<Sym>>],
+    ) -> Vec<Sym> {
+        let mut rates = vec![Sym::zero(); self.model.sizes()[2]];
         let mut accelerations: Vec<Twist> = vec![];
         for (index, body) in self.bodies.iter().enumerate() {
-            section(number(index), "acceleration");
-            let world = match bias {
-                Bias::Within => Twist {
-                    angular: Vec3::zeros(),
-                    linear: self.ground(),
-                },
-                Bias::Before => Twist::zero(),
-            };
-            let from = body.parent.map_or(&world, |parent| &accelerations[parent]);
-            let base = carried(&body.steps, from).plus(&biases[index]);
+            section(number(index), start.sought);
+            let from = body
+                .parent
+                .map_or(&start.world, |parent| &accelerations[parent]);
+            let base = carried(&body.steps, from).plus(&start.biases[index]);
             let places = body.share.speeds.clone();
+            if let Some(given) = &given[index] {
+                rates[places].copy_from_slice(given);
+                accelerations.push(base);
+                continue;
+            }
             let mut acceleration = base.clone();
             for (j, place) in places.clone().enumerate().rev() {
                 let Pivot {
@@ -171,7 +248,7 @@ impl Tree<'_> {
                     .map(|(&factor, &rate)| factor * rate)
                     .sum();
                 let rate = *share - base.dot(scaled) - taken;
-                rates[place] = rate.named("acceleration");
+                rates[place] = rate.named(start.sought);
                 acceleration = acceleration.plus(&body.columns[j].times(rate));
             }
             accelerations.push(acceleration.settled());

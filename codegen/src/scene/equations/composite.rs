@@ -77,11 +77,30 @@ impl Tree<'_> {
                 right[place] = effort - forces[place];
             }
         }
-        self.solved(matrix, right)
+        self.solved(matrix, right, Argument::Efforts, "acceleration")
     }
 
-    /// `M̄⁻¹ b`.
-    pub(super) fn solved(&self, mut matrix: Matrix, mut right: Vec<Sym>) -> Vec<Sym> {
+    /// v̄ with M̄ v̄ = p̄, the argument.
+    pub fn composite_speeds(&self) -> Vec<Sym> {
+        let count = self.model.sizes()[2];
+        let momenta = (0..count).map(|i| Sym::input(Argument::Momenta, i));
+        self.solved(
+            self.mass_matrix(),
+            momenta.collect(),
+            Argument::Momenta,
+            "speed",
+        )
+    }
+
+    /// `M̄⁻¹ b`, with a name for what that is; an argument holds the rates of driven joints.
+    fn solved(
+        &self,
+        mut matrix: Matrix,
+        mut right: Vec<Sym>,
+        given: Argument,
+        sought: &'static str,
+    ) -> Vec<Sym> {
+        self.prescribe(&mut matrix, &mut right, given);
         let carriers = self.carriers();
         let sections = self.sections();
         let mut inverses = vec![Sym::zero(); right.len()];
@@ -100,11 +119,30 @@ impl Tree<'_> {
             }
         }
         for k in 0..right.len() {
-            section(sections[k], "acceleration");
+            section(sections[k], sought);
             let carried: Sym = carriers[k].iter().map(|&i| matrix[k][i] * right[i]).sum();
-            right[k] = ((right[k] - carried) * inverses[k]).named("acceleration");
+            right[k] = ((right[k] - carried) * inverses[k]).named(sought);
         }
         right
+    }
+
+    /// Makes the rates of driven joints known: what they take of the others moves to the right-hand side.
+    fn prescribe(&self, matrix: &mut Matrix, right: &mut [Sym], argument: Argument) {
+        for (index, body) in self.bodies.iter().enumerate() {
+            let Some(given) = self.prescribed(index, argument) else {
+                continue;
+            };
+            for (place, rate) in body.share.speeds.clone().zip(given) {
+                section(number(index), "prescribed motion");
+                for (row, right) in right.iter_mut().enumerate() {
+                    *right -= matrix[row][place] * rate;
+                    matrix[row][place] = Sym::zero();
+                    matrix[place][row] = Sym::zero();
+                }
+                matrix[place][place] = Sym::Number(1.0);
+                right[place] = rate;
+            }
+        }
     }
 
     /// The speeds that each speed's momentum reaches: those before it in its own joint and those of all joints that carry it, nearest

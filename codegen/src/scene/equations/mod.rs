@@ -6,7 +6,13 @@
 
 pub mod articulated;
 mod composite;
+mod coupling;
+mod elements;
+mod energy;
+mod external;
+mod kinematics;
 mod newton_euler;
+mod solve;
 
 pub use articulated::Bias;
 
@@ -25,6 +31,8 @@ pub struct Placed {
     pub share: Share,
     /// The frame of its equations in that of its parent's.
     pub steps: Vec<Step>,
+    /// v̄ of its joint.
+    pub speeds: Vec<Sym>,
     /// X̄^c in its frame.
     pub columns: Vec<Twist>,
     /// S̄ by rows.
@@ -48,12 +56,19 @@ pub struct Tree<'a> {
 impl<'a> Tree<'a> {
     /// The bodies at the arguments Q and v̄ of the graph under construction.
     pub fn new(model: &'a Model, links: Vec<Link>) -> Self {
+        let count = model.sizes()[2];
+        let speeds = (0..count).map(|i| Sym::input(Argument::Speeds, i));
+        Self::at(model, links, &speeds.collect::<Vec<_>>())
+    }
+
+    /// The bodies at the argument Q and at v̄ of one's own.
+    pub fn at(model: &'a Model, links: Vec<Link>, speeds: &[Sym]) -> Self {
         let shares = model.shares();
         let bodies = model.bodies.iter().zip(&links).zip(shares).enumerate();
         let bodies = bodies
             .map(|(index, ((body, link), share))| {
                 section(number(index), "joint");
-                placed(body, link, share)
+                placed(body, link, &speeds[share.speeds.clone()], share)
             })
             .collect();
         Self {
@@ -97,25 +112,45 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts and the dampers of a body's joint.
+    /// The rates of a body's joint where they are prescribed: the first of its entries of an argument.
+    fn prescribed(&self, index: usize, argument: Argument) -> Option<Vec<Sym>> {
+        let share = &self.bodies[index].share;
+        let start = match argument {
+            Argument::Efforts => share.freedoms.start,
+            _ => share.speeds.start,
+        };
+        let inputs = (0..share.speeds.len()).map(|j| Sym::input(argument, start + j));
+        self.model.bodies[index].driven.then(|| inputs.collect())
+    }
+
+    /// `X̄ x` of a body's joint.
+    fn along(&self, index: usize, x: &[Sym]) -> Twist {
+        let columns = self.bodies[index].columns.iter().zip(x);
+        columns.fold(Twist::zero(), |sum, (column, &x)| {
+            sum.plus(&column.times(x))
+        })
+    }
+
+    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers, the springs and the rotors of a body's joint.
     fn efforts(&self, index: usize, argument: Option<Argument>) -> Vec<Sym> {
         let (body, placed) = (&self.model.bodies[index], &self.bodies[index]);
-        let speeds: Vec<Sym> = placed
-            .share
-            .speeds
-            .clone()
-            .map(|i| Sym::input(Argument::Speeds, i))
-            .collect();
+        section(number(index), "spring");
+        let springs = self.spring_efforts(index);
+        section(number(index), "rotors");
+        let rotors = self.rotor_forces(index);
+        section(number(index), "effort");
+        let of = |forces: &[Sym], k: usize| forces.get(k).copied().unwrap_or_else(Sym::zero);
         let freedom = |(k, place): (usize, usize)| {
             let given = argument.map_or(Sym::zero(), |argument| Sym::input(argument, place));
             let constant = body.effort.get(k).copied().unwrap_or(0.0);
             let damping = body.damping.get(k).copied().unwrap_or(0.0);
             let velocity: Sym = placed.basis[k]
                 .iter()
-                .zip(&speeds)
+                .zip(&placed.speeds)
                 .map(|(&s, &v)| s * v)
                 .sum();
-            given + Sym::from(constant) - Sym::from(damping) * velocity
+            let applied = given + Sym::from(constant) + of(&springs, k);
+            applied - Sym::from(damping) * velocity - of(&rotors, k)
         };
         let efforts: Vec<Sym> = placed
             .share
@@ -124,7 +159,7 @@ impl<'a> Tree<'a> {
             .enumerate()
             .map(freedom)
             .collect();
-        (0..speeds.len())
+        (0..placed.speeds.len())
             .map(|j| {
                 efforts
                     .iter()
@@ -157,13 +192,12 @@ fn number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }
 
-fn placed(body: &Body, link: &Link, share: Share) -> Placed {
-    let inputs = |argument, range: std::ops::Range<usize>| -> Vec<Sym> {
-        range.map(|i| Sym::input(argument, i)).collect()
-    };
-    let q = inputs(Argument::Configuration, share.configuration.clone());
-    let speeds = inputs(Argument::Speeds, share.speeds.clone());
-    let joint = Joint::new(&body.joint, &body.parameters, &q, &speeds);
+fn placed(body: &Body, link: &Link, speeds: &[Sym], share: Share) -> Placed {
+    let places = share.configuration.clone();
+    let q: Vec<Sym> = places
+        .map(|i| Sym::input(Argument::Configuration, i))
+        .collect();
+    let joint = Joint::new(&body.joint, &body.parameters, &q, speeds);
     let (freedoms, basis) = (joint.freedoms(), joint.speed_basis());
     let column = |j: usize| {
         let terms = freedoms
@@ -175,7 +209,7 @@ fn placed(body: &Body, link: &Link, share: Share) -> Placed {
     let columns: Vec<Twist> = (0..speeds.len()).map(column).collect();
     let velocity = columns
         .iter()
-        .zip(&speeds)
+        .zip(speeds)
         .map(|(column, &speed)| column.times(speed));
     let fixed = link.placement.iter().map(super::prune::Fixed::step);
     let after = link.after.iter().map(super::prune::Fixed::step);
@@ -184,6 +218,7 @@ fn placed(body: &Body, link: &Link, share: Share) -> Placed {
         steps: simplified(fixed.chain(joint.pose()).chain(after)),
         velocity: velocity.fold(Twist::zero(), |sum, term| sum.plus(&term)),
         bias: joint.bias_acceleration(),
+        speeds: speeds.to_vec(),
         columns,
         basis,
         share,

@@ -50,7 +50,13 @@ impl Spin {
 impl Tree<'_> {
     /// The efforts τ̄ that inputs must exert, beside those that the scene applies, for the given accelerations, `None` for none.
     pub fn needed_efforts(&self, accelerations: Option<Argument>) -> Vec<Sym> {
-        let mut efforts = self.inverse_dynamics(accelerations);
+        let count = self.model.sizes()[2];
+        let rates = accelerations.map(|argument| {
+            (0..count)
+                .map(|i| Sym::input(argument, i))
+                .collect::<Vec<_>>()
+        });
+        let mut efforts = self.inverse_dynamics(rates.as_deref());
         for (index, body) in self.bodies.iter().enumerate() {
             section(number(index), "effort");
             for (place, applied) in body.share.speeds.clone().zip(self.efforts(index, None)) {
@@ -60,12 +66,29 @@ impl Tree<'_> {
         efforts
     }
 
-    /// The efforts τ̄ that the given accelerations take in all.
-    pub(super) fn inverse_dynamics(&self, accelerations: Option<Argument>) -> Vec<Sym> {
+    /// The efforts τ̄ that the given v̄̇ takes in all, beside what acts on the bodies.
+    pub(super) fn inverse_dynamics(&self, rates: Option<&[Sym]>) -> Vec<Sym> {
+        let external = self.external();
+        let (spins, linear) = self.accelerations(rates, &self.ground());
+        let mut wrenches: Vec<Wrench> = vec![];
+        for (index, external) in external.iter().enumerate() {
+            section(number(index), "force");
+            let inertia = self.links[index].inertia.on_graph();
+            let needed = spins[index].wrench(&inertia, &linear[index]);
+            wrenches.push(needed.plus(&external.times(Sym::Number(-1.0))));
+        }
+        self.efforts_of(wrenches, rates)
+    }
+
+    /// How each body turns, and the acceleration of its origin, at the given v̄̇ and an acceleration of the world.
+    pub(super) fn accelerations(
+        &self,
+        rates: Option<&[Sym]>,
+        world: &Vec3,
+    ) -> (Vec<Spin>, Vec<Vec3>) {
         let velocities = self.angular_velocities();
         let mut spins: Vec<Spin> = vec![];
         let mut linear: Vec<Vec3> = vec![];
-        let mut wrenches: Vec<Wrench> = vec![];
         for (index, body) in self.bodies.iter().enumerate() {
             section(number(index), "acceleration");
             let mut acceleration = self.bias(index, &velocities);
@@ -74,22 +97,17 @@ impl Tree<'_> {
                     spins[parent].alpha,
                     self.carried_origin(index, &spins[parent], &linear[parent]),
                 ),
-                None => (Vec3::zeros(), to_child(&body.steps, &self.ground())),
+                None => (Vec3::zeros(), to_child(&body.steps, world)),
             };
-            if let Some(argument) = accelerations {
-                for (column, place) in body.columns.iter().zip(body.share.speeds.clone()) {
-                    acceleration = acceleration.plus(&column.times(Sym::input(argument, place)));
-                }
+            if let Some(rates) = rates {
+                let own = self.along(index, &rates[body.share.speeds.clone()]);
+                acceleration = acceleration.plus(&own);
             }
             let alpha = (to_child(&body.steps, &alpha) + acceleration.angular).map(Sym::settled);
-            let a = (a + acceleration.linear).map(Sym::settled);
-            let spin = Spin::new(&velocities[index].0, &alpha);
-            section(number(index), "force");
-            wrenches.push(spin.wrench(&self.links[index].inertia.on_graph(), &a));
-            spins.push(spin);
-            linear.push(a);
+            spins.push(Spin::new(&velocities[index].0, &alpha));
+            linear.push((a + acceleration.linear).map(Sym::settled));
         }
-        self.efforts_of(wrenches, accelerations)
+        (spins, linear)
     }
 
     /// Acceleration of a child's origin as its parent carries it, in the child's axes: `Rᵀ (a + (α~ + ω~ω~) p)`, with shifts that
@@ -107,7 +125,7 @@ impl Tree<'_> {
     }
 
     /// τ̄ from the wrench of each body.
-    fn efforts_of(&self, mut wrenches: Vec<Wrench>, accelerations: Option<Argument>) -> Vec<Sym> {
+    fn efforts_of(&self, mut wrenches: Vec<Wrench>, rates: Option<&[Sym]>) -> Vec<Sym> {
         let mut efforts = vec![Sym::zero(); self.model.sizes()[2]];
         let mut seen: Vec<Vec<Wrench>> = self.bodies.iter().map(|_| vec![]).collect();
         for (index, body) in self.bodies.iter().enumerate().rev() {
@@ -117,9 +135,9 @@ impl Tree<'_> {
             }
             for (j, place) in body.share.speeds.clone().enumerate() {
                 let mut effort = body.columns[j].dot(&wrenches[index]);
-                if let Some(argument) = accelerations {
+                if let Some(rates) = rates {
                     for (k, other) in body.share.speeds.clone().enumerate() {
-                        effort += self.armature(index, j, k) * Sym::input(argument, other);
+                        effort += self.armature(index, j, k) * rates[other];
                     }
                 }
                 efforts[place] = effort;

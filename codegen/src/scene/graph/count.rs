@@ -40,8 +40,11 @@ impl Operations {
             Operation::Product(..) => self.multiplications += 1,
             Operation::Quotient(..) => self.divisions += 1,
             Operation::Call(Function::Sqrt, ..) => self.roots += 1,
-            Operation::Call(..) => self.calls += 1,
-            Operation::Input(..) | Operation::Constant(_) | Operation::Opposite(_) => {}
+            Operation::Call(..) | Operation::Several(..) => self.calls += 1,
+            Operation::Input(..)
+            | Operation::Constant(_)
+            | Operation::Opposite(_)
+            | Operation::Part(..) => {}
         }
     }
 

@@ -5,11 +5,13 @@
 //! behind when it is written.
 
 mod count;
+pub mod known;
 mod sym;
 
 pub use count::Operations;
-pub use sym::{Sym, atan2, call, sin_cos};
+pub use sym::{Sym, atan2, call, primitive, sin_cos};
 
+use crate::derived::Primitive;
 use crate::expr::Function;
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
@@ -78,6 +80,10 @@ pub enum Operation {
     Opposite(u32),
     /// A function of one or two values.
     Call(Function, Value, Option<Value>),
+    /// A function of the runtime with several results, which [`Operation::Part`] alone reads.
+    Several(Primitive, Vec<Value>),
+    /// A result of such a function, by its number.
+    Part(u32, u32),
 }
 
 impl Operation {
@@ -94,6 +100,8 @@ impl Operation {
                 .chain(b)
                 .map(|value| value.node)
                 .collect(),
+            Self::Several(_, arguments) => arguments.iter().map(|value| value.node).collect(),
+            Self::Part(of, _) => vec![*of],
         }
     }
 }

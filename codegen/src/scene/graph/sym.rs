@@ -1,6 +1,8 @@
 //! Arithmetic on the graph under construction: an operation is folded or becomes a node.
 
+use super::known;
 use super::{Argument, CURRENT, Graph, Operation, Value};
+use crate::derived::Primitive;
 use crate::expr::Function;
 use num_traits::{One, Zero};
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -95,8 +97,8 @@ fn make(operation: Operation) -> Sym {
 
 /// A function of one argument. Sines are odd, cosines even.
 pub fn call(function: Function, argument: Sym) -> Sym {
-    if let Some(known) = argument.number().and_then(|number| known(function, number)) {
-        return Sym::Number(known);
+    if let Some(number) = argument.number() {
+        return Sym::Number(known::call(function, number, None));
     }
     let inner = argument.value();
     let (of, flips) = match function {
@@ -120,18 +122,6 @@ pub fn call(function: Function, argument: Sym) -> Sym {
     if flips { -result } else { result }
 }
 
-/// The value at a number, of the functions that the standard library has.
-fn known(function: Function, number: f64) -> Option<f64> {
-    match function {
-        Function::Sin => Some(number.sin()),
-        Function::Cos => Some(number.cos()),
-        Function::Exp => Some(number.exp()),
-        Function::Ln => Some(number.ln()),
-        Function::Sqrt => Some(number.sqrt()),
-        _ => None,
-    }
-}
-
 /// Sine and cosine.
 pub fn sin_cos(angle: Sym) -> (Sym, Sym) {
     (call(Function::Sin, angle), call(Function::Cos, angle))
@@ -139,8 +129,33 @@ pub fn sin_cos(angle: Sym) -> (Sym, Sym) {
 
 /// `atan2(y, x)`.
 pub fn atan2(y: Sym, x: Sym) -> Sym {
+    if let (Sym::Number(y), Sym::Number(x)) = (y, x) {
+        return Sym::Number(known::call(Function::Atan2, y, Some(x)));
+    }
     let (y, x) = (y.value(), x.value());
     make(Operation::Call(Function::Atan2, y, Some(x)))
+}
+
+/// The results of a function of the runtime, in the order of [`Primitive`].
+pub fn primitive(function: Primitive, arguments: &[Sym]) -> Vec<Sym> {
+    let numbers: Option<Vec<f64>> = arguments.iter().map(|argument| argument.number()).collect();
+    if let Some(numbers) = numbers {
+        let results = known::primitive(function, &numbers).into_iter();
+        return results.map(Sym::Number).collect();
+    }
+    let arguments = arguments.iter().map(|argument| argument.value()).collect();
+    let all = CURRENT.with_borrow_mut(|graph| graph.node(Operation::Several(function, arguments)));
+    (0..results(function))
+        .map(|result| make(Operation::Part(all, result)))
+        .collect()
+}
+
+/// How many results a function of the runtime has.
+fn results(function: Primitive) -> u32 {
+    match function {
+        Primitive::RotationVector | Primitive::QuaternionVector => 3,
+        Primitive::NearestRotation => 9,
+    }
 }
 
 /// Whether `a` stands before `b` in a sum or product.

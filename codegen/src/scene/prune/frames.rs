@@ -100,13 +100,7 @@ impl<'a> Placed<'a> {
     }
 
     fn steps(&self, body: usize) -> Vec<Fixed> {
-        let pose = self.placement(body);
-        let shift = clean(pose.translation);
-        let shift = (shift != Vector3::zeros()).then_some(Fixed::Shift(shift));
-        shift
-            .into_iter()
-            .chain(rotation::turns(&pose.rotation))
-            .collect()
+        Fixed::steps(&self.placement(body))
     }
 
     /// What the placement of a body's joint costs.
@@ -218,6 +212,8 @@ impl<'a> Placed<'a> {
                     .then_some(Fixed::Turn(2, cos, sin))
                     .into_iter()
                     .collect(),
+                body: to_joint,
+                dropped: Vector3::zeros(),
                 inertia: tidy(&Inertia::of(&body.mass).seen_from(&to_joint)),
             }
         };
@@ -226,7 +222,7 @@ impl<'a> Placed<'a> {
 }
 
 /// Without entries that are rounding of the others.
-fn clean(shift: Vector3<f64>) -> Vector3<f64> {
+pub fn clean(shift: Vector3<f64>) -> Vector3<f64> {
     let limit = ROUNDING * shift.norm();
     shift.map(|entry| if entry.abs() <= limit { 0.0 } else { entry })
 }

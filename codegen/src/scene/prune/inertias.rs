@@ -24,12 +24,14 @@ pub fn rootward(model: &Model, placed: &Placed<'_>, mut links: Vec<Link>) -> Vec
         let basis = reduced(basis(body, &to_link));
         let (rest, moved) = taken(&links[index].inertia, &basis);
         links[index].inertia = rest;
-        if let Some(parent) = body.parent {
-            let placement = Fixed::pose(&links[index].placement);
-            let pose = placement
-                .compose(&home(body))
-                .compose(&Fixed::pose(&links[index].after));
-            links[parent].inertia = links[parent].inertia.plus(&moved.seen_from(&pose));
+        let placement = Fixed::pose(&links[index].placement);
+        let pose = placement
+            .compose(&home(body))
+            .compose(&Fixed::pose(&links[index].after));
+        let moved = moved.seen_from(&pose);
+        match body.parent {
+            Some(parent) => links[parent].inertia = links[parent].inertia.plus(&moved),
+            None => links[index].dropped = moved.first,
         }
     }
     links

@@ -7,7 +7,7 @@ mod frames;
 mod inertias;
 mod rotation;
 
-pub use frames::Placed;
+pub use frames::{Placed, clean};
 
 use super::model::{Inertia, Model};
 use hamel::spatial::Pose;
@@ -19,8 +19,12 @@ pub struct Link {
     pub placement: Vec<Fixed>,
     /// From the frame of this body's equations to the joint's child frame.
     pub after: Vec<Fixed>,
+    /// The body frame in the frame of its equations.
+    pub body: Pose<f64>,
     /// The inertia that is left to it, in its frame.
     pub inertia: Inertia,
+    /// First moment of what the world took off it, in world axes, kg m.
+    pub dropped: nalgebra::Vector3<f64>,
 }
 
 /// A constant factor of a placement.
@@ -33,6 +37,16 @@ pub enum Fixed {
 }
 
 impl Fixed {
+    /// A pose in factors.
+    pub fn steps(pose: &Pose<f64>) -> Vec<Self> {
+        let shift = clean(pose.translation);
+        let shift = (shift != nalgebra::Vector3::zeros()).then_some(Self::Shift(shift));
+        shift
+            .into_iter()
+            .chain(rotation::turns(&pose.rotation))
+            .collect()
+    }
+
     /// Their product.
     pub fn pose(steps: &[Self]) -> Pose<f64> {
         let poses = steps.iter().map(|step| match *step {

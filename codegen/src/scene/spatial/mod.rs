@@ -157,6 +157,6 @@ fn tilde(a: &Vec3) -> Mat3 {
 }
 
 /// `M N`.
-fn product(m: &Mat3, n: &Mat3) -> Mat3 {
+pub fn product(m: &Mat3, n: &Mat3) -> Mat3 {
     Mat3::from_fn(|i, j| (0..3).map(|k| m[(i, k)] * n[(k, j)]).sum())
 }

@@ -2,6 +2,7 @@
 
 use super::super::array;
 use super::super::lines::{Formula, Line, Loop, Place};
+use crate::derived::Primitive;
 use crate::emit::rust::comment;
 use crate::expr::Function as Known;
 use crate::scene::alike::Read;
@@ -230,6 +231,11 @@ pub fn value(formula: &Formula) -> TokenStream {
             quote! { -#inner }
         }
         Formula::Call(function, arguments) => call(*function, arguments),
+        Formula::Several(function, arguments) => several(*function, arguments),
+        Formula::Part(of, result) => {
+            let (of, result) = (value(of), Literal::usize_unsuffixed(*result));
+            quote! { #of[#result] }
+        }
     }
 }
 
@@ -302,5 +308,19 @@ fn call(function: Known, arguments: &[Formula]) -> TokenStream {
         }
         // Folded when the graph was made.
         Known::Pi | Known::Recip | Known::Group => of,
+    }
+}
+
+/// What is indexed by the number of a result; matrices are given and read row by row.
+fn several(function: Primitive, arguments: &[Formula]) -> TokenStream {
+    let arguments = arguments.iter().map(value);
+    match function {
+        Primitive::RotationVector => quote! {
+            T::rotation_vector(&::hamel::nalgebra::Matrix3::new(#(#arguments),*))
+        },
+        Primitive::QuaternionVector => quote! { T::quaternion_vector([#(#arguments),*]) },
+        Primitive::NearestRotation => quote! {
+            ::hamel::spatial::nearest_rotation(&::hamel::nalgebra::Matrix3::new(#(#arguments),*)).transpose()
+        },
     }
 }

@@ -88,6 +88,7 @@ fn equations(model: &Model, functions: &[Function]) -> TokenStream {
             })
         },
     };
+    let hamiltonian = hamiltonian_form(functions);
     quote! {
         /// These functions for the runtime, in double precision.
         pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations {
@@ -96,8 +97,62 @@ fn equations(model: &Model, functions: &[Function]) -> TokenStream {
             freedoms: #freedoms,
             speeds: #speeds,
             forward_dynamics: #forward,
+            #hamiltonian
         };
     }
+}
+
+/// The fields of that constant for the port-Hamiltonian form.
+fn hamiltonian_form(functions: &[Function]) -> TokenStream {
+    let field = |kind: Kind, value: TokenStream| {
+        let name = Ident::new(kind.name(), Span::call_site());
+        match functions
+            .iter()
+            .any(|function| function.name == kind.name())
+        {
+            true => quote! { #name: Some(#value), },
+            false => quote! { #name: None, },
+        }
+    };
+    let map = |kind: Kind| {
+        let name = Ident::new(kind.name(), Span::call_site());
+        let value = quote! {
+            |q, v, out| {
+                if let (Some(q), Some(v), Some(out)) =
+                    (q.first_chunk(), v.first_chunk(), out.first_chunk_mut())
+                {
+                    *out = #name::<f64>(q, v);
+                }
+            }
+        };
+        field(kind, value)
+    };
+    let rates = quote! {
+        |q, p, tau, speeds, rates| {
+            if let (Some(q), Some(p), Some(tau), Some(speeds), Some(rates)) = (
+                q.first_chunk(),
+                p.first_chunk(),
+                tau.first_chunk(),
+                speeds.first_chunk_mut(),
+                rates.first_chunk_mut(),
+            ) {
+                [*speeds, *rates] = momentum_rates::<f64>(q, p, tau);
+            }
+        }
+    };
+    let energy = quote! {
+        |q, p| match (q.first_chunk(), p.first_chunk()) {
+            (Some(q), Some(p)) => hamiltonian::<f64>(q, p)[0],
+            _ => f64::NAN,
+        }
+    };
+    let fields = [
+        map(Kind::Momenta),
+        map(Kind::Speeds),
+        field(Kind::MomentumRates, rates),
+        field(Kind::Hamiltonian, energy),
+    ];
+    quote! { #(#fields)* }
 }
 
 /// Names of the bodies as parts of identifiers.
@@ -143,8 +198,10 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
         quote! { let mut #name = [[n(0.0); #width]; #rows]; }
     });
     let size = Literal::usize_unsuffixed(function.outputs.len() / function.columns.max(1));
+    let width = Literal::usize_unsuffixed(function.columns);
+    let entries = Literal::usize_unsuffixed(function.outputs.len());
     let results = match &lowered.outputs {
-        None => quote! { let mut results = [n(0.0); #size]; },
+        None => quote! { let mut results = [n(0.0); #entries]; },
         Some(_) => quote! {},
     };
     let outputs: Option<Vec<TokenStream>> = lowered
@@ -152,10 +209,15 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
         .as_ref()
         .map(|outputs| outputs.iter().map(value).collect());
     let (result, kind) = match (outputs, function.columns) {
-        (None, _) => (quote! { results }, quote! { [T; #size] }),
+        (None, 1) => (quote! { results }, quote! { [T; #size] }),
+        (None, _) => (
+            quote! {
+                core::array::from_fn(|i| core::array::from_fn(|j| results[#width * i + j]))
+            },
+            quote! { [[T; #width]; #size] },
+        ),
         (Some(outputs), 1) => (quote! { [#(#outputs),*] }, quote! { [T; #size] }),
         (Some(outputs), columns) => {
-            let width = Literal::usize_unsuffixed(columns);
             let rows = outputs.chunks(columns).map(|row| quote! { [#(#row),*] });
             (quote! { [#(#rows),*] }, quote! { [[T; #width]; #size] })
         }
