@@ -76,6 +76,8 @@ const RESERVED_TYPES: &[&str] = &[
 #[derive(Clone, Debug, Default)]
 pub struct NameSet {
     taken: BTreeSet<String>,
+    /// The number that a name may have next: names in long files are wished for thousands of times.
+    next: BTreeMap<String, usize>,
 }
 
 impl NameSet {
@@ -85,19 +87,32 @@ impl NameSet {
 
     /// Takes a name: the one wished for, or that one with a number where it is taken or is a keyword.
     pub fn claim(&mut self, wish: &str) -> String {
-        let wish = identifier(wish);
-        let numbered = (2..).map(|n| format!("{wish}_{n}"));
-        let free = |name: &String| self.is_free(name);
-        let name = std::iter::once(wish.clone())
-            .chain(numbered)
-            .find(free)
-            .unwrap_or(wish);
-        self.taken.insert(name.clone());
-        name
+        if let Some(next) = self.next.get_mut(wish) {
+            loop {
+                let name = format!("{}_{next}", identifier(wish));
+                *next += 1;
+                if self.taken.insert(name.clone()) {
+                    return name;
+                }
+            }
+        }
+        self.next.insert(wish.to_owned(), 2);
+        let name = identifier(wish);
+        match self.taken.insert(name.clone()) {
+            true => name,
+            false => self.claim(wish),
+        }
     }
 }
 
 fn identifier(wish: &str) -> String {
+    // By far most wishes are seen to be names at a glance: no keyword has an underscore.
+    let is_plain = wish.contains('_')
+        && wish.starts_with(|c: char| c.is_ascii_lowercase())
+        && wish.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if is_plain {
+        return wish.to_owned();
+    }
     match syn::parse_str::<syn::Ident>(wish) {
         Ok(_) => wish.to_owned(),
         Err(_) => format!("{wish}_value"),

@@ -66,27 +66,27 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
     let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = n(2.0) * (lower_joint_3 + lower_joint_4);
-    let lower_joint_12 = n(2.0) * (lower_joint_5 - lower_joint_6);
-    let lower_joint_13 = n(2.0) * (lower_joint_3 - lower_joint_4);
-    let lower_joint_14 = (-n(2.0)).mul_add(lower_joint_2 + lower_joint_7, n(1.0));
-    let lower_joint_15 = n(2.0) * (lower_joint_8 + lower_joint_9);
-    let lower_joint_16 = n(2.0) * (lower_joint_5 + lower_joint_6);
-    let lower_joint_17 = n(2.0) * (lower_joint_8 - lower_joint_9);
-    let lower_joint_18 = (-n(2.0)).mul_add(lower_joint + lower_joint_7, n(1.0));
+    let lower_joint_11 = (lower_joint_3 + lower_joint_4) * n(2.0);
+    let lower_joint_12 = (lower_joint_5 - lower_joint_6) * n(2.0);
+    let lower_joint_13 = (lower_joint_3 - lower_joint_4) * n(2.0);
+    let lower_joint_14 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_15 = (lower_joint_8 + lower_joint_9) * n(2.0);
+    let lower_joint_16 = (lower_joint_5 + lower_joint_6) * n(2.0);
+    let lower_joint_17 = (lower_joint_8 - lower_joint_9) * n(2.0);
+    let lower_joint_18 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
     let lower_joint_19 = (-v[4])
         .mul_add(lower_joint_11, v[5].mul_add(lower_joint_12, v[3] * lower_joint_10));
     let lower_joint_20 = (-v[5])
-        .mul_add(lower_joint_15, (-v[4]).mul_add(lower_joint_14, v[3] * lower_joint_13));
-    let lower_joint_21 = (-v[4])
-        .mul_add(lower_joint_17, v[5].mul_add(lower_joint_18, v[3] * lower_joint_16));
+        .mul_add(lower_joint_15, v[4].mul_add(lower_joint_14, v[3] * lower_joint_13));
+    let lower_joint_21 = (-v[5])
+        .mul_add(lower_joint_18, (-v[4]).mul_add(lower_joint_17, v[3] * lower_joint_16));
     // lower: angular velocity (9 additions, 9 multiplications)
     let lower_angular_velocity = (-v[1])
         .mul_add(lower_joint_11, v[2].mul_add(lower_joint_12, v[0] * lower_joint_10));
     let lower_angular_velocity_2 = (-v[2])
-        .mul_add(lower_joint_15, (-v[1]).mul_add(lower_joint_14, v[0] * lower_joint_13));
-    let lower_angular_velocity_3 = (-v[1])
-        .mul_add(lower_joint_17, v[2].mul_add(lower_joint_18, v[0] * lower_joint_16));
+        .mul_add(lower_joint_15, v[1].mul_add(lower_joint_14, v[0] * lower_joint_13));
+    let lower_angular_velocity_3 = (-v[2])
+        .mul_add(lower_joint_18, (-v[1]).mul_add(lower_joint_17, v[0] * lower_joint_16));
     let lower_rate_x = lower_joint_19 + lower_angular_velocity;
     let lower_rate_y = lower_joint_20 + lower_angular_velocity_2;
     let lower_rate_z = lower_joint_21 + lower_angular_velocity_3;
@@ -120,7 +120,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_force_4 = ((-lower_joint_15)
         .mul_add(
             lower_acceleration_5,
-            (-lower_joint_14)
+            lower_joint_14
                 .mul_add(lower_acceleration_4, lower_joint_13 * lower_acceleration_3),
         ))
         .mul_add(n(0.25), lower_acceleration * n(0.0825));
@@ -151,43 +151,35 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         * n(0.25);
     let lower_force_11 = (lower_rate_y
         .mul_add(lower_rate_y, lower_rate_x * lower_rate_x)) * n(0.25);
-    // lower: effort (15 additions, 17 multiplications)
+    // lower: effort (12 additions, 17 multiplications)
     let lower_effort = lower_joint_16
         .mul_add(
             lower_force_8,
             lower_joint_13.mul_add(lower_force_7, lower_joint_10 * lower_force_6),
         );
-    let lower_effort_2 = lower_joint_17
-        .mul_add(
-            lower_force_8,
-            lower_joint_14.mul_add(lower_force_7, lower_joint_11 * lower_force_6),
-        );
-    let lower_effort_3 = (-lower_joint_15)
+    let lower_effort_2 = (-lower_joint_14)
         .mul_add(
             lower_force_7,
-            lower_joint_18.mul_add(lower_force_8, lower_joint_12 * lower_force_6),
+            lower_joint_17.mul_add(lower_force_8, lower_joint_11 * lower_force_6),
         );
-    let lower_effort_4 = n(0.6)
+    let lower_effort_3 = (-lower_joint_18)
         .mul_add(
-            (-lower_joint_17)
-                .mul_add(
-                    lower_force_11,
-                    (-lower_joint_14)
-                        .mul_add(lower_force_10, lower_joint_11 * lower_force_9),
-                ),
-            lower_effort,
+            lower_force_8,
+            (-lower_joint_15).mul_add(lower_force_7, lower_joint_12 * lower_force_6),
         );
-    let lower_effort_5 = (-n(0.6))
+    let lower_effort_4 = ((-lower_joint_17)
         .mul_add(
-            (-lower_joint_16)
-                .mul_add(
-                    lower_force_11,
-                    (-lower_joint_13)
-                        .mul_add(lower_force_10, lower_joint_10 * lower_force_9),
-                ),
-            lower_effort_2,
-        );
-    // lower: composite inertia (38 additions, 66 multiplications)
+            lower_force_11,
+            lower_joint_14.mul_add(lower_force_10, lower_joint_11 * lower_force_9),
+        ))
+        .mul_add(n(0.6), lower_effort);
+    let lower_effort_5 = (-((-lower_joint_16)
+        .mul_add(
+            lower_force_11,
+            (-lower_joint_13).mul_add(lower_force_10, lower_joint_10 * lower_force_9),
+        )))
+        .mul_add(n(0.6), lower_effort_2);
+    // lower: composite inertia (34 additions, 66 multiplications)
     let lower_composite_inertia = lower_joint_10 * n(0.0825);
     let lower_composite_inertia_2 = lower_joint_13 * n(0.0825);
     let lower_composite_inertia_3 = lower_joint_16 * n(0.009999999999999995);
@@ -202,21 +194,21 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     lower_joint_10 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_7 = lower_joint_17
+    let lower_composite_inertia_7 = (-lower_joint_14)
         .mul_add(
-            lower_composite_inertia_3,
-            lower_joint_14
+            lower_composite_inertia_2,
+            lower_joint_17
                 .mul_add(
-                    lower_composite_inertia_2,
+                    lower_composite_inertia_3,
                     lower_joint_11 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_8 = (-lower_joint_15)
+    let lower_composite_inertia_8 = (-lower_joint_18)
         .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_18
+            lower_composite_inertia_3,
+            (-lower_joint_15)
                 .mul_add(
-                    lower_composite_inertia_3,
+                    lower_composite_inertia_2,
                     lower_joint_12 * lower_composite_inertia,
                 ),
         );
@@ -234,28 +226,28 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     lower_joint_11 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_15)
+    let lower_composite_inertia_15 = (-lower_joint_18)
         .mul_add(
-            lower_composite_inertia_10,
-            lower_joint_18
+            lower_composite_inertia_11,
+            lower_joint_15
                 .mul_add(
-                    lower_composite_inertia_11,
+                    lower_composite_inertia_10,
                     lower_joint_12 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = n(0.6)
+    let lower_composite_inertia_16 = (-((-lower_joint_14)
         .mul_add(
-            (-lower_joint_14)
+            lower_composite_inertia_13,
+            lower_joint_11 * lower_composite_inertia_12,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_13)
                 .mul_add(
-                    lower_composite_inertia_13,
-                    lower_joint_11 * lower_composite_inertia_12,
-                ),
-            lower_joint_16
-                .mul_add(
-                    lower_composite_inertia_11,
-                    lower_joint_13
+                    lower_composite_inertia_10,
+                    lower_joint_16
                         .mul_add(
-                            lower_composite_inertia_10,
+                            lower_composite_inertia_11,
                             lower_joint_10 * lower_composite_inertia_9,
                         ),
                 ),
@@ -274,41 +266,41 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     lower_joint_12 * lower_composite_inertia_17,
                 ),
         );
-    let lower_composite_inertia_23 = (-n(0.6))
+    let lower_composite_inertia_23 = (-((-lower_joint_14)
         .mul_add(
-            lower_joint_14
+            lower_composite_inertia_21,
+            lower_joint_11 * lower_composite_inertia_20,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_16)
                 .mul_add(
-                    lower_composite_inertia_21,
-                    lower_joint_11 * lower_composite_inertia_20,
-                ),
-            (-lower_joint_13)
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_16
+                    lower_composite_inertia_19,
+                    (-lower_joint_13)
                         .mul_add(
-                            lower_composite_inertia_19,
+                            lower_composite_inertia_18,
                             lower_joint_10 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_14)
+    let lower_composite_inertia_24 = (-lower_joint_17)
         .mul_add(
-            lower_composite_inertia_18,
-            n(0.6)
+            lower_composite_inertia_19,
+            (lower_joint_13
                 .mul_add(
-                    lower_joint_13
+                    lower_composite_inertia_21,
+                    lower_joint_10 * lower_composite_inertia_20,
+                ))
+                .mul_add(
+                    n(0.6),
+                    lower_joint_14
                         .mul_add(
-                            lower_composite_inertia_21,
-                            lower_joint_10 * lower_composite_inertia_20,
-                        ),
-                    lower_joint_17
-                        .mul_add(
-                            lower_composite_inertia_19,
+                            lower_composite_inertia_18,
                             lower_joint_11 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_25 = n(1.2) * (lower_joint_18 * n(0.25));
+    let lower_composite_inertia_25 = (lower_joint_18 * n(0.25)) * n(1.2);
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
@@ -371,25 +363,25 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let upper_spring_11 = upper_spring_9 * (upper_spring[0] * upper_spring[1]);
     let upper_spring_12 = upper_spring[1] * n(0.5);
     let upper_spring_13 = upper_spring_9 * (upper_spring[0] * upper_spring[2]);
-    let upper_spring_14 = upper_spring_3
+    let upper_spring_14 = (-upper_spring_3)
         .mul_add(
             upper_spring_10 + upper_spring_11,
             upper_spring_2
-                * ((-upper_spring_9).mul_add(upper_spring_6 + upper_spring_8, n(1.0))),
+                * (upper_spring_9.mul_add(upper_spring_6 + upper_spring_8, -n(1.0))),
         );
     let upper_spring_15 = upper_spring[0] * n(0.5);
     let upper_spring_16 = upper_spring_9 * (upper_spring[1] * upper_spring[2]);
-    let upper_spring_17 = (-upper_spring_3)
+    let upper_spring_17 = upper_spring_3
         .mul_add(
-            (-upper_spring_9).mul_add(upper_spring_5 + upper_spring_8, n(1.0)),
+            upper_spring_9.mul_add(upper_spring_5 + upper_spring_8, -n(1.0)),
             upper_spring_2 * (upper_spring_10 - upper_spring_11),
         );
-    let upper_spring_18 = (-upper_spring_3)
+    let upper_spring_18 = (-upper_spring_4)
         .mul_add(
-            upper_spring_15 - upper_spring_16,
-            upper_spring_4
+            upper_spring_7.mul_add(upper_spring_9, -n(1.0)),
+            (-upper_spring_3)
                 .mul_add(
-                    (-upper_spring_7).mul_add(upper_spring_9, n(1.0)),
+                    upper_spring_15 - upper_spring_16,
                     upper_spring_2 * (upper_spring_12 + upper_spring_13),
                 ),
         );
@@ -406,7 +398,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                             v[1]
                                 .mul_add(
                                     upper_force_3,
-                                    lower_effort_4 + upper_spring_14 - tau[0],
+                                    lower_effort_4 - upper_spring_14 - tau[0],
                                 ),
                         ),
                 ),
@@ -430,13 +422,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_spring_3 = lower_spring[1] * n(15.0);
     let lower_spring_4 = lower_spring[2] * n(15.0);
     let lower_spring_5 = q[9] * q[9];
-    let lower_spring_6 = (-n(2.0)).mul_add(lower_joint_7 + lower_spring_5, n(1.0));
-    let lower_spring_7 = (-n(2.0)).mul_add(lower_joint + lower_spring_5, n(1.0));
+    let lower_spring_6 = (lower_joint_7 + lower_spring_5).mul_add(n(2.0), -n(1.0));
+    let lower_spring_7 = (lower_joint + lower_spring_5).mul_add(n(2.0), -n(1.0));
     let lower_spring_8 = lower_joint_13
         .mul_add(lower_spring[2], lower_joint_16 * lower_spring[1]);
-    let lower_spring_9 = lower_joint_16
+    let lower_spring_9 = (-lower_joint_16)
         .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
-    let lower_spring_10 = (-lower_spring[1])
+    let lower_spring_10 = lower_spring[1]
         .mul_add(lower_spring_6, lower_joint_13 * lower_spring[0]);
     let lower_spring_11 = (lower_spring[2]
         .mul_add(
@@ -444,101 +436,101 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
         ))
         .dexp_inverse(0);
-    let lower_spring_12 = (-n(0.5))
+    let lower_spring_12 = (-lower_spring_11)
         .mul_add(
-            lower_spring_8,
-            lower_spring_11
-                .mul_add(
-                    (-lower_spring[2])
-                        .mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
-                    lower_spring_6,
-                ),
+            lower_spring[2].mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
+            lower_spring_8.mul_add(n(0.5), lower_spring_6),
         );
     let lower_spring_13 = (-lower_spring_11)
         .mul_add(
             lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
-            n(0.5).mul_add(lower_spring_9, lower_joint_13),
+            (-lower_spring_9).mul_add(n(0.5), lower_joint_13),
         );
-    let lower_spring_14 = (-lower_spring_11)
+    let lower_spring_14 = (-lower_spring_10)
         .mul_add(
-            lower_spring[1].mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
-            (-n(0.5)).mul_add(lower_spring_10, lower_joint_16),
+            n(0.5),
+            lower_spring_11
+                .mul_add(
+                    (-lower_spring[1])
+                        .mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
+                    lower_joint_16,
+                ),
         );
-    let lower_spring_15 = (-lower_spring[2])
+    let lower_spring_15 = lower_spring[2]
         .mul_add(lower_spring_7, lower_joint_17 * lower_spring[1]);
     let lower_spring_16 = lower_joint_17
         .mul_add(lower_spring[0], lower_joint_11 * lower_spring[2]);
-    let lower_spring_17 = lower_joint_11
+    let lower_spring_17 = (-lower_joint_11)
         .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
-    let lower_spring_18 = (-lower_spring_11)
+    let lower_spring_18 = (-lower_spring_15)
         .mul_add(
-            lower_spring[2].mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
-            (-n(0.5)).mul_add(lower_spring_15, lower_joint_11),
-        );
-    let lower_spring_19 = (-n(0.5))
-        .mul_add(
-            lower_spring_16,
+            n(0.5),
             lower_spring_11
                 .mul_add(
-                    (-lower_spring[0])
-                        .mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
-                    lower_spring_7,
+                    (-lower_spring[2])
+                        .mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
+                    lower_joint_11,
                 ),
+        );
+    let lower_spring_19 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[0].mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
+            lower_spring_16.mul_add(n(0.5), lower_spring_7),
         );
     let lower_spring_20 = (-lower_spring_11)
         .mul_add(
             lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
-            n(0.5).mul_add(lower_spring_17, lower_joint_17),
+            (-lower_spring_17).mul_add(n(0.5), lower_joint_17),
         );
-    let lower_spring_21 = (-lower_joint_15)
+    let lower_spring_21 = lower_joint_15
         .mul_add(lower_spring[2], lower_joint_18 * lower_spring[1]);
-    let lower_spring_22 = lower_joint_18
+    let lower_spring_22 = (-lower_joint_18)
         .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
     let lower_spring_23 = lower_joint_12
         .mul_add(lower_spring[1], lower_joint_15 * lower_spring[0]);
     let lower_spring_24 = (-lower_spring_11)
         .mul_add(
             lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
-            (-n(0.5)).mul_add(lower_spring_21, lower_joint_12),
+            lower_spring_21.mul_add(n(0.5), lower_joint_12),
         );
-    let lower_spring_25 = (-n(0.5))
+    let lower_spring_25 = (-lower_spring_11)
         .mul_add(
-            lower_spring_22,
+            lower_spring[0].mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
+            (-lower_spring_22).mul_add(n(0.5), lower_joint_15),
+        );
+    let lower_spring_26 = (-lower_spring_23)
+        .mul_add(
+            n(0.5),
             lower_spring_11
                 .mul_add(
-                    (-lower_spring[0])
-                        .mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
-                    lower_joint_15,
+                    (-lower_spring[1])
+                        .mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
+                    lower_joint_18,
                 ),
         );
-    let lower_spring_26 = (-lower_spring_11)
-        .mul_add(
-            lower_spring[1].mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
-            n(0.5).mul_add(lower_spring_23, lower_joint_18),
-        );
     // lower: effort (9 additions, 3 multiplications)
-    let lower_effort_6 = (-v[3])
+    let lower_effort_6 = (-lower_spring_3)
         .mul_add(
-            n(0.1),
-            (-lower_spring_4)
+            lower_spring_13,
+            v[3]
                 .mul_add(
-                    lower_spring_14,
-                    lower_spring_3
+                    n(0.1),
+                    lower_spring_4
                         .mul_add(
-                            lower_spring_13,
-                            lower_spring_2.mul_add(lower_spring_12, tau[3]),
+                            lower_spring_14,
+                            lower_spring_2.mul_add(lower_spring_12, -tau[3]),
                         ),
                 ),
         );
     let lower_effort_7 = (-lower_spring_4)
         .mul_add(
             lower_spring_20,
-            (-lower_spring_3)
+            v[4]
                 .mul_add(
-                    lower_spring_19,
-                    v[4]
+                    n(0.1),
+                    lower_spring_3
                         .mul_add(
-                            n(0.1),
+                            lower_spring_19,
                             lower_spring_2.mul_add(lower_spring_18, -tau[4]),
                         ),
                 ),
@@ -546,12 +538,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_effort_8 = (-v[5])
         .mul_add(
             n(0.1),
-            (-lower_spring_4)
+            (-lower_spring_3)
                 .mul_add(
-                    lower_spring_26,
-                    (-lower_spring_3)
+                    lower_spring_25,
+                    lower_spring_4
                         .mul_add(
-                            lower_spring_25,
+                            lower_spring_26,
                             lower_spring_2.mul_add(lower_spring_24, tau[5]),
                         ),
                 ),
@@ -567,15 +559,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (-n(0.6))
+            (lower_joint_13
                 .mul_add(
-                    (-lower_joint_13)
-                        .mul_add(
-                            lower_composite_inertia_13,
-                            lower_joint_10 * lower_composite_inertia_12,
-                        ),
-                    lower_composite_inertia_14,
-                ),
+                    lower_composite_inertia_13,
+                    lower_joint_10 * lower_composite_inertia_12,
+                ))
+                .mul_add(n(0.6), lower_composite_inertia_14),
         );
     let lower_factor_6 = (-lower_composite_inertia_23)
         .mul_add(lower_factor_2, lower_composite_inertia_16);
@@ -585,28 +574,22 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_9 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_8,
-            (-n(0.6))
+            (-((-lower_joint_13)
                 .mul_add(
-                    (-lower_joint_13)
-                        .mul_add(
-                            lower_composite_inertia_5,
-                            lower_joint_10 * lower_composite_inertia_4,
-                        ),
-                    lower_composite_inertia_7,
-                ),
+                    lower_composite_inertia_5,
+                    lower_joint_10 * lower_composite_inertia_4,
+                )))
+                .mul_add(n(0.6), lower_composite_inertia_7),
         );
     let lower_factor_10 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_8,
-            n(0.6)
+            (lower_joint_14
                 .mul_add(
-                    (-lower_joint_14)
-                        .mul_add(
-                            lower_composite_inertia_5,
-                            lower_joint_11 * lower_composite_inertia_4,
-                        ),
-                    lower_composite_inertia_6,
-                ),
+                    lower_composite_inertia_5,
+                    lower_joint_11 * lower_composite_inertia_4,
+                ))
+                .mul_add(n(0.6), lower_composite_inertia_6),
         );
     let lower_factor_11 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_12 = lower_composite_inertia_24 * lower_factor;
@@ -635,7 +618,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_20 = (-lower_factor_7)
         .mul_add(
             lower_factor_16,
-            (-lower_effort_9).mul_add(lower_factor_8, lower_effort - lower_effort_6),
+            (-lower_effort_9).mul_add(lower_factor_8, lower_effort + lower_effort_6),
         );
     let lower_factor_21 = lower_factor_4 * lower_factor_15;
     let lower_factor_22 = (-lower_factor_5)
@@ -644,8 +627,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-lower_composite_inertia_24)
                 .mul_add(
                     lower_factor_11,
-                    (-n(0.6))
-                        .mul_add(lower_joint_17 * n(0.25), lower_composite_inertia_15),
+                    (-(lower_joint_17 * n(0.25)))
+                        .mul_add(n(0.6), lower_composite_inertia_15),
                 ),
         );
     let lower_factor_23 = (-lower_factor_6)
@@ -654,11 +637,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_11,
-                    (-n(0.6))
-                        .mul_add(
-                            lower_joint_16 * n(0.25),
-                            n(0.06) + lower_composite_inertia_8,
-                        ),
+                    (-(lower_joint_16 * n(0.25)))
+                        .mul_add(n(0.6), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
     let lower_factor_24 = lower_factor_5 * lower_factor_15;
@@ -680,7 +660,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     (-lower_composite_inertia_22)
                         .mul_add(
                             lower_factor_11,
-                            n(0.04000000000000001) + lower_composite_inertia_22,
+                            lower_composite_inertia_22 + n(0.04000000000000001),
                         ),
                 ),
         );
@@ -705,8 +685,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_12,
-                            n(0.62) + lower_composite_inertia_14
-                                + lower_composite_inertia_25,
+                            lower_composite_inertia_14 + n(0.62)
+                                - lower_composite_inertia_25,
                         ),
                 ),
         );
@@ -720,8 +700,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     (-lower_composite_inertia_23)
                         .mul_add(
                             lower_factor_14,
-                            n(0.59) + lower_composite_inertia_6
-                                + lower_composite_inertia_25,
+                            lower_composite_inertia_6 + n(0.59)
+                                - lower_composite_inertia_25,
                         ),
                 ),
         );
@@ -852,15 +832,15 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
     let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = n(2.0) * (lower_joint_3 + lower_joint_4);
-    let lower_joint_12 = n(2.0) * (lower_joint_5 - lower_joint_6);
-    let lower_joint_13 = n(2.0) * (lower_joint_3 - lower_joint_4);
-    let lower_joint_14 = (-n(2.0)).mul_add(lower_joint_2 + lower_joint_7, n(1.0));
-    let lower_joint_15 = n(2.0) * (lower_joint_8 + lower_joint_9);
-    let lower_joint_16 = n(2.0) * (lower_joint_5 + lower_joint_6);
-    let lower_joint_17 = n(2.0) * (lower_joint_8 - lower_joint_9);
-    let lower_joint_18 = (-n(2.0)).mul_add(lower_joint + lower_joint_7, n(1.0));
-    // lower: composite inertia (38 additions, 66 multiplications)
+    let lower_joint_11 = (lower_joint_3 + lower_joint_4) * n(2.0);
+    let lower_joint_12 = (lower_joint_5 - lower_joint_6) * n(2.0);
+    let lower_joint_13 = (lower_joint_3 - lower_joint_4) * n(2.0);
+    let lower_joint_14 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_15 = (lower_joint_8 + lower_joint_9) * n(2.0);
+    let lower_joint_16 = (lower_joint_5 + lower_joint_6) * n(2.0);
+    let lower_joint_17 = (lower_joint_8 - lower_joint_9) * n(2.0);
+    let lower_joint_18 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    // lower: composite inertia (34 additions, 66 multiplications)
     let lower_composite_inertia = lower_joint_10 * n(0.0825);
     let lower_composite_inertia_2 = lower_joint_13 * n(0.0825);
     let lower_composite_inertia_3 = lower_joint_16 * n(0.009999999999999995);
@@ -875,21 +855,21 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     lower_joint_10 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_7 = lower_joint_17
+    let lower_composite_inertia_7 = (-lower_joint_14)
         .mul_add(
-            lower_composite_inertia_3,
-            lower_joint_14
+            lower_composite_inertia_2,
+            lower_joint_17
                 .mul_add(
-                    lower_composite_inertia_2,
+                    lower_composite_inertia_3,
                     lower_joint_11 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_8 = (-lower_joint_15)
+    let lower_composite_inertia_8 = (-lower_joint_18)
         .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_18
+            lower_composite_inertia_3,
+            (-lower_joint_15)
                 .mul_add(
-                    lower_composite_inertia_3,
+                    lower_composite_inertia_2,
                     lower_joint_12 * lower_composite_inertia,
                 ),
         );
@@ -907,28 +887,28 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     lower_joint_11 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_15)
+    let lower_composite_inertia_15 = (-lower_joint_18)
         .mul_add(
-            lower_composite_inertia_10,
-            lower_joint_18
+            lower_composite_inertia_11,
+            lower_joint_15
                 .mul_add(
-                    lower_composite_inertia_11,
+                    lower_composite_inertia_10,
                     lower_joint_12 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = n(0.6)
+    let lower_composite_inertia_16 = (-((-lower_joint_14)
         .mul_add(
-            (-lower_joint_14)
+            lower_composite_inertia_13,
+            lower_joint_11 * lower_composite_inertia_12,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_13)
                 .mul_add(
-                    lower_composite_inertia_13,
-                    lower_joint_11 * lower_composite_inertia_12,
-                ),
-            lower_joint_16
-                .mul_add(
-                    lower_composite_inertia_11,
-                    lower_joint_13
+                    lower_composite_inertia_10,
+                    lower_joint_16
                         .mul_add(
-                            lower_composite_inertia_10,
+                            lower_composite_inertia_11,
                             lower_joint_10 * lower_composite_inertia_9,
                         ),
                 ),
@@ -947,36 +927,36 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     lower_joint_12 * lower_composite_inertia_17,
                 ),
         );
-    let lower_composite_inertia_23 = (-n(0.6))
+    let lower_composite_inertia_23 = (-((-lower_joint_14)
         .mul_add(
-            lower_joint_14
+            lower_composite_inertia_21,
+            lower_joint_11 * lower_composite_inertia_20,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_16)
                 .mul_add(
-                    lower_composite_inertia_21,
-                    lower_joint_11 * lower_composite_inertia_20,
-                ),
-            (-lower_joint_13)
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_16
+                    lower_composite_inertia_19,
+                    (-lower_joint_13)
                         .mul_add(
-                            lower_composite_inertia_19,
+                            lower_composite_inertia_18,
                             lower_joint_10 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_14)
+    let lower_composite_inertia_24 = (-lower_joint_17)
         .mul_add(
-            lower_composite_inertia_18,
-            n(0.6)
+            lower_composite_inertia_19,
+            (lower_joint_13
                 .mul_add(
-                    lower_joint_13
+                    lower_composite_inertia_21,
+                    lower_joint_10 * lower_composite_inertia_20,
+                ))
+                .mul_add(
+                    n(0.6),
+                    lower_joint_14
                         .mul_add(
-                            lower_composite_inertia_21,
-                            lower_joint_10 * lower_composite_inertia_20,
-                        ),
-                    lower_joint_17
-                        .mul_add(
-                            lower_composite_inertia_19,
+                            lower_composite_inertia_18,
                             lower_joint_11 * lower_composite_inertia_17,
                         ),
                 ),
@@ -992,15 +972,12 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (-n(0.6))
+            (lower_joint_13
                 .mul_add(
-                    (-lower_joint_13)
-                        .mul_add(
-                            lower_composite_inertia_13,
-                            lower_joint_10 * lower_composite_inertia_12,
-                        ),
-                    lower_composite_inertia_14,
-                ),
+                    lower_composite_inertia_13,
+                    lower_joint_10 * lower_composite_inertia_12,
+                ))
+                .mul_add(n(0.6), lower_composite_inertia_14),
         );
     let lower_factor_6 = (-lower_composite_inertia_23)
         .mul_add(lower_factor_2, lower_composite_inertia_16);
@@ -1019,7 +996,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_10 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_8,
-            ((-lower_joint_14)
+            (lower_joint_14
                 .mul_add(
                     lower_composite_inertia_5,
                     lower_joint_11 * lower_composite_inertia_4,
@@ -1050,8 +1027,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             (-lower_composite_inertia_24)
                 .mul_add(
                     lower_factor_11,
-                    (-n(0.6))
-                        .mul_add(lower_joint_17 * n(0.25), lower_composite_inertia_15),
+                    (-(lower_joint_17 * n(0.25)))
+                        .mul_add(n(0.6), lower_composite_inertia_15),
                 ),
         );
     let lower_factor_22 = (-lower_factor_6)
@@ -1060,11 +1037,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_11,
-                    (-n(0.6))
-                        .mul_add(
-                            lower_joint_16 * n(0.25),
-                            lower_composite_inertia_8 + n(0.06),
-                        ),
+                    (-(lower_joint_16 * n(0.25)))
+                        .mul_add(n(0.6), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
     let lower_factor_23 = lower_factor_5 * lower_factor_14;
@@ -1108,8 +1082,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_12,
-                            lower_composite_inertia_14 + lower_composite_inertia_25
-                                + n(0.62),
+                            lower_composite_inertia_14 + n(0.62)
+                                - lower_composite_inertia_25,
                         ),
                 ),
         );
@@ -1123,8 +1097,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     (-lower_composite_inertia_23)
                         .mul_add(
                             lower_factor_13,
-                            lower_composite_inertia_6 + lower_composite_inertia_25
-                                + n(0.59),
+                            lower_composite_inertia_6 + n(0.59)
+                                - lower_composite_inertia_25,
                         ),
                 ),
         );
@@ -1225,11 +1199,11 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_speed_5 = lower_factor
         * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_speed_4));
     // lower: momentum (14 additions, 24 multiplications)
-    let lower_momentum = n(0.6) * upper_speed_2;
-    let lower_momentum_2 = n(0.6) * upper_speed;
+    let lower_momentum = upper_speed_2 * n(0.6);
+    let lower_momentum_2 = upper_speed * n(0.6);
     let lower_momentum_3 = lower_joint_11
         .mul_add(lower_momentum_2, lower_joint_10 * lower_momentum);
-    let lower_momentum_4 = lower_joint_14
+    let lower_momentum_4 = (-lower_joint_14)
         .mul_add(lower_momentum_2, lower_joint_13 * lower_momentum);
     let lower_momentum_5 = lower_joint_17
         .mul_add(lower_momentum_2, lower_joint_16 * lower_momentum);
@@ -1254,76 +1228,74 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_momentum_7 = (-lower_joint_15)
         .mul_add(
             upper_speed_3,
-            (-lower_joint_14)
+            (-lower_joint_15)
                 .mul_add(
-                    upper_speed_2,
-                    (-lower_joint_15)
+                    lower_speed_5,
+                    lower_joint_14
                         .mul_add(
-                            lower_speed_5,
-                            (-lower_joint_14)
-                                .mul_add(
-                                    lower_speed_3,
-                                    lower_joint_13
-                                        .mul_add(upper_speed, lower_joint_13 * lower_speed),
-                                ),
-                        ),
-                ),
-        );
-    let lower_momentum_8 = (-lower_joint_17)
-        .mul_add(
-            upper_speed_2,
-            (-lower_joint_17)
-                .mul_add(
-                    lower_speed_3,
-                    lower_joint_18
-                        .mul_add(
-                            upper_speed_3,
-                            lower_joint_16
+                            upper_speed_2,
+                            lower_joint_13
                                 .mul_add(
                                     upper_speed,
-                                    lower_joint_18
-                                        .mul_add(lower_speed_5, lower_joint_16 * lower_speed),
+                                    lower_joint_14
+                                        .mul_add(lower_speed_3, lower_joint_13 * lower_speed),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_9 = n(0.009999999999999995) * lower_momentum_8;
-    let lower_momentum_10 = (-n(0.25))
-        .mul_add(lower_momentum_4, n(0.0825) * lower_momentum_6);
-    let lower_momentum_11 = n(0.25)
-        .mul_add(lower_momentum_3, n(0.0825) * lower_momentum_7);
-    let lower_momentum_12 = n(0.25) * lower_momentum_7;
-    let lower_momentum_13 = n(0.25) * lower_momentum_6;
+    let lower_momentum_8 = (-lower_joint_18)
+        .mul_add(
+            upper_speed_3,
+            (-lower_joint_17)
+                .mul_add(
+                    upper_speed_2,
+                    (-lower_joint_18)
+                        .mul_add(
+                            lower_speed_5,
+                            (-lower_joint_17)
+                                .mul_add(
+                                    lower_speed_3,
+                                    lower_joint_16
+                                        .mul_add(upper_speed, lower_joint_16 * lower_speed),
+                                ),
+                        ),
+                ),
+        );
+    let lower_momentum_9 = lower_momentum_8 * n(0.009999999999999995);
+    let lower_momentum_10 = (-lower_momentum_4)
+        .mul_add(n(0.25), lower_momentum_6 * n(0.0825));
+    let lower_momentum_11 = lower_momentum_3
+        .mul_add(n(0.25), lower_momentum_7 * n(0.0825));
+    let lower_momentum_12 = lower_momentum_7 * n(0.25);
+    let lower_momentum_13 = lower_momentum_6 * n(0.25);
     // upper: weight (1 addition, 7 multiplications)
     let upper_weight = q[6] * n(9.81);
     let upper_weight_2 = q[7] * n(9.81);
     let upper_weight_3 = q[8] * n(9.81);
     // lower: weight (4 additions, 8 multiplications)
-    let lower_weight = n(0.25)
-        * ((-lower_joint_15)
-            .mul_add(
-                upper_weight_3,
-                (-lower_joint_14).mul_add(upper_weight_2, lower_joint_13 * upper_weight),
-            ));
-    let lower_weight_2 = n(0.25)
-        * ((-lower_joint_11)
-            .mul_add(
-                upper_weight_2,
-                lower_joint_12.mul_add(upper_weight_3, lower_joint_10 * upper_weight),
-            ));
+    let lower_weight = ((-lower_joint_15)
+        .mul_add(
+            upper_weight_3,
+            lower_joint_14.mul_add(upper_weight_2, lower_joint_13 * upper_weight),
+        )) * n(0.25);
+    let lower_weight_2 = ((-lower_joint_11)
+        .mul_add(
+            upper_weight_2,
+            lower_joint_12.mul_add(upper_weight_3, lower_joint_10 * upper_weight),
+        )) * n(0.25);
     // lower: spring (48 additions, 72 multiplications, 2 function calls)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
     let lower_spring_2 = lower_spring[0] * n(15.0);
     let lower_spring_3 = lower_spring[1] * n(15.0);
     let lower_spring_4 = lower_spring[2] * n(15.0);
     let lower_spring_5 = q[9] * q[9];
-    let lower_spring_6 = (-n(2.0)).mul_add(lower_joint_7 + lower_spring_5, n(1.0));
-    let lower_spring_7 = (-n(2.0)).mul_add(lower_joint + lower_spring_5, n(1.0));
+    let lower_spring_6 = (lower_joint_7 + lower_spring_5).mul_add(n(2.0), -n(1.0));
+    let lower_spring_7 = (lower_joint + lower_spring_5).mul_add(n(2.0), -n(1.0));
     let lower_spring_8 = lower_joint_13
         .mul_add(lower_spring[2], lower_joint_16 * lower_spring[1]);
-    let lower_spring_9 = lower_joint_16
+    let lower_spring_9 = (-lower_joint_16)
         .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
-    let lower_spring_10 = (-lower_spring[1])
+    let lower_spring_10 = lower_spring[1]
         .mul_add(lower_spring_6, lower_joint_13 * lower_spring[0]);
     let lower_spring_11 = (lower_spring[2]
         .mul_add(
@@ -1331,101 +1303,101 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
         ))
         .dexp_inverse(0);
-    let lower_spring_12 = (-lower_spring_8)
+    let lower_spring_12 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[2].mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
+            lower_spring_8.mul_add(n(0.5), lower_spring_6),
+        );
+    let lower_spring_13 = (-lower_spring_11)
+        .mul_add(
+            lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
+            (-lower_spring_9).mul_add(n(0.5), lower_joint_13),
+        );
+    let lower_spring_14 = (-lower_spring_10)
+        .mul_add(
+            n(0.5),
+            lower_spring_11
+                .mul_add(
+                    (-lower_spring[1])
+                        .mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
+                    lower_joint_16,
+                ),
+        );
+    let lower_spring_15 = lower_spring[2]
+        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[1]);
+    let lower_spring_16 = lower_joint_17
+        .mul_add(lower_spring[0], lower_joint_11 * lower_spring[2]);
+    let lower_spring_17 = (-lower_joint_11)
+        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
+    let lower_spring_18 = (-lower_spring_15)
         .mul_add(
             n(0.5),
             lower_spring_11
                 .mul_add(
                     (-lower_spring[2])
-                        .mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
-                    lower_spring_6,
+                        .mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
+                    lower_joint_11,
                 ),
         );
-    let lower_spring_13 = (-lower_spring_11)
+    let lower_spring_19 = (-lower_spring_11)
         .mul_add(
-            lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
-            lower_spring_9.mul_add(n(0.5), lower_joint_13),
-        );
-    let lower_spring_14 = (-lower_spring_11)
-        .mul_add(
-            lower_spring[1].mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
-            (-lower_spring_10).mul_add(n(0.5), lower_joint_16),
-        );
-    let lower_spring_15 = (-lower_spring[2])
-        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[1]);
-    let lower_spring_16 = lower_joint_17
-        .mul_add(lower_spring[0], lower_joint_11 * lower_spring[2]);
-    let lower_spring_17 = lower_joint_11
-        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
-    let lower_spring_18 = (-lower_spring_11)
-        .mul_add(
-            lower_spring[2].mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
-            (-n(0.5)).mul_add(lower_spring_15, lower_joint_11),
-        );
-    let lower_spring_19 = (-n(0.5))
-        .mul_add(
-            lower_spring_16,
-            lower_spring_11
-                .mul_add(
-                    (-lower_spring[0])
-                        .mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
-                    lower_spring_7,
-                ),
+            lower_spring[0].mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
+            lower_spring_16.mul_add(n(0.5), lower_spring_7),
         );
     let lower_spring_20 = (-lower_spring_11)
         .mul_add(
             lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
-            n(0.5).mul_add(lower_spring_17, lower_joint_17),
+            (-lower_spring_17).mul_add(n(0.5), lower_joint_17),
         );
-    let lower_spring_21 = (-lower_joint_15)
+    let lower_spring_21 = lower_joint_15
         .mul_add(lower_spring[2], lower_joint_18 * lower_spring[1]);
-    let lower_spring_22 = lower_joint_18
+    let lower_spring_22 = (-lower_joint_18)
         .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
     let lower_spring_23 = lower_joint_12
         .mul_add(lower_spring[1], lower_joint_15 * lower_spring[0]);
     let lower_spring_24 = (-lower_spring_11)
         .mul_add(
             lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
-            (-n(0.5)).mul_add(lower_spring_21, lower_joint_12),
+            lower_spring_21.mul_add(n(0.5), lower_joint_12),
         );
-    let lower_spring_25 = (-n(0.5))
+    let lower_spring_25 = (-lower_spring_11)
         .mul_add(
-            lower_spring_22,
+            lower_spring[0].mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
+            (-lower_spring_22).mul_add(n(0.5), lower_joint_15),
+        );
+    let lower_spring_26 = (-lower_spring_23)
+        .mul_add(
+            n(0.5),
             lower_spring_11
                 .mul_add(
-                    (-lower_spring[0])
-                        .mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
-                    lower_joint_15,
+                    (-lower_spring[1])
+                        .mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
+                    lower_joint_18,
                 ),
         );
-    let lower_spring_26 = (-lower_spring_11)
-        .mul_add(
-            lower_spring[1].mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
-            n(0.5).mul_add(lower_spring_23, lower_joint_18),
-        );
     // lower: effort (6 additions, 3 multiplications)
-    let lower_effort = (-lower_speed)
+    let lower_effort = (-lower_spring_3)
         .mul_add(
-            n(0.1),
-            (-lower_spring_4)
+            lower_spring_13,
+            lower_speed
                 .mul_add(
-                    lower_spring_14,
-                    lower_spring_3
+                    n(0.1),
+                    lower_spring_4
                         .mul_add(
-                            lower_spring_13,
-                            lower_spring_2.mul_add(lower_spring_12, tau[3]),
+                            lower_spring_14,
+                            lower_spring_2.mul_add(lower_spring_12, -tau[3]),
                         ),
                 ),
         );
     let lower_effort_2 = (-lower_spring_4)
         .mul_add(
             lower_spring_20,
-            (-lower_spring_3)
+            lower_speed_3
                 .mul_add(
-                    lower_spring_19,
-                    lower_speed_3
+                    n(0.1),
+                    lower_spring_3
                         .mul_add(
-                            n(0.1),
+                            lower_spring_19,
                             lower_spring_2.mul_add(lower_spring_18, -tau[4]),
                         ),
                 ),
@@ -1433,12 +1405,12 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_effort_3 = (-lower_speed_5)
         .mul_add(
             n(0.1),
-            (-lower_spring_4)
+            (-lower_spring_3)
                 .mul_add(
-                    lower_spring_26,
-                    (-lower_spring_3)
+                    lower_spring_25,
+                    lower_spring_4
                         .mul_add(
-                            lower_spring_25,
+                            lower_spring_26,
                             lower_spring_2.mul_add(lower_spring_24, tau[5]),
                         ),
                 ),
@@ -1478,33 +1450,24 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         .mul_add(lower_momentum_9, q[9] * lower_momentum_10);
     let lower_momentum_rate_6 = q[11]
         .mul_add(lower_momentum_11, q[10] * lower_momentum_10);
-    let lower_momentum_rate_7 = (-n(2.0))
+    let lower_momentum_rate_7 = (-((-q[11])
         .mul_add(
-            (-q[11])
-                .mul_add(
-                    lower_momentum_rate_5,
-                    q[12].mul_add(lower_momentum_rate_6, q[10] * lower_momentum_rate_4),
-                ),
-            lower_momentum_9,
-        );
-    let lower_momentum_rate_8 = (-n(2.0))
+            lower_momentum_rate_5,
+            q[12].mul_add(lower_momentum_rate_6, q[10] * lower_momentum_rate_4),
+        )))
+        .mul_add(n(2.0), lower_momentum_9);
+    let lower_momentum_rate_8 = (-(q[11]
         .mul_add(
-            q[11]
-                .mul_add(
-                    lower_momentum_rate_6,
-                    q[12].mul_add(lower_momentum_rate_5, q[9] * lower_momentum_rate_4),
-                ),
-            lower_momentum_11,
-        );
-    let lower_momentum_rate_9 = (-n(2.0))
+            lower_momentum_rate_6,
+            q[12].mul_add(lower_momentum_rate_5, q[9] * lower_momentum_rate_4),
+        )))
+        .mul_add(n(2.0), lower_momentum_11);
+    let lower_momentum_rate_9 = (-((-q[12])
         .mul_add(
-            (-q[12])
-                .mul_add(
-                    lower_momentum_rate_4,
-                    q[10].mul_add(lower_momentum_rate_6, q[9] * lower_momentum_rate_5),
-                ),
-            lower_momentum_10,
-        );
+            lower_momentum_rate_4,
+            q[10].mul_add(lower_momentum_rate_6, q[9] * lower_momentum_rate_5),
+        )))
+        .mul_add(n(2.0), lower_momentum_10);
     let lower_momentum_rate_10 = (-lower_joint_16)
         .mul_add(
             lower_momentum_rate,
@@ -1517,7 +1480,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                             lower_joint_13
                                 .mul_add(
                                     lower_momentum_rate_3,
-                                    lower_speed_3.mul_add(lower_momentum_rate_7, lower_effort),
+                                    lower_speed_3.mul_add(lower_momentum_rate_7, -lower_effort),
                                 ),
                         ),
                 ),
@@ -1525,26 +1488,26 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_momentum_rate_11 = (-lower_joint_17)
         .mul_add(
             lower_momentum_rate,
-            (-lower_joint_11)
+            (-lower_joint_14)
                 .mul_add(
-                    lower_momentum_rate_2,
-                    (-lower_speed_5)
+                    lower_momentum_rate_3,
+                    (-lower_joint_11)
                         .mul_add(
-                            lower_momentum_rate_9,
-                            lower_joint_14
+                            lower_momentum_rate_2,
+                            (-lower_speed_5)
                                 .mul_add(
-                                    lower_momentum_rate_3,
+                                    lower_momentum_rate_9,
                                     lower_speed.mul_add(lower_momentum_rate_7, lower_effort_2),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_rate_12 = (-lower_speed)
+    let lower_momentum_rate_12 = (-lower_joint_18)
         .mul_add(
-            lower_momentum_rate_8,
-            lower_joint_18
+            lower_momentum_rate,
+            (-lower_speed)
                 .mul_add(
-                    lower_momentum_rate,
+                    lower_momentum_rate_8,
                     lower_joint_15
                         .mul_add(
                             lower_momentum_rate_3,
@@ -1557,10 +1520,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_momentum_rate_13 = n(0.6)
+    let lower_momentum_rate_13 = (lower_joint_14
+        .mul_add(lower_momentum_13, lower_joint_11 * lower_momentum_12))
         .mul_add(
-            (-lower_joint_14)
-                .mul_add(lower_momentum_13, lower_joint_11 * lower_momentum_12),
+            n(0.6),
             lower_joint_16
                 .mul_add(
                     lower_momentum_9,
@@ -1568,41 +1531,41 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         .mul_add(lower_momentum_11, lower_joint_10 * lower_momentum_10),
                 ),
         );
-    let lower_momentum_rate_14 = (-n(0.6))
+    let lower_momentum_rate_14 = (-((-lower_joint_13)
+        .mul_add(lower_momentum_13, lower_joint_10 * lower_momentum_12)))
         .mul_add(
-            (-lower_joint_13)
-                .mul_add(lower_momentum_13, lower_joint_10 * lower_momentum_12),
-            lower_joint_17
+            n(0.6),
+            (-lower_joint_14)
                 .mul_add(
-                    lower_momentum_9,
-                    lower_joint_14
-                        .mul_add(lower_momentum_11, lower_joint_11 * lower_momentum_10),
+                    lower_momentum_11,
+                    lower_joint_17
+                        .mul_add(lower_momentum_9, lower_joint_11 * lower_momentum_10),
                 ),
         );
-    let lower_momentum_rate_15 = n(0.06)
-        .mul_add(upper_speed_3, n(0.59).mul_add(upper_speed, lower_momentum_rate_13));
-    let lower_momentum_rate_16 = n(0.62).mul_add(upper_speed_2, -lower_momentum_rate_14);
-    let lower_momentum_rate_17 = (-lower_joint_15)
+    let lower_momentum_rate_15 = upper_speed_3
+        .mul_add(n(0.06), upper_speed.mul_add(n(0.59), lower_momentum_rate_13));
+    let lower_momentum_rate_16 = upper_speed_2.mul_add(n(0.62), -lower_momentum_rate_14);
+    let lower_momentum_rate_17 = (-lower_joint_18)
         .mul_add(
-            lower_momentum_11,
-            lower_joint_18
+            lower_momentum_9,
+            (-lower_joint_15)
                 .mul_add(
-                    lower_momentum_9,
+                    lower_momentum_11,
                     lower_joint_12
                         .mul_add(
                             lower_momentum_10,
-                            n(0.04000000000000001)
-                                .mul_add(upper_speed_3, n(0.06) * upper_speed),
+                            upper_speed_3
+                                .mul_add(n(0.04000000000000001), upper_speed * n(0.06)),
                         ),
                 ),
         );
-    let lower_momentum_rate_18 = (-lower_joint_14)
+    let lower_momentum_rate_18 = lower_joint_14
         .mul_add(
             lower_weight_2,
             lower_joint_11
                 .mul_add(
                     lower_weight,
-                    n(0.2).mul_add(upper_weight_3, n(1.2) * upper_weight),
+                    upper_weight_3.mul_add(n(0.2), upper_weight * n(1.2)),
                 ),
         );
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
@@ -1663,29 +1626,29 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let upper_spring_7 = upper_spring_5 + upper_spring_6;
     let upper_spring_8 = upper_spring[2] * upper_spring[2];
     let upper_spring_9 = (upper_spring_7 + upper_spring_8).dexp_inverse(0);
-    let upper_spring_10 = n(0.5) * upper_spring[2];
+    let upper_spring_10 = upper_spring[2] * n(0.5);
     let upper_spring_11 = upper_spring_9 * (upper_spring[0] * upper_spring[1]);
-    let upper_spring_12 = n(0.5) * upper_spring[1];
+    let upper_spring_12 = upper_spring[1] * n(0.5);
     let upper_spring_13 = upper_spring_9 * (upper_spring[0] * upper_spring[2]);
-    let upper_spring_14 = upper_spring_3
+    let upper_spring_14 = (-upper_spring_3)
         .mul_add(
             upper_spring_10 + upper_spring_11,
             upper_spring_2
-                * ((-upper_spring_9).mul_add(upper_spring_6 + upper_spring_8, n(1.0))),
+                * (upper_spring_9.mul_add(upper_spring_6 + upper_spring_8, -n(1.0))),
         );
-    let upper_spring_15 = n(0.5) * upper_spring[0];
+    let upper_spring_15 = upper_spring[0] * n(0.5);
     let upper_spring_16 = upper_spring_9 * (upper_spring[1] * upper_spring[2]);
-    let upper_spring_17 = (-upper_spring_3)
+    let upper_spring_17 = upper_spring_3
         .mul_add(
-            (-upper_spring_9).mul_add(upper_spring_5 + upper_spring_8, n(1.0)),
+            upper_spring_9.mul_add(upper_spring_5 + upper_spring_8, -n(1.0)),
             upper_spring_2 * (upper_spring_10 - upper_spring_11),
         );
-    let upper_spring_18 = (-upper_spring_3)
+    let upper_spring_18 = (-upper_spring_4)
         .mul_add(
-            upper_spring_15 - upper_spring_16,
-            upper_spring_4
+            upper_spring_7.mul_add(upper_spring_9, -n(1.0)),
+            (-upper_spring_3)
                 .mul_add(
-                    (-upper_spring_7).mul_add(upper_spring_9, n(1.0)),
+                    upper_spring_15 - upper_spring_16,
                     upper_spring_2 * (upper_spring_12 + upper_spring_13),
                 ),
         );
@@ -1699,7 +1662,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     upper_speed_2
                         .mul_add(
                             lower_momentum_rate_17,
-                            lower_joint_10.mul_add(lower_weight, n(1.2) * upper_weight_2),
+                            lower_joint_10.mul_add(lower_weight, upper_weight_2 * n(1.2)),
                         ),
                 ),
         );
@@ -1712,7 +1675,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     lower_joint_15
                         .mul_add(
                             lower_weight_2,
-                            lower_joint_12.mul_add(lower_weight, n(0.2) * upper_weight_2),
+                            lower_joint_12.mul_add(lower_weight, upper_weight_2 * n(0.2)),
                         ),
                 ),
         );
@@ -1742,7 +1705,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             upper_spring_4
                 .mul_add(
                     upper_spring_12 - upper_spring_13,
-                    tau[0] - upper_spring_14 - upper_momentum_rate,
+                    upper_spring_14 + tau[0] - upper_momentum_rate,
                 ),
             upper_momentum_rate_3,
             tau[2] - upper_spring_18 - upper_momentum_rate_2,
@@ -1771,15 +1734,15 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
     let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = n(2.0) * (lower_joint_3 + lower_joint_4);
-    let lower_joint_12 = n(2.0) * (lower_joint_5 - lower_joint_6);
-    let lower_joint_13 = n(2.0) * (lower_joint_3 - lower_joint_4);
-    let lower_joint_14 = (-n(2.0)).mul_add(lower_joint_2 + lower_joint_7, n(1.0));
-    let lower_joint_15 = n(2.0) * (lower_joint_8 + lower_joint_9);
-    let lower_joint_16 = n(2.0) * (lower_joint_5 + lower_joint_6);
-    let lower_joint_17 = n(2.0) * (lower_joint_8 - lower_joint_9);
-    let lower_joint_18 = (-n(2.0)).mul_add(lower_joint + lower_joint_7, n(1.0));
-    // lower: composite inertia (40 additions, 66 multiplications)
+    let lower_joint_11 = (lower_joint_3 + lower_joint_4) * n(2.0);
+    let lower_joint_12 = (lower_joint_5 - lower_joint_6) * n(2.0);
+    let lower_joint_13 = (lower_joint_3 - lower_joint_4) * n(2.0);
+    let lower_joint_14 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_15 = (lower_joint_8 + lower_joint_9) * n(2.0);
+    let lower_joint_16 = (lower_joint_5 + lower_joint_6) * n(2.0);
+    let lower_joint_17 = (lower_joint_8 - lower_joint_9) * n(2.0);
+    let lower_joint_18 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    // lower: composite inertia (34 additions, 66 multiplications)
     let lower_composite_inertia = lower_joint_10 * n(0.0825);
     let lower_composite_inertia_2 = lower_joint_13 * n(0.0825);
     let lower_composite_inertia_3 = lower_joint_16 * n(0.009999999999999995);
@@ -1794,21 +1757,21 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     lower_joint_10 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_7 = lower_joint_17
+    let lower_composite_inertia_7 = (-lower_joint_14)
         .mul_add(
-            lower_composite_inertia_3,
-            lower_joint_14
+            lower_composite_inertia_2,
+            lower_joint_17
                 .mul_add(
-                    lower_composite_inertia_2,
+                    lower_composite_inertia_3,
                     lower_joint_11 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_8 = (-lower_joint_15)
+    let lower_composite_inertia_8 = (-lower_joint_18)
         .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_18
+            lower_composite_inertia_3,
+            (-lower_joint_15)
                 .mul_add(
-                    lower_composite_inertia_3,
+                    lower_composite_inertia_2,
                     lower_joint_12 * lower_composite_inertia,
                 ),
         );
@@ -1826,28 +1789,28 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     lower_joint_11 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_15)
+    let lower_composite_inertia_15 = (-lower_joint_18)
         .mul_add(
-            lower_composite_inertia_10,
-            lower_joint_18
+            lower_composite_inertia_11,
+            lower_joint_15
                 .mul_add(
-                    lower_composite_inertia_11,
+                    lower_composite_inertia_10,
                     lower_joint_12 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = n(0.6)
+    let lower_composite_inertia_16 = (-((-lower_joint_14)
         .mul_add(
-            (-lower_joint_14)
+            lower_composite_inertia_13,
+            lower_joint_11 * lower_composite_inertia_12,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_13)
                 .mul_add(
-                    lower_composite_inertia_13,
-                    lower_joint_11 * lower_composite_inertia_12,
-                ),
-            lower_joint_16
-                .mul_add(
-                    lower_composite_inertia_11,
-                    lower_joint_13
+                    lower_composite_inertia_10,
+                    lower_joint_16
                         .mul_add(
-                            lower_composite_inertia_10,
+                            lower_composite_inertia_11,
                             lower_joint_10 * lower_composite_inertia_9,
                         ),
                 ),
@@ -1866,36 +1829,36 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     lower_joint_12 * lower_composite_inertia_17,
                 ),
         );
-    let lower_composite_inertia_23 = (-n(0.6))
+    let lower_composite_inertia_23 = (-((-lower_joint_14)
         .mul_add(
-            lower_joint_14
+            lower_composite_inertia_21,
+            lower_joint_11 * lower_composite_inertia_20,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_16)
                 .mul_add(
-                    lower_composite_inertia_21,
-                    lower_joint_11 * lower_composite_inertia_20,
-                ),
-            (-lower_joint_13)
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_16
+                    lower_composite_inertia_19,
+                    (-lower_joint_13)
                         .mul_add(
-                            lower_composite_inertia_19,
+                            lower_composite_inertia_18,
                             lower_joint_10 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_14)
+    let lower_composite_inertia_24 = (-lower_joint_17)
         .mul_add(
-            lower_composite_inertia_18,
-            n(0.6)
+            lower_composite_inertia_19,
+            (lower_joint_13
                 .mul_add(
-                    lower_joint_13
+                    lower_composite_inertia_21,
+                    lower_joint_10 * lower_composite_inertia_20,
+                ))
+                .mul_add(
+                    n(0.6),
+                    lower_joint_14
                         .mul_add(
-                            lower_composite_inertia_21,
-                            lower_joint_10 * lower_composite_inertia_20,
-                        ),
-                    lower_joint_17
-                        .mul_add(
-                            lower_composite_inertia_19,
+                            lower_composite_inertia_18,
                             lower_joint_11 * lower_composite_inertia_17,
                         ),
                 ),
@@ -1914,15 +1877,12 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (-n(0.6))
+            (lower_joint_13
                 .mul_add(
-                    (-lower_joint_13)
-                        .mul_add(
-                            lower_composite_inertia_13,
-                            lower_joint_10 * lower_composite_inertia_12,
-                        ),
-                    lower_composite_inertia_14,
-                ),
+                    lower_composite_inertia_13,
+                    lower_joint_10 * lower_composite_inertia_12,
+                ))
+                .mul_add(n(0.6), lower_composite_inertia_14),
         );
     let lower_factor_6 = (-lower_composite_inertia_23)
         .mul_add(lower_factor_2, lower_composite_inertia_16);
@@ -1941,7 +1901,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_10 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_8,
-            ((-lower_joint_14)
+            (lower_joint_14
                 .mul_add(
                     lower_composite_inertia_5,
                     lower_joint_11 * lower_composite_inertia_4,
@@ -1972,11 +1932,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_11,
-                    (-n(0.6))
-                        .mul_add(
-                            lower_composite_inertia_25,
-                            lower_composite_inertia_8 + n(0.06),
-                        ),
+                    (-lower_composite_inertia_25)
+                        .mul_add(n(0.6), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
     let lower_factor_22 = lower_factor_5 * lower_factor_14;
@@ -2011,11 +1968,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_11,
-                            (-n(0.6))
-                                .mul_add(
-                                    lower_composite_inertia_26,
-                                    lower_composite_inertia_15,
-                                ),
+                            (-lower_composite_inertia_26)
+                                .mul_add(n(0.6), lower_composite_inertia_15),
                         ),
                 ),
         );
@@ -2036,8 +1990,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_12,
-                            lower_composite_inertia_14 + lower_composite_inertia_28
-                                + n(0.62),
+                            lower_composite_inertia_14 + n(0.62)
+                                - lower_composite_inertia_28,
                         ),
                 ),
         );
@@ -2051,8 +2005,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     (-lower_composite_inertia_23)
                         .mul_add(
                             lower_factor_13,
-                            lower_composite_inertia_6 + lower_composite_inertia_28
-                                + n(0.59),
+                            lower_composite_inertia_6 + n(0.59)
+                                - lower_composite_inertia_28,
                         ),
                 ),
         );
@@ -2233,23 +2187,20 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                 ),
         );
     // upper: first moment (4 additions, 4 multiplications)
-    let upper_first_moment = (-q[7])
+    let upper_first_moment = (-q[8])
         .mul_add(
-            lower_composite_inertia_26,
-            q[8]
+            lower_composite_inertia_27 - n(1.2),
+            (-q[7])
                 .mul_add(
-                    lower_composite_inertia_27 + n(1.2),
+                    lower_composite_inertia_26,
                     q[6] * (lower_composite_inertia_25 - n(0.2)),
                 ),
         );
     let upper_first_moment_2 = (-upper_first_moment)
         .mul_add(
             n(9.81),
-            n(0.5)
-                .mul_add(
-                    lower_spring_2,
-                    n(0.5).mul_add(upper_spring_2, lower_speed_6 * n(0.5)),
-                ),
+            lower_spring_2
+                .mul_add(n(0.5), upper_spring_2.mul_add(n(0.5), lower_speed_6 * n(0.5))),
         );
     [upper_first_moment_2]
 }

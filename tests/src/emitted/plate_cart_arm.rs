@@ -255,7 +255,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                         * n(0.085),
                 ),
         );
-    // end_effector: effort (15 additions, 17 multiplications)
+    // end_effector: effort (12 additions, 17 multiplications)
     let end_effector_effort = (-q[15])
         .mul_add(
             end_effector_force_9,
@@ -271,12 +271,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_force_11,
             q[12].mul_add(end_effector_force_12, q[10] * end_effector_force_10),
         );
-    let end_effector_effort_4 = (-n(0.02))
+    // cart: effort (7 additions, 6 multiplications)
+    let cart_effort = (-end_effector_effort_2)
         .mul_add(
-            end_effector_effort_2,
-            (-n(0.15))
+            n(0.02),
+            (-end_effector_effort_3)
                 .mul_add(
-                    end_effector_effort_3,
+                    n(0.15),
                     cart_acceleration_3
                         .mul_add(
                             n(0.046),
@@ -284,17 +285,16 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                         ),
                 ),
         );
-    let end_effector_effort_5 = cart_acceleration_4
+    let cart_effort_2 = cart_acceleration_4
         .mul_add(n(0.495), cart_acceleration_3.mul_add(n(5.7), end_effector_effort_2));
-    let end_effector_effort_6 = (-cart_acceleration_4)
+    let cart_effort_3 = (-cart_acceleration_4)
         .mul_add(n(0.046), cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_3));
-    // cart: effort (4 additions, 6 multiplications)
-    let cart_effort = (-q[6])
+    let cart_effort_4 = (-q[6])
         .mul_add(
-            (-q[2]).mul_add(end_effector_effort_6, q[1] * end_effector_effort_5),
-            q[3] * ((-q[5]).mul_add(end_effector_effort_6, q[4] * end_effector_effort_5)),
+            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
-    // end_effector: composite inertia (78 additions, 113 multiplications)
+    // end_effector: composite inertia (75 additions, 113 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
@@ -334,14 +334,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                     q[10] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_10 = n(0.02)
+    let end_effector_composite_inertia_10 = end_effector_composite_inertia_8
         .mul_add(
-            end_effector_composite_inertia_8,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_9,
-                    end_effector_composite_inertia_7,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_9
+                .mul_add(n(0.15), end_effector_composite_inertia_7),
         );
     let end_effector_composite_inertia_11 = (-q[6])
         .mul_add(
@@ -396,14 +393,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                     q[10] * end_effector_composite_inertia_15,
                 ),
         );
-    let end_effector_composite_inertia_21 = n(0.02)
+    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
         .mul_add(
-            end_effector_composite_inertia_19,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_20,
-                    end_effector_composite_inertia_18,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_20
+                .mul_add(n(0.15), end_effector_composite_inertia_18),
         );
     let end_effector_composite_inertia_22 = (-q[6])
         .mul_add(
@@ -467,14 +461,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                     q[10] * end_effector_composite_inertia_23,
                 ),
         );
-    let end_effector_composite_inertia_30 = n(0.02)
+    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
         .mul_add(
-            end_effector_composite_inertia_28,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_29,
-                    end_effector_composite_inertia_27,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_29
+                .mul_add(n(0.15), end_effector_composite_inertia_27),
         );
     let end_effector_composite_inertia_31 = (-q[6])
         .mul_add(
@@ -496,52 +487,34 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_34 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_35 = n(0.495) + end_effector_composite_inertia_33;
-    let end_effector_composite_inertia_36 = n(0.046) + end_effector_composite_inertia_34;
-    let end_effector_composite_inertia_37 = (-end_effector_composite_inertia_34)
+    // cart: composite inertia (15 additions, 20 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
         .mul_add(
             n(0.04),
-            n(0.3)
-                .mul_add(
-                    end_effector_composite_inertia_33,
-                    n(0.16493) + end_effector_composite_inertia_27,
-                ),
+            end_effector_composite_inertia_33
+                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
         );
-    // cart: composite inertia (13 additions, 20 multiplications)
-    let cart_composite_inertia = (-q[6])
+    let cart_composite_inertia_4 = (-q[6])
         .mul_add(
-            (-q[2])
-                .mul_add(
-                    end_effector_composite_inertia_35,
-                    q[1] * end_effector_composite_inertia_36,
-                ),
+            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
-                    .mul_add(
-                        end_effector_composite_inertia_35,
-                        q[4] * end_effector_composite_inertia_36,
-                    )),
+                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_2 = (q[3]
+    let cart_composite_inertia_5 = (q[3]
         .mul_add(
             n(2.85),
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[1] * end_effector_composite_inertia_35,
-                ),
+            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] * n(2.0));
-    let cart_composite_inertia_3 = (q[6]
+    let cart_composite_inertia_6 = (q[6]
         .mul_add(
             n(2.85),
-            q[5]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[4] * end_effector_composite_inertia_35,
-                ),
+            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] * n(2.0));
     // end_effector: effort (3 additions)
-    let end_effector_effort_7 = end_effector_effort + tau[6];
+    let end_effector_effort_4 = end_effector_effort + tau[6];
     // end_effector: factor (43 additions, 55 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
     let end_effector_factor_2 = end_effector_composite_inertia_18 * end_effector_factor;
@@ -580,7 +553,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_factor_2,
             end_effector_composite_inertia_21 + end_effector_composite_inertia_22,
         );
-    let end_effector_factor_8 = (-end_effector_effort_7)
+    let end_effector_factor_8 = (-end_effector_effort_4)
         .mul_add(
             end_effector_factor_2,
             (-q[12])
@@ -607,7 +580,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                         ),
                 ),
         );
-    let end_effector_factor_11 = (-end_effector_effort_7)
+    let end_effector_factor_11 = (-end_effector_effort_4)
         .mul_add(
             end_effector_factor_9,
             (-q[9])
@@ -627,7 +600,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_composite_inertia_32
                 .mul_add(
                     end_effector_factor_12,
-                    q[6].mul_add(q[1] * n(5.7), end_effector_composite_inertia_36),
+                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_14 = end_effector_composite_inertia_30 * end_effector_factor;
@@ -666,8 +639,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             (-end_effector_composite_inertia_32)
                 .mul_add(
                     end_effector_factor_15,
-                    n(2.05) + end_effector_composite_inertia_37
-                        + cart_composite_inertia_2 + cart_composite_inertia_3,
+                    cart_composite_inertia_3 + cart_composite_inertia_5
+                        + cart_composite_inertia_6 + n(2.05),
                 ),
         );
     let end_effector_factor_26 = n(1.0)
@@ -681,10 +654,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                 .mul_add(
                     end_effector_factor_22,
                     end_effector_composite_inertia_30
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_composite_inertia_36,
-                        ),
+                        .mul_add(end_effector_factor_12, cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_29 = end_effector_factor_20
@@ -698,8 +668,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             (-end_effector_factor_8)
                 .mul_add(
                     end_effector_factor_22,
-                    (-end_effector_effort_7)
-                        .mul_add(end_effector_factor_12, end_effector_effort_5 + tau[2]),
+                    (-end_effector_effort_4)
+                        .mul_add(end_effector_factor_12, cart_effort_2 + tau[2]),
                 ),
         );
     let end_effector_factor_31 = end_effector_factor_19 * end_effector_factor_26;
@@ -712,7 +682,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                     (-end_effector_composite_inertia_32)
                         .mul_add(
                             end_effector_factor_14,
-                            end_effector_composite_inertia_37 - cart_composite_inertia,
+                            cart_composite_inertia_3 - cart_composite_inertia_4,
                         ),
                 ),
         );
@@ -722,8 +692,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_factor_8
                 .mul_add(
                     end_effector_factor_23,
-                    end_effector_effort_7
-                        .mul_add(end_effector_factor_14, end_effector_effort_4 - tau[1]),
+                    end_effector_effort_4
+                        .mul_add(end_effector_factor_14, cart_effort - tau[1]),
                 ),
         );
     let end_effector_factor_34 = end_effector_factor_20 * end_effector_factor_26;
@@ -733,46 +703,43 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_factor_8
                 .mul_add(
                     end_effector_factor_24,
-                    end_effector_effort_7
+                    end_effector_effort_4
                         .mul_add(
                             end_effector_factor_15,
-                            end_effector_effort_4 - cart_effort - tau[0],
+                            cart_effort - cart_effort_4 - tau[0],
                         ),
                 ),
         );
     // cart: factor (7 additions, 10 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / ((-end_effector_factor_18)
+        / (end_effector_factor_18
             .mul_add(
                 end_effector_factor_27,
-                (-end_effector_factor_5)
+                end_effector_factor_5
                     .mul_add(
                         end_effector_factor_22,
-                        (-end_effector_composite_inertia_28)
-                            .mul_add(end_effector_factor_12, n(5.7)),
+                        end_effector_composite_inertia_28
+                            .mul_add(end_effector_factor_12, -n(5.7)),
                     ),
             ));
     let cart_factor_2 = end_effector_factor_28 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_28)
+    let cart_factor_3 = (-end_effector_factor_19)
         .mul_add(
-            cart_factor_2,
-            (-end_effector_factor_19)
+            end_effector_factor_31,
+            (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_31,
-                    (-end_effector_factor_6)
+                    end_effector_factor_23,
+                    (-end_effector_composite_inertia_30)
                         .mul_add(
-                            end_effector_factor_23,
-                            (-end_effector_composite_inertia_30)
-                                .mul_add(
-                                    end_effector_factor_14,
-                                    end_effector_composite_inertia_37,
-                                ),
+                            end_effector_factor_14,
+                            end_effector_factor_28
+                                .mul_add(cart_factor_2, cart_composite_inertia_3),
                         ),
                 ),
         );
-    let cart_factor_4 = (-end_effector_factor_29)
+    let cart_factor_4 = end_effector_factor_29
         .mul_add(cart_factor_2, end_effector_factor_32);
-    let cart_factor_5 = (-end_effector_factor_30)
+    let cart_factor_5 = end_effector_factor_30
         .mul_add(cart_factor_2, end_effector_factor_33);
     let cart_factor_6 = end_effector_factor_29 * cart_factor;
     let cart_factor_7 = n(1.0) / cart_factor_3;
@@ -782,18 +749,18 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
         / ((-cart_factor_4)
             .mul_add(
                 cart_factor_8,
-                (-end_effector_factor_29)
+                (-end_effector_factor_20)
                     .mul_add(
-                        cart_factor_6,
-                        (-end_effector_factor_20)
-                            .mul_add(end_effector_factor_34, end_effector_factor_25),
+                        end_effector_factor_34,
+                        end_effector_factor_29
+                            .mul_add(cart_factor_6, end_effector_factor_25),
                     ),
             ));
     // plate: acceleration (1 multiplication)
     let plate_acceleration_2 = ((-cart_factor_5)
         .mul_add(
             cart_factor_8,
-            (-end_effector_factor_30).mul_add(cart_factor_6, end_effector_factor_35),
+            end_effector_factor_30.mul_add(cart_factor_6, end_effector_factor_35),
         )) * plate_factor;
     // cart: acceleration (3 additions, 5 multiplications)
     let cart_acceleration_6 = cart_factor_7
@@ -807,14 +774,14 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             ));
     // end_effector: acceleration (12 additions, 15 multiplications)
     let end_effector_acceleration_15 = end_effector_factor_26
-        * ((-end_effector_factor_18)
+        * (end_effector_factor_20
             .mul_add(
-                cart_acceleration_7,
-                end_effector_factor_20
+                plate_acceleration_2,
+                end_effector_factor_19
                     .mul_add(
-                        plate_acceleration_2,
-                        end_effector_factor_19
-                            .mul_add(cart_acceleration_6, end_effector_factor_21),
+                        cart_acceleration_6,
+                        end_effector_factor_18
+                            .mul_add(cart_acceleration_7, end_effector_factor_21),
                     ),
             ));
     let end_effector_acceleration_16 = (-end_effector_factor_7)
@@ -823,7 +790,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             (-end_effector_factor_6)
                 .mul_add(
                     cart_acceleration_6,
-                    end_effector_factor_5
+                    (-end_effector_factor_5)
                         .mul_add(
                             cart_acceleration_7,
                             end_effector_factor_4 * end_effector_acceleration_15,
@@ -835,7 +802,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
     let end_effector_acceleration_18 = (-end_effector_composite_inertia_30)
         .mul_add(
             cart_acceleration_6,
-            end_effector_composite_inertia_28
+            (-end_effector_composite_inertia_28)
                 .mul_add(
                     cart_acceleration_7,
                     end_effector_composite_inertia_7
@@ -849,14 +816,14 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
     [
         -plate_acceleration_2,
         -cart_acceleration_6,
-        cart_acceleration_7,
+        -cart_acceleration_7,
         end_effector_acceleration_15,
         end_effector_acceleration_17,
         end_effector_factor
             * (end_effector_composite_inertia_32
                 .mul_add(
                     plate_acceleration_2,
-                    end_effector_effort_7 - end_effector_acceleration_18,
+                    end_effector_effort_4 - end_effector_acceleration_18,
                 )),
     ]
 }
@@ -1097,7 +1064,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
                         * n(0.085),
                 ),
         );
-    // end_effector: effort (15 additions, 17 multiplications)
+    // end_effector: effort (12 additions, 17 multiplications)
     let end_effector_effort = (-q[15])
         .mul_add(
             end_effector_force_9,
@@ -1113,12 +1080,13 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
             end_effector_force_11,
             q[12].mul_add(end_effector_force_12, q[10] * end_effector_force_10),
         );
-    let end_effector_effort_4 = (-n(0.02))
+    // cart: effort (7 additions, 6 multiplications)
+    let cart_effort = (-end_effector_effort_2)
         .mul_add(
-            end_effector_effort_2,
-            (-n(0.15))
+            n(0.02),
+            (-end_effector_effort_3)
                 .mul_add(
-                    end_effector_effort_3,
+                    n(0.15),
                     (-cart_acceleration_5)
                         .mul_add(
                             n(0.046),
@@ -1131,7 +1099,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
                         ),
                 ),
         );
-    let end_effector_effort_5 = (-cart_acceleration_3)
+    let cart_effort_2 = (-cart_acceleration_3)
         .mul_add(
             n(0.046),
             (-cart_acceleration_4)
@@ -1140,7 +1108,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
                     cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_2),
                 ),
         );
-    let end_effector_effort_6 = (-cart_acceleration_4)
+    let cart_effort_3 = (-cart_acceleration_4)
         .mul_add(
             n(0.046),
             cart_acceleration_3
@@ -1149,16 +1117,15 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
                     cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3),
                 ),
         );
-    // cart: effort (5 additions, 6 multiplications)
-    let cart_effort = (-q[6])
+    let cart_effort_4 = (-q[6])
         .mul_add(
-            q[2].mul_add(end_effector_effort_6, q[1] * end_effector_effort_5),
-            q[3] * (q[5].mul_add(end_effector_effort_6, q[4] * end_effector_effort_5)),
+            q[2].mul_add(cart_effort_3, q[1] * cart_effort_2),
+            q[3] * (q[5].mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
     [
-        a[0].mul_add(n(2.05), end_effector_effort_4 + cart_effort),
-        end_effector_effort_4,
-        end_effector_effort_5,
+        a[0].mul_add(n(2.05), cart_effort + cart_effort_4),
+        cart_effort,
+        cart_effort_2,
         (-q[7])
             .mul_add(
                 end_effector_force_7,
@@ -1180,7 +1147,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
 #[must_use]
 pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
     let n = T::from_f64;
-    // end_effector: composite inertia (78 additions, 113 multiplications)
+    // end_effector: composite inertia (75 additions, 113 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
@@ -1290,14 +1257,11 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[10] * end_effector_composite_inertia_17,
                 ),
         );
-    let end_effector_composite_inertia_23 = n(0.02)
+    let end_effector_composite_inertia_23 = end_effector_composite_inertia_21
         .mul_add(
-            end_effector_composite_inertia_21,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_22,
-                    end_effector_composite_inertia_20,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_22
+                .mul_add(n(0.15), end_effector_composite_inertia_20),
         );
     let end_effector_composite_inertia_24 = (-q[6])
         .mul_add(
@@ -1363,14 +1327,11 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[10] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_33 = n(0.02)
+    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
         .mul_add(
-            end_effector_composite_inertia_31,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_32,
-                    end_effector_composite_inertia_30,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_32
+                .mul_add(n(0.15), end_effector_composite_inertia_30),
         );
     let end_effector_composite_inertia_34 = (-q[6])
         .mul_add(
@@ -1392,78 +1353,56 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_37 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_38 = end_effector_composite_inertia_36 + n(0.495);
-    let end_effector_composite_inertia_39 = end_effector_composite_inertia_37 + n(0.046);
-    let end_effector_composite_inertia_40 = (-end_effector_composite_inertia_37)
+    // cart: composite inertia (15 additions, 20 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_37)
         .mul_add(
             n(0.04),
-            n(0.3)
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    end_effector_composite_inertia_30 + n(0.16493),
-                ),
+            end_effector_composite_inertia_36
+                .mul_add(n(0.3), end_effector_composite_inertia_30 + n(0.16493)),
         );
-    // cart: composite inertia (13 additions, 20 multiplications)
-    let cart_composite_inertia = (-q[6])
+    let cart_composite_inertia_4 = (-q[6])
         .mul_add(
-            (-q[2])
-                .mul_add(
-                    end_effector_composite_inertia_38,
-                    q[1] * end_effector_composite_inertia_39,
-                ),
+            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
-                    .mul_add(
-                        end_effector_composite_inertia_38,
-                        q[4] * end_effector_composite_inertia_39,
-                    )),
+                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_2 = end_effector_composite_inertia_40
-        - cart_composite_inertia;
-    let cart_composite_inertia_3 = (-q[3])
-        .mul_add(
-            q[4] * n(5.7),
-            q[6].mul_add(q[1] * n(5.7), end_effector_composite_inertia_39),
-        );
-    let cart_composite_inertia_4 = (q[3]
+    let cart_composite_inertia_5 = cart_composite_inertia_3 - cart_composite_inertia_4;
+    let cart_composite_inertia_6 = (-q[3])
+        .mul_add(q[4] * n(5.7), q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2));
+    let cart_composite_inertia_7 = (q[3]
         .mul_add(
             n(2.85),
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_39,
-                    q[1] * end_effector_composite_inertia_38,
-                ),
+            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] * n(2.0));
-    let cart_composite_inertia_5 = (q[6]
+    let cart_composite_inertia_8 = (q[6]
         .mul_add(
             n(2.85),
-            q[5]
-                .mul_add(
-                    end_effector_composite_inertia_39,
-                    q[4] * end_effector_composite_inertia_38,
-                ),
+            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] * n(2.0));
     [
         [
-            end_effector_composite_inertia_40 + cart_composite_inertia_4
-                + cart_composite_inertia_5 + n(2.05),
-            cart_composite_inertia_2,
-            -cart_composite_inertia_3,
+            cart_composite_inertia_3 + cart_composite_inertia_7
+                + cart_composite_inertia_8 + n(2.05),
+            cart_composite_inertia_5,
+            -cart_composite_inertia_6,
             end_effector_composite_inertia_13,
             end_effector_composite_inertia_25,
             end_effector_composite_inertia_35,
         ],
         [
-            cart_composite_inertia_2,
-            end_effector_composite_inertia_40,
-            -end_effector_composite_inertia_39,
+            cart_composite_inertia_5,
+            cart_composite_inertia_3,
+            -cart_composite_inertia_2,
             end_effector_composite_inertia_11,
             end_effector_composite_inertia_23,
             end_effector_composite_inertia_33,
         ],
         [
-            -cart_composite_inertia_3,
-            -end_effector_composite_inertia_39,
+            -cart_composite_inertia_6,
+            -cart_composite_inertia_2,
             n(5.7),
             end_effector_composite_inertia_9,
             end_effector_composite_inertia_21,
@@ -1703,7 +1642,7 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
                         * n(0.085),
                 ),
         );
-    // end_effector: effort (15 additions, 17 multiplications)
+    // end_effector: effort (12 additions, 17 multiplications)
     let end_effector_effort = (-q[15])
         .mul_add(
             end_effector_force_9,
@@ -1719,12 +1658,13 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
             end_effector_force_11,
             q[12].mul_add(end_effector_force_12, q[10] * end_effector_force_10),
         );
-    let end_effector_effort_4 = (-n(0.02))
+    // cart: effort (7 additions, 6 multiplications)
+    let cart_effort = (-end_effector_effort_2)
         .mul_add(
-            end_effector_effort_2,
-            (-n(0.15))
+            n(0.02),
+            (-end_effector_effort_3)
                 .mul_add(
-                    end_effector_effort_3,
+                    n(0.15),
                     cart_acceleration_3
                         .mul_add(
                             n(0.046),
@@ -1732,20 +1672,19 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
                         ),
                 ),
         );
-    let end_effector_effort_5 = cart_acceleration_4
+    let cart_effort_2 = cart_acceleration_4
         .mul_add(n(0.495), cart_acceleration_3.mul_add(n(5.7), end_effector_effort_2));
-    let end_effector_effort_6 = (-cart_acceleration_4)
+    let cart_effort_3 = (-cart_acceleration_4)
         .mul_add(n(0.046), cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_3));
-    // cart: effort (4 additions, 6 multiplications)
-    let cart_effort = (-q[6])
+    let cart_effort_4 = (-q[6])
         .mul_add(
-            (-q[2]).mul_add(end_effector_effort_6, q[1] * end_effector_effort_5),
-            q[3] * ((-q[5]).mul_add(end_effector_effort_6, q[4] * end_effector_effort_5)),
+            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
     [
-        end_effector_effort_4 - cart_effort,
-        end_effector_effort_4,
-        -end_effector_effort_5,
+        cart_effort - cart_effort_4,
+        cart_effort,
+        -cart_effort_2,
         (-q[7])
             .mul_add(
                 end_effector_force_7,
@@ -1767,7 +1706,7 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
 #[must_use]
 pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 6]; 2] {
     let n = T::from_f64;
-    // end_effector: composite inertia (78 additions, 113 multiplications)
+    // end_effector: composite inertia (75 additions, 113 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
@@ -1866,14 +1805,11 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                     q[10] * end_effector_composite_inertia_15,
                 ),
         );
-    let end_effector_composite_inertia_21 = n(0.02)
+    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
         .mul_add(
-            end_effector_composite_inertia_19,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_20,
-                    end_effector_composite_inertia_18,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_20
+                .mul_add(n(0.15), end_effector_composite_inertia_18),
         );
     let end_effector_composite_inertia_22 = (-q[6])
         .mul_add(
@@ -1937,14 +1873,11 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                     q[10] * end_effector_composite_inertia_23,
                 ),
         );
-    let end_effector_composite_inertia_30 = n(0.02)
+    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
         .mul_add(
-            end_effector_composite_inertia_28,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_29,
-                    end_effector_composite_inertia_27,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_29
+                .mul_add(n(0.15), end_effector_composite_inertia_27),
         );
     let end_effector_composite_inertia_31 = (-q[6])
         .mul_add(
@@ -1966,49 +1899,31 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_34 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33 + n(0.495);
-    let end_effector_composite_inertia_36 = end_effector_composite_inertia_34 + n(0.046);
-    let end_effector_composite_inertia_37 = (-end_effector_composite_inertia_34)
+    // cart: composite inertia (15 additions, 20 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
         .mul_add(
             n(0.04),
-            n(0.3)
-                .mul_add(
-                    end_effector_composite_inertia_33,
-                    end_effector_composite_inertia_27 + n(0.16493),
-                ),
+            end_effector_composite_inertia_33
+                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
         );
-    // cart: composite inertia (13 additions, 20 multiplications)
-    let cart_composite_inertia = (-q[6])
+    let cart_composite_inertia_4 = (-q[6])
         .mul_add(
-            (-q[2])
-                .mul_add(
-                    end_effector_composite_inertia_35,
-                    q[1] * end_effector_composite_inertia_36,
-                ),
+            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
-                    .mul_add(
-                        end_effector_composite_inertia_35,
-                        q[4] * end_effector_composite_inertia_36,
-                    )),
+                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_2 = (q[3]
+    let cart_composite_inertia_5 = (q[3]
         .mul_add(
             n(2.85),
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[1] * end_effector_composite_inertia_35,
-                ),
+            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] * n(2.0));
-    let cart_composite_inertia_3 = (q[6]
+    let cart_composite_inertia_6 = (q[6]
         .mul_add(
             n(2.85),
-            q[5]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[4] * end_effector_composite_inertia_35,
-                ),
+            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] * n(2.0));
     // end_effector: factor (43 additions, 55 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
@@ -2070,7 +1985,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
             end_effector_composite_inertia_32
                 .mul_add(
                     end_effector_factor_11,
-                    q[6].mul_add(q[1] * n(5.7), end_effector_composite_inertia_36),
+                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_13 = end_effector_composite_inertia_30 * end_effector_factor;
@@ -2109,8 +2024,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
             (-end_effector_composite_inertia_32)
                 .mul_add(
                     end_effector_factor_14,
-                    end_effector_composite_inertia_37 + cart_composite_inertia_2
-                        + cart_composite_inertia_3 + n(2.05),
+                    cart_composite_inertia_3 + cart_composite_inertia_5
+                        + cart_composite_inertia_6 + n(2.05),
                 ),
         );
     let end_effector_factor_25 = n(1.0)
@@ -2124,10 +2039,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                 .mul_add(
                     end_effector_factor_21,
                     end_effector_composite_inertia_30
-                        .mul_add(
-                            end_effector_factor_11,
-                            end_effector_composite_inertia_36,
-                        ),
+                        .mul_add(end_effector_factor_11, cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_28 = end_effector_factor_19
@@ -2154,67 +2066,64 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                     (-end_effector_composite_inertia_32)
                         .mul_add(
                             end_effector_factor_13,
-                            end_effector_composite_inertia_37 - cart_composite_inertia,
+                            cart_composite_inertia_3 - cart_composite_inertia_4,
                         ),
                 ),
         );
     let end_effector_factor_32 = end_effector_factor_19 * end_effector_factor_25;
     // cart: factor (7 additions, 10 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / ((-end_effector_factor_17)
+        / (end_effector_factor_17
             .mul_add(
                 end_effector_factor_26,
-                (-end_effector_factor_5)
+                end_effector_factor_5
                     .mul_add(
                         end_effector_factor_21,
-                        (-end_effector_composite_inertia_28)
-                            .mul_add(end_effector_factor_11, n(5.7)),
+                        end_effector_composite_inertia_28
+                            .mul_add(end_effector_factor_11, -n(5.7)),
                     ),
             ));
     let cart_factor_2 = end_effector_factor_27 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_27)
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            (-end_effector_factor_18)
+            end_effector_factor_30,
+            (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_30,
-                    (-end_effector_factor_6)
+                    end_effector_factor_22,
+                    (-end_effector_composite_inertia_30)
                         .mul_add(
-                            end_effector_factor_22,
-                            (-end_effector_composite_inertia_30)
-                                .mul_add(
-                                    end_effector_factor_13,
-                                    end_effector_composite_inertia_37,
-                                ),
+                            end_effector_factor_13,
+                            end_effector_factor_27
+                                .mul_add(cart_factor_2, cart_composite_inertia_3),
                         ),
                 ),
         );
-    let cart_factor_4 = (-end_effector_factor_28)
+    let cart_factor_4 = end_effector_factor_28
         .mul_add(cart_factor_2, end_effector_factor_31);
-    let cart_factor_5 = (-end_effector_factor_20)
+    let cart_factor_5 = (-end_effector_factor_29)
         .mul_add(
-            end_effector_factor_30,
-            (-end_effector_factor_8)
+            cart_factor_2,
+            (-end_effector_factor_20)
                 .mul_add(
-                    end_effector_factor_22,
-                    (-p[5])
+                    end_effector_factor_30,
+                    (-end_effector_factor_8)
                         .mul_add(
-                            end_effector_factor_13,
-                            end_effector_factor_29.mul_add(cart_factor_2, p[1]),
+                            end_effector_factor_22,
+                            (-p[5]).mul_add(end_effector_factor_13, p[1]),
                         ),
                 ),
         );
     let cart_factor_6 = end_effector_factor_28 * cart_factor;
-    let cart_factor_7 = (-end_effector_factor_20)
+    let cart_factor_7 = (-end_effector_factor_29)
         .mul_add(
-            end_effector_factor_32,
-            (-end_effector_factor_8)
+            cart_factor_6,
+            (-end_effector_factor_20)
                 .mul_add(
-                    end_effector_factor_23,
-                    (-p[5])
+                    end_effector_factor_32,
+                    (-end_effector_factor_8)
                         .mul_add(
-                            end_effector_factor_14,
-                            end_effector_factor_29.mul_add(cart_factor_6, p[0]),
+                            end_effector_factor_23,
+                            (-p[5]).mul_add(end_effector_factor_14, p[0]),
                         ),
                 ),
         );
@@ -2225,11 +2134,11 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
         / ((-cart_factor_4)
             .mul_add(
                 cart_factor_9,
-                (-end_effector_factor_28)
+                (-end_effector_factor_19)
                     .mul_add(
-                        cart_factor_6,
-                        (-end_effector_factor_19)
-                            .mul_add(end_effector_factor_32, end_effector_factor_24),
+                        end_effector_factor_32,
+                        end_effector_factor_28
+                            .mul_add(cart_factor_6, end_effector_factor_24),
                     ),
             ));
     // plate: speed (1 multiplication)
@@ -2252,31 +2161,28 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                 (-end_effector_factor_18)
                     .mul_add(
                         cart_speed,
-                        (-end_effector_factor_17)
+                        end_effector_factor_17
                             .mul_add(cart_speed_2, end_effector_factor_20),
                     ),
             ));
-    let end_effector_speed_2 = end_effector_factor_7
+    let end_effector_speed_2 = (-end_effector_factor_5)
         .mul_add(
-            plate_speed,
-            end_effector_factor_6
+            cart_speed_2,
+            end_effector_factor_7
                 .mul_add(
-                    cart_speed,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_speed_2,
-                            end_effector_factor_4 * end_effector_speed,
-                        ),
+                    plate_speed,
+                    end_effector_factor_6
+                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
                 ),
         );
     let end_effector_speed_3 = end_effector_factor_15
         * (end_effector_factor_8 - end_effector_speed_2);
-    let end_effector_speed_4 = end_effector_composite_inertia_30
+    let end_effector_speed_4 = (-end_effector_composite_inertia_28)
         .mul_add(
-            cart_speed,
-            end_effector_composite_inertia_28
+            cart_speed_2,
+            end_effector_composite_inertia_30
                 .mul_add(
-                    cart_speed_2,
+                    cart_speed,
                     end_effector_composite_inertia_7
                         .mul_add(
                             end_effector_speed,
@@ -2292,16 +2198,16 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
     let cart_momentum_2 = q[3] * plate_speed;
     let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
     let cart_momentum_4 = plate_speed + cart_speed;
-    let cart_momentum_5 = (-q[1])
-        .mul_add(cart_momentum, q[4].mul_add(cart_momentum_2, cart_speed_2));
+    let cart_momentum_5 = (-q[4])
+        .mul_add(cart_momentum_2, q[1].mul_add(cart_momentum, cart_speed_2));
     // end_effector: momentum (23 additions, 32 multiplications)
-    let end_effector_momentum = n(0.02).mul_add(cart_momentum_4, cart_momentum_5);
-    let end_effector_momentum_2 = (-n(0.15)).mul_add(cart_momentum_4, cart_momentum_3);
-    let end_effector_momentum_3 = (-q[10])
+    let end_effector_momentum = (-cart_momentum_4).mul_add(n(0.02), cart_momentum_5);
+    let end_effector_momentum_2 = (-cart_momentum_4).mul_add(n(0.15), cart_momentum_3);
+    let end_effector_momentum_3 = q[10]
         .mul_add(end_effector_momentum_2, q[7] * end_effector_momentum);
-    let end_effector_momentum_4 = (-q[11])
+    let end_effector_momentum_4 = q[11]
         .mul_add(end_effector_momentum_2, q[8] * end_effector_momentum);
-    let end_effector_momentum_5 = (-q[12])
+    let end_effector_momentum_5 = q[12]
         .mul_add(end_effector_momentum_2, q[9] * end_effector_momentum);
     let end_effector_momentum_6 = q[13]
         .mul_add(
@@ -2330,78 +2236,72 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                     q[12].mul_add(end_effector_speed_3, q[9] * end_effector_speed),
                 ),
         );
-    let end_effector_momentum_9 = (-n(0.51))
+    let end_effector_momentum_9 = (-end_effector_momentum_8)
         .mul_add(
-            end_effector_momentum_4,
-            (-n(0.136))
+            n(0.027499999999999997),
+            end_effector_momentum_4
                 .mul_add(
-                    end_effector_momentum_5,
-                    (-n(0.027499999999999997))
+                    n(0.51),
+                    end_effector_momentum_5
                         .mul_add(
-                            end_effector_momentum_8,
-                            n(0.0078)
+                            n(0.136),
+                            end_effector_momentum_7
+                                .mul_add(n(0.0078), end_effector_momentum_6 * n(0.19388)),
+                        ),
+                ),
+        );
+    let end_effector_momentum_10 = (-end_effector_momentum_3)
+        .mul_add(
+            n(0.51),
+            end_effector_momentum_5
+                .mul_add(
+                    n(0.085),
+                    end_effector_momentum_8
+                        .mul_add(
+                            n(0.042300000000000004),
+                            end_effector_momentum_7
+                                .mul_add(n(0.18225), end_effector_momentum_6 * n(0.0078)),
+                        ),
+                ),
+        );
+    let end_effector_momentum_11 = (-end_effector_momentum_8)
+        .mul_add(
+            n(0.027130000000000015),
+            (-end_effector_momentum_7)
+                .mul_add(
+                    n(0.042300000000000004),
+                    end_effector_momentum_3
+                        .mul_add(
+                            n(0.136),
+                            end_effector_momentum_4
                                 .mul_add(
-                                    end_effector_momentum_7,
-                                    n(0.19388) * end_effector_momentum_6,
+                                    n(0.085),
+                                    end_effector_momentum_6 * n(0.027499999999999997),
                                 ),
                         ),
                 ),
         );
-    let end_effector_momentum_10 = (-n(0.085))
-        .mul_add(
-            end_effector_momentum_5,
-            n(0.51)
-                .mul_add(
-                    end_effector_momentum_3,
-                    n(0.042300000000000004)
-                        .mul_add(
-                            end_effector_momentum_8,
-                            n(0.18225)
-                                .mul_add(
-                                    end_effector_momentum_7,
-                                    n(0.0078) * end_effector_momentum_6,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_momentum_11 = (-n(0.136))
-        .mul_add(
-            end_effector_momentum_3,
-            (-n(0.085))
-                .mul_add(
-                    end_effector_momentum_4,
-                    (-n(0.027130000000000015))
-                        .mul_add(
-                            end_effector_momentum_8,
-                            (-n(0.042300000000000004))
-                                .mul_add(
-                                    end_effector_momentum_7,
-                                    n(0.027499999999999997) * end_effector_momentum_6,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_momentum_12 = n(0.136)
-        .mul_add(end_effector_momentum_8, n(0.51) * end_effector_momentum_7);
-    let end_effector_momentum_13 = (-n(0.51))
-        .mul_add(end_effector_momentum_6, n(0.085) * end_effector_momentum_8);
-    let end_effector_momentum_14 = n(0.085)
-        .mul_add(end_effector_momentum_7, n(0.136) * end_effector_momentum_6);
+    let end_effector_momentum_12 = end_effector_momentum_8
+        .mul_add(n(0.136), end_effector_momentum_7 * n(0.51));
+    let end_effector_momentum_13 = (-end_effector_momentum_6)
+        .mul_add(n(0.51), end_effector_momentum_8 * n(0.085));
+    let end_effector_momentum_14 = end_effector_momentum_7
+        .mul_add(n(0.085), end_effector_momentum_6 * n(0.136));
     // end_effector: weight (3 additions, 9 multiplications)
     let end_effector_weight = q[13] * n(9.81);
     let end_effector_weight_2 = q[14] * n(9.81);
     let end_effector_weight_3 = q[15] * n(9.81);
-    let end_effector_weight_4 = n(0.51)
-        .mul_add(end_effector_weight_2, n(0.136) * end_effector_weight_3);
-    let end_effector_weight_5 = (-n(0.085))
-        .mul_add(end_effector_weight_3, n(0.51) * end_effector_weight);
-    let end_effector_weight_6 = n(0.136)
-        .mul_add(end_effector_weight, n(0.085) * end_effector_weight_2);
+    let end_effector_weight_4 = end_effector_weight_2
+        .mul_add(n(0.51), end_effector_weight_3 * n(0.136));
+    let end_effector_weight_5 = (-end_effector_weight_3)
+        .mul_add(n(0.085), end_effector_weight * n(0.51));
+    let end_effector_weight_6 = end_effector_weight
+        .mul_add(n(0.136), end_effector_weight_2 * n(0.085));
     // end_effector: momentum rate (41 additions, 45 multiplications)
-    let end_effector_momentum_rate = end_effector_momentum_5
+    let end_effector_momentum_rate = (-end_effector_momentum_5)
         .mul_add(
             end_effector_momentum_13,
-            end_effector_momentum_4
+            (-end_effector_momentum_4)
                 .mul_add(
                     end_effector_momentum_14,
                     end_effector_momentum_8
@@ -2411,10 +2311,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                         ),
                 ),
         );
-    let end_effector_momentum_rate_2 = end_effector_momentum_3
+    let end_effector_momentum_rate_2 = (-end_effector_momentum_3)
         .mul_add(
             end_effector_momentum_14,
-            end_effector_momentum_5
+            (-end_effector_momentum_5)
                 .mul_add(
                     end_effector_momentum_12,
                     end_effector_momentum_6
@@ -2424,15 +2324,15 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                         ),
                 ),
         );
-    let end_effector_momentum_rate_3 = (-end_effector_momentum_4)
+    let end_effector_momentum_rate_3 = (-end_effector_momentum_3)
         .mul_add(
-            end_effector_momentum_12,
+            end_effector_momentum_13,
             (-end_effector_momentum_7)
                 .mul_add(
                     end_effector_momentum_9,
-                    end_effector_momentum_3
+                    end_effector_momentum_4
                         .mul_add(
-                            end_effector_momentum_13,
+                            end_effector_momentum_12,
                             end_effector_momentum_6 * end_effector_momentum_10,
                         ),
                 ),
@@ -2517,17 +2417,16 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
             end_effector_weight_6,
             (-q[14]).mul_add(end_effector_weight_5, q[13] * end_effector_weight_4),
         );
-    let end_effector_momentum_rate_14 = (-q[9])
+    let end_effector_momentum_rate_14 = (-q[8])
         .mul_add(
-            end_effector_momentum_14,
-            (-n(0.046))
+            end_effector_momentum_13,
+            (-q[7])
                 .mul_add(
-                    cart_momentum_4,
-                    q[8]
+                    end_effector_momentum_12,
+                    q[9]
                         .mul_add(
-                            end_effector_momentum_13,
-                            q[7]
-                                .mul_add(end_effector_momentum_12, n(5.7) * cart_momentum_5),
+                            end_effector_momentum_14,
+                            cart_momentum_4.mul_add(n(0.046), cart_momentum_5 * n(5.7)),
                         ),
                 ),
         );
@@ -2537,32 +2436,31 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
             (-q[10])
                 .mul_add(
                     end_effector_momentum_12,
-                    (-n(0.495))
+                    (-cart_momentum_4)
                         .mul_add(
-                            cart_momentum_4,
+                            n(0.495),
                             q[12]
-                                .mul_add(end_effector_momentum_14, n(5.7) * cart_momentum_3),
+                                .mul_add(end_effector_momentum_14, cart_momentum_3 * n(5.7)),
                         ),
                 ),
         );
-    // plate: momentum rate (1 addition)
     [
         [
             plate_speed,
             cart_speed,
-            cart_speed_2,
+            -cart_speed_2,
             end_effector_speed,
             end_effector_speed_3,
             end_effector_speed_5,
         ],
         [
             end_effector_momentum_rate_13 + tau[0],
-            (-cart_momentum_3)
+            (-cart_momentum_5)
                 .mul_add(
-                    end_effector_momentum_rate_14,
-                    cart_momentum_5
+                    end_effector_momentum_rate_15,
+                    cart_momentum_3
                         .mul_add(
-                            end_effector_momentum_rate_15,
+                            end_effector_momentum_rate_14,
                             tau[1] + end_effector_momentum_rate_13,
                         ),
                 ),
@@ -2675,12 +2573,12 @@ pub fn momenta<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
             (-cart_momentum_3)
                 .mul_add(
                     n(0.495),
-                    n(0.02)
+                    end_effector_momentum_16
                         .mul_add(
-                            end_effector_momentum_16,
-                            n(0.15)
+                            n(0.02),
+                            end_effector_momentum_17
                                 .mul_add(
-                                    end_effector_momentum_17,
+                                    n(0.15),
                                     cart_momentum_4
                                         .mul_add(n(0.16493), end_effector_momentum_15),
                                 ),
@@ -2724,7 +2622,7 @@ pub fn momenta<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
 #[must_use]
 pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
     let n = T::from_f64;
-    // end_effector: composite inertia (78 additions, 113 multiplications)
+    // end_effector: composite inertia (75 additions, 113 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
@@ -2823,14 +2721,11 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                     q[10] * end_effector_composite_inertia_15,
                 ),
         );
-    let end_effector_composite_inertia_21 = n(0.02)
+    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
         .mul_add(
-            end_effector_composite_inertia_19,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_20,
-                    end_effector_composite_inertia_18,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_20
+                .mul_add(n(0.15), end_effector_composite_inertia_18),
         );
     let end_effector_composite_inertia_22 = (-q[6])
         .mul_add(
@@ -2894,14 +2789,11 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                     q[10] * end_effector_composite_inertia_23,
                 ),
         );
-    let end_effector_composite_inertia_30 = n(0.02)
+    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
         .mul_add(
-            end_effector_composite_inertia_28,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_29,
-                    end_effector_composite_inertia_27,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_29
+                .mul_add(n(0.15), end_effector_composite_inertia_27),
         );
     let end_effector_composite_inertia_31 = (-q[6])
         .mul_add(
@@ -2923,49 +2815,31 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_34 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33 + n(0.495);
-    let end_effector_composite_inertia_36 = end_effector_composite_inertia_34 + n(0.046);
-    let end_effector_composite_inertia_37 = (-end_effector_composite_inertia_34)
+    // cart: composite inertia (15 additions, 20 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
         .mul_add(
             n(0.04),
-            n(0.3)
-                .mul_add(
-                    end_effector_composite_inertia_33,
-                    end_effector_composite_inertia_27 + n(0.16493),
-                ),
+            end_effector_composite_inertia_33
+                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
         );
-    // cart: composite inertia (13 additions, 20 multiplications)
-    let cart_composite_inertia = (-q[6])
+    let cart_composite_inertia_4 = (-q[6])
         .mul_add(
-            (-q[2])
-                .mul_add(
-                    end_effector_composite_inertia_35,
-                    q[1] * end_effector_composite_inertia_36,
-                ),
+            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
-                    .mul_add(
-                        end_effector_composite_inertia_35,
-                        q[4] * end_effector_composite_inertia_36,
-                    )),
+                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_2 = (q[3]
+    let cart_composite_inertia_5 = (q[3]
         .mul_add(
             n(2.85),
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[1] * end_effector_composite_inertia_35,
-                ),
+            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] * n(2.0));
-    let cart_composite_inertia_3 = (q[6]
+    let cart_composite_inertia_6 = (q[6]
         .mul_add(
             n(2.85),
-            q[5]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[4] * end_effector_composite_inertia_35,
-                ),
+            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] * n(2.0));
     // end_effector: factor (43 additions, 55 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
@@ -3027,7 +2901,7 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
             end_effector_composite_inertia_32
                 .mul_add(
                     end_effector_factor_11,
-                    q[6].mul_add(q[1] * n(5.7), end_effector_composite_inertia_36),
+                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_13 = end_effector_composite_inertia_30 * end_effector_factor;
@@ -3066,8 +2940,8 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
             (-end_effector_composite_inertia_32)
                 .mul_add(
                     end_effector_factor_14,
-                    end_effector_composite_inertia_37 + cart_composite_inertia_2
-                        + cart_composite_inertia_3 + n(2.05),
+                    cart_composite_inertia_3 + cart_composite_inertia_5
+                        + cart_composite_inertia_6 + n(2.05),
                 ),
         );
     let end_effector_factor_25 = n(1.0)
@@ -3081,10 +2955,7 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                 .mul_add(
                     end_effector_factor_21,
                     end_effector_composite_inertia_30
-                        .mul_add(
-                            end_effector_factor_11,
-                            end_effector_composite_inertia_36,
-                        ),
+                        .mul_add(end_effector_factor_11, cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_28 = end_effector_factor_19
@@ -3111,67 +2982,64 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                     (-end_effector_composite_inertia_32)
                         .mul_add(
                             end_effector_factor_13,
-                            end_effector_composite_inertia_37 - cart_composite_inertia,
+                            cart_composite_inertia_3 - cart_composite_inertia_4,
                         ),
                 ),
         );
     let end_effector_factor_32 = end_effector_factor_19 * end_effector_factor_25;
     // cart: factor (7 additions, 10 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / ((-end_effector_factor_17)
+        / (end_effector_factor_17
             .mul_add(
                 end_effector_factor_26,
-                (-end_effector_factor_5)
+                end_effector_factor_5
                     .mul_add(
                         end_effector_factor_21,
-                        (-end_effector_composite_inertia_28)
-                            .mul_add(end_effector_factor_11, n(5.7)),
+                        end_effector_composite_inertia_28
+                            .mul_add(end_effector_factor_11, -n(5.7)),
                     ),
             ));
     let cart_factor_2 = end_effector_factor_27 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_27)
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            (-end_effector_factor_18)
+            end_effector_factor_30,
+            (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_30,
-                    (-end_effector_factor_6)
+                    end_effector_factor_22,
+                    (-end_effector_composite_inertia_30)
                         .mul_add(
-                            end_effector_factor_22,
-                            (-end_effector_composite_inertia_30)
-                                .mul_add(
-                                    end_effector_factor_13,
-                                    end_effector_composite_inertia_37,
-                                ),
+                            end_effector_factor_13,
+                            end_effector_factor_27
+                                .mul_add(cart_factor_2, cart_composite_inertia_3),
                         ),
                 ),
         );
-    let cart_factor_4 = (-end_effector_factor_28)
+    let cart_factor_4 = end_effector_factor_28
         .mul_add(cart_factor_2, end_effector_factor_31);
-    let cart_factor_5 = (-end_effector_factor_20)
+    let cart_factor_5 = (-end_effector_factor_29)
         .mul_add(
-            end_effector_factor_30,
-            (-end_effector_factor_8)
+            cart_factor_2,
+            (-end_effector_factor_20)
                 .mul_add(
-                    end_effector_factor_22,
-                    (-p[5])
+                    end_effector_factor_30,
+                    (-end_effector_factor_8)
                         .mul_add(
-                            end_effector_factor_13,
-                            end_effector_factor_29.mul_add(cart_factor_2, p[1]),
+                            end_effector_factor_22,
+                            (-p[5]).mul_add(end_effector_factor_13, p[1]),
                         ),
                 ),
         );
     let cart_factor_6 = end_effector_factor_28 * cart_factor;
-    let cart_factor_7 = (-end_effector_factor_20)
+    let cart_factor_7 = (-end_effector_factor_29)
         .mul_add(
-            end_effector_factor_32,
-            (-end_effector_factor_8)
+            cart_factor_6,
+            (-end_effector_factor_20)
                 .mul_add(
-                    end_effector_factor_23,
-                    (-p[5])
+                    end_effector_factor_32,
+                    (-end_effector_factor_8)
                         .mul_add(
-                            end_effector_factor_14,
-                            end_effector_factor_29.mul_add(cart_factor_6, p[0]),
+                            end_effector_factor_23,
+                            (-p[5]).mul_add(end_effector_factor_14, p[0]),
                         ),
                 ),
         );
@@ -3182,11 +3050,11 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
         / ((-cart_factor_4)
             .mul_add(
                 cart_factor_9,
-                (-end_effector_factor_28)
+                (-end_effector_factor_19)
                     .mul_add(
-                        cart_factor_6,
-                        (-end_effector_factor_19)
-                            .mul_add(end_effector_factor_32, end_effector_factor_24),
+                        end_effector_factor_32,
+                        end_effector_factor_28
+                            .mul_add(cart_factor_6, end_effector_factor_24),
                     ),
             ));
     // plate: speed (1 multiplication)
@@ -3209,31 +3077,28 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                 (-end_effector_factor_18)
                     .mul_add(
                         cart_speed,
-                        (-end_effector_factor_17)
+                        end_effector_factor_17
                             .mul_add(cart_speed_2, end_effector_factor_20),
                     ),
             ));
-    let end_effector_speed_2 = end_effector_factor_7
+    let end_effector_speed_2 = (-end_effector_factor_5)
         .mul_add(
-            plate_speed,
-            end_effector_factor_6
+            cart_speed_2,
+            end_effector_factor_7
                 .mul_add(
-                    cart_speed,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_speed_2,
-                            end_effector_factor_4 * end_effector_speed,
-                        ),
+                    plate_speed,
+                    end_effector_factor_6
+                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
                 ),
         );
     let end_effector_speed_3 = end_effector_factor_15
         * (end_effector_factor_8 - end_effector_speed_2);
-    let end_effector_speed_4 = end_effector_composite_inertia_30
+    let end_effector_speed_4 = (-end_effector_composite_inertia_28)
         .mul_add(
-            cart_speed,
-            end_effector_composite_inertia_28
+            cart_speed_2,
+            end_effector_composite_inertia_30
                 .mul_add(
-                    cart_speed_2,
+                    cart_speed,
                     end_effector_composite_inertia_7
                         .mul_add(
                             end_effector_speed,
@@ -3244,7 +3109,7 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
     [
         plate_speed,
         cart_speed,
-        cart_speed_2,
+        -cart_speed_2,
         end_effector_speed,
         end_effector_speed_3,
         end_effector_factor
@@ -3255,12 +3120,12 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
 
 /// H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.
 ///
-/// Operations: 167 additions, 230 multiplications, 6 divisions.
+/// Operations: 166 additions, 230 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
     let n = T::from_f64;
-    // end_effector: composite inertia (81 additions, 116 multiplications)
+    // end_effector: composite inertia (77 additions, 116 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
@@ -3359,14 +3224,11 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                     q[10] * end_effector_composite_inertia_15,
                 ),
         );
-    let end_effector_composite_inertia_21 = n(0.02)
+    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
         .mul_add(
-            end_effector_composite_inertia_19,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_20,
-                    end_effector_composite_inertia_18,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_20
+                .mul_add(n(0.15), end_effector_composite_inertia_18),
         );
     let end_effector_composite_inertia_22 = (-q[6])
         .mul_add(
@@ -3430,14 +3292,11 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                     q[10] * end_effector_composite_inertia_23,
                 ),
         );
-    let end_effector_composite_inertia_30 = n(0.02)
+    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
         .mul_add(
-            end_effector_composite_inertia_28,
-            n(0.15)
-                .mul_add(
-                    end_effector_composite_inertia_29,
-                    end_effector_composite_inertia_27,
-                ),
+            n(0.02),
+            end_effector_composite_inertia_29
+                .mul_add(n(0.15), end_effector_composite_inertia_27),
         );
     let end_effector_composite_inertia_31 = (-q[6])
         .mul_add(
@@ -3459,55 +3318,32 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_34 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33 + n(0.495);
-    let end_effector_composite_inertia_36 = end_effector_composite_inertia_34 + n(0.046);
-    let end_effector_composite_inertia_37 = (-end_effector_composite_inertia_34)
+    // cart: composite inertia (16 additions, 20 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
         .mul_add(
             n(0.04),
-            n(0.3)
-                .mul_add(
-                    end_effector_composite_inertia_33,
-                    end_effector_composite_inertia_27 + n(0.16493),
-                ),
+            end_effector_composite_inertia_33
+                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
         );
-    // cart: composite inertia (14 additions, 20 multiplications)
-    let cart_composite_inertia = (-q[6])
+    let cart_composite_inertia_4 = (-q[6])
         .mul_add(
-            (-q[2])
-                .mul_add(
-                    end_effector_composite_inertia_35,
-                    q[1] * end_effector_composite_inertia_36,
-                ),
+            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
-                    .mul_add(
-                        end_effector_composite_inertia_35,
-                        q[4] * end_effector_composite_inertia_36,
-                    )),
+                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_2 = (q[3]
+    let cart_composite_inertia_5 = (q[3]
         .mul_add(
             n(2.85),
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[1] * end_effector_composite_inertia_35,
-                ),
+            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] * n(2.0));
-    let cart_composite_inertia_3 = (q[6]
+    let cart_composite_inertia_6 = (q[6]
         .mul_add(
             n(2.85),
-            q[5]
-                .mul_add(
-                    end_effector_composite_inertia_36,
-                    q[4] * end_effector_composite_inertia_35,
-                ),
+            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] * n(2.0));
-    let cart_composite_inertia_4 = (-q[14])
-        .mul_add(
-            n(0.136),
-            q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.71) - n(0.4))),
-        );
     // end_effector: factor (43 additions, 55 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
     let end_effector_factor_2 = end_effector_composite_inertia_18 * end_effector_factor;
@@ -3568,7 +3404,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
             end_effector_composite_inertia_32
                 .mul_add(
                     end_effector_factor_11,
-                    q[6].mul_add(q[1] * n(5.7), end_effector_composite_inertia_36),
+                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_13 = end_effector_composite_inertia_30 * end_effector_factor;
@@ -3607,8 +3443,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
             (-end_effector_composite_inertia_32)
                 .mul_add(
                     end_effector_factor_14,
-                    end_effector_composite_inertia_37 + cart_composite_inertia_2
-                        + cart_composite_inertia_3 + n(2.05),
+                    cart_composite_inertia_3 + cart_composite_inertia_5
+                        + cart_composite_inertia_6 + n(2.05),
                 ),
         );
     let end_effector_factor_25 = n(1.0)
@@ -3622,10 +3458,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                 .mul_add(
                     end_effector_factor_21,
                     end_effector_composite_inertia_30
-                        .mul_add(
-                            end_effector_factor_11,
-                            end_effector_composite_inertia_36,
-                        ),
+                        .mul_add(end_effector_factor_11, cart_composite_inertia_2),
                 ),
         );
     let end_effector_factor_28 = end_effector_factor_19
@@ -3652,67 +3485,64 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                     (-end_effector_composite_inertia_32)
                         .mul_add(
                             end_effector_factor_13,
-                            end_effector_composite_inertia_37 - cart_composite_inertia,
+                            cart_composite_inertia_3 - cart_composite_inertia_4,
                         ),
                 ),
         );
     let end_effector_factor_32 = end_effector_factor_19 * end_effector_factor_25;
     // cart: factor (7 additions, 10 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / ((-end_effector_factor_17)
+        / (end_effector_factor_17
             .mul_add(
                 end_effector_factor_26,
-                (-end_effector_factor_5)
+                end_effector_factor_5
                     .mul_add(
                         end_effector_factor_21,
-                        (-end_effector_composite_inertia_28)
-                            .mul_add(end_effector_factor_11, n(5.7)),
+                        end_effector_composite_inertia_28
+                            .mul_add(end_effector_factor_11, -n(5.7)),
                     ),
             ));
     let cart_factor_2 = end_effector_factor_27 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_27)
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            (-end_effector_factor_18)
+            end_effector_factor_30,
+            (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_30,
-                    (-end_effector_factor_6)
+                    end_effector_factor_22,
+                    (-end_effector_composite_inertia_30)
                         .mul_add(
-                            end_effector_factor_22,
-                            (-end_effector_composite_inertia_30)
-                                .mul_add(
-                                    end_effector_factor_13,
-                                    end_effector_composite_inertia_37,
-                                ),
+                            end_effector_factor_13,
+                            end_effector_factor_27
+                                .mul_add(cart_factor_2, cart_composite_inertia_3),
                         ),
                 ),
         );
-    let cart_factor_4 = (-end_effector_factor_28)
+    let cart_factor_4 = end_effector_factor_28
         .mul_add(cart_factor_2, end_effector_factor_31);
-    let cart_factor_5 = (-end_effector_factor_20)
+    let cart_factor_5 = (-end_effector_factor_29)
         .mul_add(
-            end_effector_factor_30,
-            (-end_effector_factor_8)
+            cart_factor_2,
+            (-end_effector_factor_20)
                 .mul_add(
-                    end_effector_factor_22,
-                    (-p[5])
+                    end_effector_factor_30,
+                    (-end_effector_factor_8)
                         .mul_add(
-                            end_effector_factor_13,
-                            end_effector_factor_29.mul_add(cart_factor_2, p[1]),
+                            end_effector_factor_22,
+                            (-p[5]).mul_add(end_effector_factor_13, p[1]),
                         ),
                 ),
         );
     let cart_factor_6 = end_effector_factor_28 * cart_factor;
-    let cart_factor_7 = (-end_effector_factor_20)
+    let cart_factor_7 = (-end_effector_factor_29)
         .mul_add(
-            end_effector_factor_32,
-            (-end_effector_factor_8)
+            cart_factor_6,
+            (-end_effector_factor_20)
                 .mul_add(
-                    end_effector_factor_23,
-                    (-p[5])
+                    end_effector_factor_32,
+                    (-end_effector_factor_8)
                         .mul_add(
-                            end_effector_factor_14,
-                            end_effector_factor_29.mul_add(cart_factor_6, p[0]),
+                            end_effector_factor_23,
+                            (-p[5]).mul_add(end_effector_factor_14, p[0]),
                         ),
                 ),
         );
@@ -3723,11 +3553,11 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
         / ((-cart_factor_4)
             .mul_add(
                 cart_factor_9,
-                (-end_effector_factor_28)
+                (-end_effector_factor_19)
                     .mul_add(
-                        cart_factor_6,
-                        (-end_effector_factor_19)
-                            .mul_add(end_effector_factor_32, end_effector_factor_24),
+                        end_effector_factor_32,
+                        end_effector_factor_28
+                            .mul_add(cart_factor_6, end_effector_factor_24),
                     ),
             ));
     // plate: speed (1 multiplication)
@@ -3750,31 +3580,28 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                 (-end_effector_factor_18)
                     .mul_add(
                         cart_speed,
-                        (-end_effector_factor_17)
+                        end_effector_factor_17
                             .mul_add(cart_speed_2, end_effector_factor_20),
                     ),
             ));
-    let end_effector_speed_2 = end_effector_factor_7
+    let end_effector_speed_2 = (-end_effector_factor_5)
         .mul_add(
-            plate_speed,
-            end_effector_factor_6
+            cart_speed_2,
+            end_effector_factor_7
                 .mul_add(
-                    cart_speed,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_speed_2,
-                            end_effector_factor_4 * end_effector_speed,
-                        ),
+                    plate_speed,
+                    end_effector_factor_6
+                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
                 ),
         );
     let end_effector_speed_3 = end_effector_factor_15
         * (end_effector_factor_8 - end_effector_speed_2);
-    let end_effector_speed_4 = end_effector_composite_inertia_30
+    let end_effector_speed_4 = (-end_effector_composite_inertia_28)
         .mul_add(
-            cart_speed,
-            end_effector_composite_inertia_28
+            cart_speed_2,
+            end_effector_composite_inertia_30
                 .mul_add(
-                    cart_speed_2,
+                    cart_speed,
                     end_effector_composite_inertia_7
                         .mul_add(
                             end_effector_speed,
@@ -3782,10 +3609,14 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                         ),
                 ),
         );
-    let end_effector_speed_5 = p[3]
+    let end_effector_speed_5 = (-p[2])
         .mul_add(
-            end_effector_speed,
-            p[2].mul_add(cart_speed_2, p[1].mul_add(cart_speed, p[0] * plate_speed)),
+            cart_speed_2,
+            p[3]
+                .mul_add(
+                    end_effector_speed,
+                    p[1].mul_add(cart_speed, p[0] * plate_speed),
+                ),
         );
     let end_effector_speed_6 = p[5]
         .mul_add(
@@ -3795,15 +3626,17 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
             p[4].mul_add(end_effector_speed_3, end_effector_speed_5),
         );
     // plate: first moment (2 additions, 1 multiplication)
-    [
-        (cart_composite_inertia_4 - n(0.36))
-            .mul_add(n(9.81), end_effector_speed_6 * n(0.5)),
-    ]
+    let plate_first_moment = (-q[14])
+        .mul_add(
+            n(0.136),
+            q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))),
+        );
+    [plate_first_moment.mul_add(n(9.81), end_effector_speed_6 * n(0.5))]
 }
 
 /// Kinetic and potential energy, J.
 ///
-/// Operations: 51 additions, 70 multiplications.
+/// Operations: 50 additions, 70 multiplications.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn energies<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 2] {
@@ -3918,20 +3751,19 @@ pub fn energies<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 2] {
                         ),
                 ),
         );
-    // cart: first moment (1 addition)
-    let cart_first_moment = (-q[15])
-        .mul_add(
-            n(0.51),
-            (-q[13]).mul_add(n(0.085), q[14].mul_add(n(0.136), n(0.4) - n(1.71))),
-        );
     // plate: first moment (1 addition, 1 multiplication)
+    let plate_first_moment = (-q[14])
+        .mul_add(
+            n(0.136),
+            q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))),
+        );
     [
         (v[0]
             .mul_add(
                 v[0] * n(2.05),
                 cart_kinetic_energy_2 + end_effector_kinetic_energy_2,
             )) * n(0.5),
-        (cart_first_moment + n(0.36)) * n(-9.81),
+        plate_first_moment * n(9.81),
     ]
 }
 
@@ -3953,7 +3785,6 @@ pub fn poses<T: Scalar>(q: &[T; 16]) -> [[T; 12]; 3] {
     let cart_pose_4 = (-plate_sin).mul_add(q[5], plate_cos * q[2]);
     let cart_pose_5 = plate_cos.mul_add(q[4], plate_sin * q[1]);
     let cart_pose_6 = plate_cos.mul_add(q[5], plate_sin * q[2]);
-    // end_effector: pose (10 additions, 16 multiplications)
     [
         [
             plate_cos,
@@ -3981,7 +3812,7 @@ pub fn poses<T: Scalar>(q: &[T; 16]) -> [[T; 12]; 3] {
             n(1.0),
             cart_pose,
             cart_pose_2,
-            n(0.07999999999999999),
+            n(0.08),
         ],
         [
             q[10].mul_add(cart_pose_4, q[7] * cart_pose_3),

@@ -78,7 +78,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 9], v: &[T; 6], tau: &[T; 6]) -> [T; 
     let board_acceleration = v[0] * v[2];
     let board_acceleration_2 = v[0] * v[1];
     // front: acceleration (2 additions, 3 multiplications)
-    let front_acceleration = n(0.3) * (v[0] * v[0]);
+    let front_acceleration = (v[0] * v[0]) * n(0.3);
     // front: momentum (2 additions, 3 multiplications)
     let front_momentum = v[0] * n(0.3);
     // front: constraint (1 addition, 1 multiplication)
@@ -103,31 +103,24 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 9], v: &[T; 6], tau: &[T; 6]) -> [T; 
         );
     let back_constraint_3 = (-board_constraint_3)
         .mul_add(back_constraint_2, board_constraint_2 * front_constraint_2);
-    // front: effort (1 addition)
-    let front_effort = (-n(0.24200000000000002))
+    // board: effort (6 additions)
+    let board_effort = (-back_constraint_3)
         .mul_add(
-            back_constraint_3,
-            n(0.003)
-                .mul_add(
-                    tau[5] - back_constraint_3,
-                    n(0.003) * (tau[4] - back_constraint_3),
-                ),
+            n(0.24200000000000002),
+            (tau[5] - back_constraint_3)
+                .mul_add(n(0.003), (tau[4] - back_constraint_3) * n(0.003)),
         );
     // back: effort (2 additions, 2 multiplications)
     let back_effort = board_constraint_7
-        * (n(7.800000000000001)
+        * (((-board_constraint_6)
             .mul_add(
-                (-board_constraint_6)
-                    .mul_add(
-                        back_constraint_2,
-                        (-board_constraint_5)
-                            .mul_add(front_constraint_2, board_acceleration_2),
-                    ),
-                -tau[2],
-            ));
+                back_constraint_2,
+                (-board_constraint_5).mul_add(front_constraint_2, board_acceleration_2),
+            ))
+            .mul_add(n(7.800000000000001), -tau[2]));
     let back_effort_2 = (-board_constraint_4)
         .mul_add(
-            n(0.05).mul_add(tau[3] - back_constraint_3, front_effort - tau[0]),
+            (tau[3] - back_constraint_3).mul_add(n(0.05), board_effort - tau[0]),
             board_acceleration.mul_add(n(7.800000000000001), tau[1] - back_effort),
         );
     // board: composite inertia (2 additions, 5 multiplications, 1 division)
@@ -196,24 +189,21 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
     let board_composite_inertia_5 = board_constraint_4 * board_composite_inertia_4;
     let board_composite_inertia_6 = board_constraint_7 * board_composite_inertia_4;
     // board: momentum (3 multiplications)
-    let board_momentum = n(7.800000000000001) * board_composite_inertia_6;
+    let board_momentum = board_composite_inertia_6 * n(7.800000000000001);
     // front: momentum (3 additions, 4 multiplications)
-    let front_momentum = n(0.3) * board_composite_inertia_5;
+    let front_momentum = board_composite_inertia_5 * n(0.3);
     let front_momentum_2 = p[4] + board_composite_inertia_5;
     // back: momentum (4 additions, 3 multiplications)
     let back_momentum = p[5] + board_composite_inertia_5;
     // rotor: momentum (1 addition)
-    let rotor_momentum = n(0.003)
+    let rotor_momentum = back_momentum
         .mul_add(
-            back_momentum,
+            n(0.003),
             board_composite_inertia_5
                 .mul_add(
                     n(0.24200000000000002),
-                    n(0.003)
-                        .mul_add(
-                            front_momentum_2,
-                            n(0.05) * (p[3] + board_composite_inertia_5),
-                        ),
+                    front_momentum_2
+                        .mul_add(n(0.003), (p[3] + board_composite_inertia_5) * n(0.05)),
                 ),
         );
     // board: momentum (2 additions, 8 multiplications)
@@ -225,9 +215,9 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
     let board_momentum_5 = back_momentum * board_momentum_3;
     // back: momentum rate (3 additions, 5 multiplications)
     let back_momentum_rate = back_sin * board_momentum_5;
-    let back_momentum_rate_2 = n(0.3)
+    let back_momentum_rate_2 = back_momentum_rate
         .mul_add(
-            back_momentum_rate,
+            n(0.3),
             (back_sin
                 .mul_add(
                     board_composite_inertia_6 - front_momentum,
@@ -236,9 +226,9 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
         );
     // front: momentum rate (6 additions, 5 multiplications)
     let front_momentum_rate = front_sin * board_momentum_4;
-    let front_momentum_rate_2 = (-n(0.3))
+    let front_momentum_rate_2 = (-front_momentum_rate)
         .mul_add(
-            front_momentum_rate,
+            n(0.3),
             (front_sin
                 .mul_add(
                     board_composite_inertia_6 + front_momentum,
@@ -251,7 +241,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
             front_sin
                 .mul_add(
                     board_momentum_2,
-                    n(7.800000000000001) * board_composite_inertia_4,
+                    board_composite_inertia_4 * n(7.800000000000001),
                 ),
         );
     let front_momentum_rate_4 = (-front_cos)
@@ -360,10 +350,10 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 9], p: &[T; 6]) -> [T; 1] {
     // board: kinetic energy (2 additions, 3 multiplications)
     let board_kinetic_energy = board_composite_inertia_6
         .mul_add(
-            n(7.800000000000001) * board_composite_inertia_6,
+            board_composite_inertia_6 * n(7.800000000000001),
             board_composite_inertia_4
                 .mul_add(
-                    n(7.800000000000001) * board_composite_inertia_4,
+                    board_composite_inertia_4 * n(7.800000000000001),
                     board_composite_inertia_5
                         * (board_composite_inertia_5 * n(0.24200000000000002)),
                 ),
@@ -371,14 +361,13 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 9], p: &[T; 6]) -> [T; 1] {
     // back: kinetic energy (1 addition, 2 multiplications)
     let back_kinetic_energy = back_momentum
         .mul_add(
-            n(0.003) * back_momentum,
+            back_momentum * n(0.003),
             front_momentum
                 .mul_add(
-                    n(0.003) * front_momentum,
+                    front_momentum * n(0.003),
                     rotor_momentum
-                        .mul_add(n(0.05) * rotor_momentum, board_kinetic_energy),
+                        .mul_add(rotor_momentum * n(0.05), board_kinetic_energy),
                 ),
         );
-    // board: first moment (1 addition)
     [back_kinetic_energy.mul_add(n(0.5), n(1.9620000000000002))]
 }

@@ -286,7 +286,7 @@ fn acted_on(model: &Model) -> Vec<(&'static str, Model)> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let scene = scenes::load("plate_cart_arm");
     let all = compiled::elements(&mut random, &scene.mechanism);
-    let mut with = |what, add: &dyn Fn(&mut Elements)| {
+    let with = |what, add: &dyn Fn(&mut Elements)| {
         let mut model = model.clone();
         add(&mut model.elements);
         (what, model)

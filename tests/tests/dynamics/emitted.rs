@@ -54,12 +54,6 @@ fn is_written(file: &str, functions: Vec<Kind>) {
     );
 }
 
-#[test]
-fn the_committed_modules_are_what_is_written() {
-    is_what_is_written("../scenes/plate_cart_arm.toml", "plate_cart_arm");
-    is_what_is_written("data/scenes/ball_chain.toml", "ball_chain");
-}
-
 /// Loops over like links, in compiled Rust.
 #[test]
 fn loops_give_the_values_of_the_tree() {
