@@ -184,6 +184,7 @@ fn what_is_not_compiled_is_named() {
     let text = r#"
         hamel = 1
         name = "reasons"
+        gravity = [0.0, 0.0, -9.81]
         [[body]]
         name = "arm"
         parent = "world"

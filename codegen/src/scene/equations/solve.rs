@@ -97,7 +97,7 @@ fn together(
     }
     let at = |i: usize, j: usize| matrix[rest.rows[i % size]][rest.columns[j % size]];
     // Cyclic indices make the signs of 3×3 minors come out by themselves.
-    let cofactor = |i: usize, j: usize| match (size, (i + j).is_multiple_of(2)) {
+    let cofactor = |i: usize, j: usize| match (size, i == j) {
         (1, _) => Sym::Number(1.0),
         (2, true) => at(i + 1, j + 1),
         (2, false) => -at(i + 1, j + 1),
@@ -125,10 +125,11 @@ pub fn definite(mut matrix: Vec<Vec<Sym>>, mut x: Vec<Sym>) -> Vec<Sym> {
     let mut inverses = vec![Sym::zero(); size];
     for k in 0..size {
         inverses[k] = Sym::Number(1.0) / matrix[k][k];
+        let column: Vec<Sym> = matrix.iter().map(|row| row[k]).collect();
         for i in k + 1..size {
-            let factor = matrix[i][k] * inverses[k];
-            let column: Vec<Sym> = matrix[k + 1..=i].iter().map(|row| row[k]).collect();
-            for (entry, other) in matrix[i][k + 1..=i].iter_mut().zip(column) {
+            let factor = column[i] * inverses[k];
+            let row = matrix[i][k + 1..=i].iter_mut();
+            for (entry, &other) in row.zip(&column[k + 1..]) {
                 *entry -= factor * other;
             }
             let less = factor * x[k];
