@@ -28,6 +28,7 @@ pub struct Build {
     texts: BTreeMap<String, String>,
     functions: Vec<Kind>,
     floating_base: bool,
+    lanes: bool,
 }
 
 /// Why a scene is not compiled.
@@ -67,6 +68,7 @@ pub fn scene(path: impl Into<PathBuf>) -> Build {
         texts: BTreeMap::new(),
         functions: Kind::ALL.to_vec(),
         floating_base: false,
+        lanes: false,
     }
 }
 
@@ -99,6 +101,14 @@ impl Build {
     #[must_use]
     pub fn floating_base(mut self) -> Self {
         self.floating_base = true;
+        self
+    }
+
+    /// Lets forward and inverse dynamics take many states at a time (`hamel::compiled::Batch`), in SIMD lanes. They are compiled once for each level of
+    /// instructions, which takes its time: for a humanoid some ten seconds.
+    #[must_use]
+    pub fn lanes(mut self) -> Self {
+        self.lanes = true;
         self
     }
 
@@ -138,7 +148,7 @@ impl Build {
             .iter()
             .map(|&kind| functions::compile(&model, kind).function);
         let functions: Vec<_> = functions.collect();
-        emit::module(&model, &functions, label).map_err(Error::Write)
+        emit::module(&model, &functions, label, self.lanes).map_err(Error::Write)
     }
 
     /// What is compiled.

@@ -127,44 +127,55 @@ impl<const Q: usize, const V: usize, const U: usize> Rows<'_, Q, V, U> {
         let count = count.min(self.q.len()).min(self.v.len()).min(self.u.len());
         let mut start = 0;
         while start < count {
-            let q = eight_rows(self.q, start);
-            let v = eight_rows(self.v, start);
-            let u = eight_rows(self.u, start);
-            let results = eight::<F, FUSED, Q, V, U>(q, v, u);
-            let rows = LANES.min(count - start);
-            self.results[start..start + rows].copy_from_slice(&results[..rows]);
+            let q = side_by_side(self.q, start);
+            let v = side_by_side(self.v, start);
+            let u = side_by_side(self.u, start);
+            let mut results = [[0.0; LANES]; V];
+            eight::<F, FUSED, Q, V, U>(&q, &v, &u, &mut results);
+            for (lane, row) in self.results[start..count]
+                .iter_mut()
+                .take(LANES)
+                .enumerate()
+            {
+                for i in 0..V {
+                    row[i] = results[i][lane];
+                }
+            }
             start += LANES;
         }
     }
 }
 
-/// Rows from `start`, the last one repeated.
+/// Entry by entry the numbers of eight rows from `start`, the last one repeated.
 #[inline(always)]
-fn eight_rows<const N: usize>(rows: &[[f64; N]], start: usize) -> [[f64; N]; LANES] {
-    match rows[start..].first_chunk() {
-        Some(eight) => *eight,
-        None => core::array::from_fn(|lane| rows[(start + lane).min(rows.len() - 1)]),
+fn side_by_side<const N: usize>(rows: &[[f64; N]], start: usize) -> [[f64; LANES]; N] {
+    let mut lanes = [[0.0; LANES]; N];
+    for lane in 0..LANES {
+        let row = &rows[(start + lane).min(rows.len() - 1)];
+        for i in 0..N {
+            lanes[i][lane] = row[i];
+        }
     }
+    lanes
 }
 
-/// Eight states: the loop that is vectorised.
+/// Eight states: the loop that is vectorised. Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
 #[inline(always)]
 fn eight<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize>(
-    q: [[f64; Q]; LANES],
-    v: [[f64; V]; LANES],
-    u: [[f64; U]; LANES],
-) -> [[f64; V]; LANES]
-where
+    q: &[[f64; LANES]; Q],
+    v: &[[f64; LANES]; V],
+    u: &[[f64; LANES]; U],
+    results: &mut [[f64; LANES]; V],
+) where
     F: OfState<Q, V, U>,
 {
-    let mut results = [[0.0; V]; LANES];
     for lane in 0..LANES {
-        let value = F::value(
-            &q[lane].map(Lane::<FUSED>),
-            &v[lane].map(Lane),
-            &u[lane].map(Lane),
-        );
-        results[lane] = value.map(|entry| entry.0);
+        let q = core::array::from_fn(|i| Lane::<FUSED>(q[i][lane]));
+        let v = core::array::from_fn(|i| Lane::<FUSED>(v[i][lane]));
+        let u = core::array::from_fn(|i| Lane::<FUSED>(u[i][lane]));
+        let value = F::value(&q, &v, &u);
+        for i in 0..V {
+            results[i][lane] = value[i].0;
+        }
     }
-    results
 }

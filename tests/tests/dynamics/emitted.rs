@@ -17,8 +17,9 @@ fn folder() -> &'static Path {
 
 #[test]
 fn the_committed_module_is_what_is_written() {
-    let build =
-        scene(folder().join("../scenes/plate_cart_arm.toml")).library(hamel_joints::specs());
+    let build = scene(folder().join("../scenes/plate_cart_arm.toml"))
+        .library(hamel_joints::specs())
+        .lanes();
     let text = build
         .module("plate_cart_arm.toml")
         .unwrap_or_else(|error| panic!("{error}"));

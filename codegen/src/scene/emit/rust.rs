@@ -13,15 +13,22 @@ const RESERVED: [&str; 10] = [
     "q", "v", "p", "tau", "a", "n", "sines", "cosines", "hamel", "core",
 ];
 
-/// The module that holds `functions` of the model. `label` names the scene's file.
+/// The module that holds `functions` of the model. `label` names the scene's file; with `lanes` it can take many states at a time.
 ///
 /// # Errors
 /// Tokens that are no Rust: a fault of this crate.
-pub fn module(model: &Model, functions: &[Function], label: &str) -> Result<String, WriteError> {
+pub fn module(
+    model: &Model,
+    functions: &[Function],
+    label: &str,
+    lanes: bool,
+) -> Result<String, WriteError> {
     let bodies = identifiers(model);
     let sizes = sizes(model);
-    let items = functions.iter().map(|function| item(function, &bodies));
-    let equations = equations(model, functions);
+    let items = functions
+        .iter()
+        .map(|function| item(function, &bodies, lanes && is_batched(function)));
+    let equations = equations(model, functions, lanes);
     let tokens = quote! {
         use ::hamel::scalar::Scalar;
         #sizes
@@ -66,25 +73,36 @@ fn sizes(model: &Model) -> TokenStream {
     quote! { #(#items)* }
 }
 
+/// Whether the runtime takes the function for many states.
+fn is_batched(function: &Function) -> bool {
+    [Kind::ForwardDynamics, Kind::InverseDynamics]
+        .iter()
+        .any(|kind| kind.name() == function.name)
+}
+
 /// The constant by which the runtime finds the functions.
-fn equations(model: &Model, functions: &[Function]) -> TokenStream {
+fn equations(model: &Model, functions: &[Function], lanes: bool) -> TokenStream {
     let [configuration, freedoms, speeds] = model.sizes().map(Literal::usize_unsuffixed);
     let scene = &model.name;
-    let forward = match functions
-        .iter()
-        .find(|function| function.name == Kind::ForwardDynamics.name())
-    {
-        None => quote! { None },
-        Some(_) => quote! {
-            Some(|q, v, tau, rates| {
-                if let (Some(q), Some(v), Some(tau), Some(rates)) =
-                    (q.first_chunk(), v.first_chunk(), tau.first_chunk(), rates.first_chunk_mut())
-                {
-                    *rates = forward_dynamics::<f64>(q, v, tau);
-                }
-            })
-        },
+    let of = |kind: Kind| {
+        functions
+            .iter()
+            .find(|function| function.name == kind.name())
     };
+    let some = |found: Option<TokenStream>| match found {
+        None => quote! { None },
+        Some(value) => quote! { Some(#value) },
+    };
+    let one = |kind| some(of(kind).map(one_state));
+    let (forward, inverse) = (one(Kind::ForwardDynamics), one(Kind::InverseDynamics));
+    // A row without numbers is no row.
+    let lanes = lanes && model.sizes().iter().all(|&size| size > 0);
+    let many = |kind| some(of(kind).filter(|_| lanes).map(many_states));
+    let (forward_lanes, inverse_lanes) = (many(Kind::ForwardDynamics), many(Kind::InverseDynamics));
+    let batched = functions
+        .iter()
+        .filter(|function| lanes && is_batched(function));
+    let of_state = batched.map(of_state);
     quote! {
         /// These functions for the runtime, in double precision.
         pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations {
@@ -93,8 +111,70 @@ fn equations(model: &Model, functions: &[Function]) -> TokenStream {
             freedoms: #freedoms,
             speeds: #speeds,
             forward_dynamics: #forward,
+            inverse_dynamics: #inverse,
+            in_lanes: ::hamel::compiled::InLanes {
+                forward_dynamics: #forward_lanes,
+                inverse_dynamics: #inverse_lanes,
+            },
         };
+        #(#of_state)*
     }
+}
+
+/// A function of slices that are cut to its sizes.
+fn one_state(function: &Function) -> TokenStream {
+    let name = Ident::new(function.name, Span::call_site());
+    quote! {
+        |q, v, u, results| {
+            if let (Some(q), Some(v), Some(u), Some(results)) =
+                (q.first_chunk(), v.first_chunk(), u.first_chunk(), results.first_chunk_mut())
+            {
+                *results = #name::<f64>(q, v, u);
+            }
+        }
+    }
+}
+
+fn many_states(function: &Function) -> TokenStream {
+    let (kind, sizes) = (in_lanes(function), argument_sizes(function));
+    quote! { ::hamel::compiled::many_states::<#kind, #(#sizes),*> }
+}
+
+/// A function as a type, for the loop over states.
+fn of_state(function: &Function) -> TokenStream {
+    let (name, kind) = (
+        Ident::new(function.name, Span::call_site()),
+        in_lanes(function),
+    );
+    let sizes = argument_sizes(function);
+    let [q, v, u] = [0, 1, 2].map(|i| sizes.get(i));
+    let docs = format!(" `{}` in a loop over states.", function.name);
+    quote! {
+        #[doc = #docs]
+        struct #kind;
+        impl ::hamel::compiled::OfState<#(#sizes),*> for #kind {
+            #[inline(always)]
+            fn value<T: Scalar>(q: &[T; #q], v: &[T; #v], u: &[T; #u]) -> [T; #v] {
+                #name(q, v, u)
+            }
+        }
+    }
+}
+
+fn argument_sizes(function: &Function) -> Vec<Literal> {
+    let sizes = function.arguments.iter();
+    sizes
+        .map(|&(_, size)| Literal::usize_unsuffixed(size))
+        .collect()
+}
+
+/// The name of a function as a type.
+fn in_lanes(function: &Function) -> Ident {
+    let words = function.name.split('_').map(|word| {
+        let (first, rest) = word.split_at(1);
+        first.to_ascii_uppercase() + rest
+    });
+    Ident::new(&words.collect::<String>(), Span::call_site())
 }
 
 /// Names of the bodies as parts of identifiers.
@@ -120,7 +200,9 @@ fn identifiers(model: &Model) -> Vec<String> {
         .collect()
 }
 
-fn item(function: &Function, bodies: &[String]) -> TokenStream {
+/// With `inlined`, a loop over states sees its body, for each level of instructions.
+fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
+    let inline = inlined.then(|| quote! { #[inline(always)] });
     let lowered = Lowered::new(function, bodies, &RESERVED);
     let name = Ident::new(function.name, Span::call_site());
     let arguments = function.arguments.iter().map(|&(argument, size)| {
@@ -148,6 +230,7 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
     ];
     quote! {
         #(#[doc = #docs])*
+        #inline
         #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
         #[must_use]
         pub fn #name<T: Scalar>(#(#arguments),*) -> #kind {
