@@ -54,7 +54,6 @@ struct ForwardDynamics;
 
 impl ::hamel::compiled::OfState<16, 6, 7> for ForwardDynamics {
     #[inline(always)]
-
     fn value<T: Scalar>(q: &[T; 16], v: &[T; 6], u: &[T; 7]) -> [T; 6] {
         forward_dynamics(q, v, u)
     }
@@ -65,7 +64,6 @@ struct InverseDynamics;
 
 impl ::hamel::compiled::OfState<16, 6, 6> for InverseDynamics {
     #[inline(always)]
-
     fn value<T: Scalar>(q: &[T; 16], v: &[T; 6], u: &[T; 6]) -> [T; 6] {
         inverse_dynamics(q, v, u)
     }
