@@ -6,7 +6,7 @@
 //! ```
 //!
 //! ALGO is one of rnea, nle, crba, aba; all of them by default, and with rnea and aba those for 4 and 8 lanes. With `--build` the program is not started: its path is
-//! printed. A function of more operations than the limit (60000) is left out; of a model that has none left, or that the compiler refuses, the
+//! printed. A function of more operations than the limit (30000) is left out; of a model that has none left, or that the compiler refuses, the
 //! program says `skip` and why.
 
 use hamel_codegen::scene::emit;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Operations of the longest function that is compiled by default: beyond it the Rust compiler takes minutes.
-const LIMIT: usize = 60_000;
+const LIMIT: usize = 30_000;
 
 const KINDS: [(&str, Kind); 4] = [
     ("rnea", Kind::InverseDynamics),

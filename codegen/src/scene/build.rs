@@ -105,7 +105,7 @@ impl Build {
     }
 
     /// Lets forward and inverse dynamics take many states at a time (`hamel::compiled::Batch`), in SIMD lanes. They are compiled once for each level of
-    /// instructions, which takes its time: for a humanoid some ten seconds.
+    /// instructions, which takes the Rust compiler its time.
     #[must_use]
     pub fn lanes(mut self) -> Self {
         self.lanes = true;
