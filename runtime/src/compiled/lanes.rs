@@ -74,21 +74,23 @@ pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
         u: u.as_chunks().0,
         results: results.as_chunks_mut().0,
     };
+    #[cfg(all(feature = "levels", target_arch = "x86_64"))]
     match level {
-        #[cfg(all(feature = "levels", target_arch = "x86_64"))]
+        Level::Baseline => {}
         Level::Avx2 => {
             if let Some(simd) = pulp::x86::V3::try_new() {
                 return simd.vectorize(At::<F, Q, V, U>(rows, core::marker::PhantomData));
             }
         }
-        #[cfg(all(feature = "levels", target_arch = "x86_64"))]
         Level::Avx512 => {
             if let Some(simd) = pulp::x86::V4::try_new() {
                 return simd.vectorize(At::<F, Q, V, U>(rows, core::marker::PhantomData));
             }
         }
-        _ => {}
     }
+    // There is but one.
+    #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
+    let _ = level;
     rows.fill::<F, { cfg!(target_feature = "fma") }>();
 }
 
