@@ -46,6 +46,10 @@ pub struct Args {
     #[arg(long, conflicts_with = "output")]
     pub explain: bool,
 
+    /// Let forward and inverse dynamics take many states at a time, in SIMD lanes (`hamel::compiled::Batch`); compiling takes longer
+    #[arg(long, conflicts_with = "explain")]
+    pub lanes: bool,
+
     /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
     #[arg(long)]
     pub floating_base: bool,
@@ -109,6 +113,9 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     }
     if args.floating_base {
         build = build.floating_base();
+    }
+    if args.lanes {
+        build = build.lanes();
     }
     if args.explain {
         let model = build.model().map_err(refused)?;

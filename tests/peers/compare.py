@@ -36,8 +36,10 @@ for kv in filter(None, os.environ.get('EXTRA', '').split(';')):
     LIBS.append((k, c, {}))
 if os.environ.get('OURS'):
     LIBS.append(('hamel', os.environ['OURS'], {}))
+if os.environ.get('OURS_COMPILED'):
+    LIBS.append(('hamel compiled', os.environ['OURS_COMPILED'], {}))
 if a.libs:
-    LIBS = [l for l in LIBS if l[0] in a.libs.split(',') or l[0] == 'hamel']
+    LIBS = [l for l in LIBS if l[0] in a.libs.split(',') or l[0].startswith('hamel')]
 index = json.load(open(f'{W}/models/index.json'))
 robots = [r['name'] for r in index]
 if a.robots:
@@ -157,7 +159,11 @@ for rob in robots:
                 ('aba_world', 'aba'),
                 ('forward', 'aba'),
                 ('fd_crba_chol', 'aba'),
+                ('aba_x4', 'aba'),
+                ('aba_x8', 'aba'),
                 ('rnea', 'rnea'),
+                ('rnea_x4', 'rnea'),
+                ('rnea_x8', 'rnea'),
             ):
                 if al not in have[p.name] or (
                     p.name == 'pinocchio' and (al == 'rnea' or (al == 'aba' and not exact))
@@ -242,7 +248,7 @@ for rob in robots:
     for n in names:
         c = ', '.join(
             f'{al} {checks[(rob, n, al)]:.1e}'
-            for al in ('aba', 'aba_world', 'fd_crba_chol', 'rnea')
+            for al in ('aba', 'aba_world', 'fd_crba_chol', 'aba_x4', 'aba_x8', 'rnea', 'rnea_x4', 'rnea_x8')
             if (rob, n, al) in checks
         )
         row.append(c or '-')

@@ -2,6 +2,7 @@
 # Installs peers where they are missing, builds, measures, prints one markdown report.
 #   ./run.sh                                    everything (first time: ~35 min of installs and compiles on 2 cores)
 #   OURS='path/to/our_bench' ./run.sh           a program of ours built elsewhere (protocol: README.md)
+#   COMPILED='panda7 anymal g1:aba,rnea' ./run.sh    compiled scenes of these models as well (README.md)
 #   EXTRA='rbdl=/some/bench;x=cmd' ./run.sh     further programs
 #   ARGS='--robots g1,ball32 --algos aba,rnea --libs pinocchio,casadi_clang_fast --reps 15' ./run.sh
 #   SKIP_INSTALL=1, SKIP_CG=1     leave out steps;   PEERS_WORK=$HOME/.cache/peers   scratch directory
@@ -36,6 +37,12 @@ if [ ! -e "$W/ov/pinocchio/src/multibody/data.hxx" ]; then
 fi
 if [ ! -e "$W/models/index.json" ]; then
   log "models"; "$W/venv/bin/python" "$HERE/gen_models.py" "$W" >"$W/models.log" 2>&1 || log "gen_models failed, see $W/models.log"
+fi
+if [ -n "${COMPILED:-}" ]; then # after the models are there
+  log "compiled scenes of $COMPILED, for this machine's instructions"
+  models=(); for m in $COMPILED; do a=""; [[ $m == *:* ]] && a=":${m#*:}"; models+=("$W/models/${m%%:*}.txt$a"); done
+  OURS_COMPILED=$(cargo run --quiet --manifest-path "$HERE/../Cargo.toml" --example peer_compiled -- --build "$W/compiled" "${models[@]}") || exit 1
+  export OURS_COMPILED
 fi
 
 DEF="-DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_LIMIT_VECTOR_SIZE=30 -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS -DBOOST_FUSION_INVOKE_MAX_ARITY=12"

@@ -11,7 +11,7 @@
 
 use super::describe::Refused;
 use super::emit;
-use super::functions::{self, Kind, TooLong};
+use super::functions::{self, Kind, Loops, TooLong};
 use super::model::Model;
 use crate::derived::Derived;
 use crate::emit::rust::WriteError;
@@ -28,6 +28,7 @@ pub struct Build {
     texts: BTreeMap<String, String>,
     functions: Option<Vec<Kind>>,
     floating_base: bool,
+    lanes: bool,
 }
 
 /// A module of equations.
@@ -79,6 +80,7 @@ pub fn scene(path: impl Into<PathBuf>) -> Build {
         texts: BTreeMap::new(),
         functions: None,
         floating_base: false,
+        lanes: false,
     }
 }
 
@@ -111,6 +113,14 @@ impl Build {
     #[must_use]
     pub fn floating_base(mut self) -> Self {
         self.floating_base = true;
+        self
+    }
+
+    /// Lets forward and inverse dynamics take many states at a time (`hamel::compiled::Batch`), in SIMD lanes. They are compiled once for each level of
+    /// instructions, which takes the Rust compiler its time.
+    #[must_use]
+    pub fn lanes(mut self) -> Self {
+        self.lanes = true;
         self
     }
 
@@ -151,14 +161,22 @@ impl Build {
         let kinds = self.functions.as_deref().unwrap_or(&Kind::ALL);
         let (mut functions, mut left_out) = (vec![], vec![]);
         for &kind in kinds {
-            match functions::compile(&model, kind) {
+            match functions::compile(&model, kind, self.loops(kind)) {
                 Ok(chosen) => functions.push(chosen.function),
                 Err(long) if self.functions.is_none() => left_out.push(long),
                 Err(long) => return Err(Error::TooLong(long)),
             }
         }
-        let text = emit::module(&model, &functions, label).map_err(Error::Write)?;
+        let text = emit::module(&model, &functions, label, self.lanes).map_err(Error::Write)?;
         Ok(Module { text, left_out })
+    }
+
+    /// A loop over states must be the innermost one to become SIMD code.
+    fn loops(&self, kind: Kind) -> Loops {
+        match self.lanes && kind.is_batched() {
+            true => Loops::Never,
+            false => Loops::Long,
+        }
     }
 
     /// What is compiled.

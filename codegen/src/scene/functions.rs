@@ -160,6 +160,11 @@ impl Kind {
         }
     }
 
+    /// Whether the runtime takes it for many states.
+    pub const fn is_batched(self) -> bool {
+        matches!(self, Self::ForwardDynamics | Self::InverseDynamics)
+    }
+
     /// The columns of its result: 1 for a vector.
     fn columns(self, speeds: usize) -> usize {
         match self {
@@ -264,7 +269,7 @@ pub struct Chosen {
 ///
 /// # Errors
 /// More than [`LONGEST`] operations.
-pub fn compile(model: &Model, kind: Kind) -> Result<Chosen, TooLong> {
+pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, TooLong> {
     let least = match kind {
         Kind::MassMatrix => ENTRY * pairs(model),
         _ => 0,
@@ -273,7 +278,7 @@ pub fn compile(model: &Model, kind: Kind) -> Result<Chosen, TooLong> {
     if least > LONGEST {
         return Err(refused(least));
     }
-    let chosen = compile_with(model, &prune(model, Pruning::ALL), kind, Loops::default());
+    let chosen = compile_with(model, &prune(model, Pruning::ALL), kind, loops);
     match chosen.function.written() {
         operations if operations > LONGEST => Err(refused(operations)),
         _ => Ok(chosen),

@@ -1,15 +1,22 @@
 //! Equations of one mechanism that the scene compiler wrote, behind the trait [`Dynamics`](crate::dynamics::Dynamics).
 //!
-//! [`Equations`] is all that an emitted module needs, without allocator; [`Compiled`] is what integrators take.
+//! [`Equations`] is all that an emitted module needs, without allocator; [`Compiled`] is what integrators take, [`Batch`] computes many states
+//! at once.
 
+#[cfg(feature = "alloc")]
+mod batch;
+mod lanes;
 #[cfg(feature = "alloc")]
 mod tree;
 
 #[cfg(feature = "alloc")]
+pub use batch::{Batch, BatchError};
+pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
+#[cfg(feature = "alloc")]
 pub use tree::{Compiled, CompiledError};
 
-/// v̄̇ from Q, v̄ and τ, into the last argument; sizes are those of [`Equations`].
-pub type ForwardDynamics = fn(&[f64], &[f64], &[f64], &mut [f64]);
+/// A function of one state: Q, v̄ and inputs in, results into the last argument; sizes are those of [`Equations`].
+pub type OneState = fn(&[f64], &[f64], &[f64], &mut [f64]);
 
 /// p̄ from Q and v̄, or v̄ from Q and p̄, into the last argument.
 pub type MomentumMap = fn(&[f64], &[f64], &mut [f64]);
@@ -31,8 +38,10 @@ pub struct Equations {
     pub freedoms: usize,
     /// Entries of v̄.
     pub speeds: usize,
-    /// (24), (34), where the module has it.
-    pub forward_dynamics: Option<ForwardDynamics>,
+    /// v̄̇ from Q, v̄ and τ, (24), (34), where the module has it.
+    pub forward_dynamics: Option<OneState>,
+    /// Efforts τ̄ from Q, v̄ and v̄̇, (24), (34), where the module has it.
+    pub inverse_dynamics: Option<OneState>,
     /// p̄ = M̄ v̄, where the module has it.
     pub momenta: Option<MomentumMap>,
     /// v̄ = M̄⁻¹ p̄, where the module has it.
@@ -41,4 +50,15 @@ pub struct Equations {
     pub momentum_rates: Option<MomentumRates>,
     /// H, where the module has it.
     pub hamiltonian: Option<Hamiltonian>,
+    /// Forward and inverse dynamics of many states, eight at a time.
+    pub in_lanes: InLanes,
+}
+
+/// Functions of many states, where the module was compiled with lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct InLanes {
+    /// v̄̇ from Q, v̄ and τ.
+    pub forward_dynamics: Option<ManyStates>,
+    /// τ̄ from Q, v̄ and v̄̇.
+    pub inverse_dynamics: Option<ManyStates>,
 }

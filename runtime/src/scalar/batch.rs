@@ -4,7 +4,6 @@
 //! FDLIBM (Sun Microsystems 1993, `k_sin.c`, `k_cos.c`: below one unit in the last place). Angles beyond `LIMIT`, and what is not
 //! finite, go to the standard functions one by one.
 
-use super::Scalar;
 use num_traits::Float;
 
 /// Largest angle of the fast path, rad: multiples of π/2 up to 2¹⁹ times a part of 33 bits are exact.
@@ -37,13 +36,37 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
+/// Whether `f64` fuses.
+const FUSED: bool = cfg!(target_feature = "fma");
+
+/// `a * b + c`, fused or in two steps.
+#[inline(always)]
+pub(super) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED {
+        Float::mul_add(a, b, c)
+    } else {
+        a * b + c
+    }
+}
+
+/// Sine and cosine of an angle in radians, without branches: within 1.5 units in the last place, NaN beyond [`LIMIT`].
+#[inline(always)]
+pub(super) fn sin_cos<const FUSED: bool>(angle: f64) -> (f64, f64) {
+    let (sine, cosine) = reduced::<FUSED>(angle);
+    if serves(angle) {
+        (sine, cosine)
+    } else {
+        (f64::NAN, f64::NAN)
+    }
+}
+
 /// Sine and cosine of every angle in radians: within 1.5 units in the last place.
 #[inline]
 pub fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
     let mut served = true;
     for i in 0..N {
-        (sines[i], cosines[i]) = reduced(angles[i]);
+        (sines[i], cosines[i]) = reduced::<FUSED>(angles[i]);
         served &= serves(angles[i]);
     }
     if !served {
@@ -69,8 +92,8 @@ fn serves(angle: f64) -> bool {
 }
 
 #[inline(always)]
-fn reduced(x: f64) -> (f64, f64) {
-    let shifted = Scalar::mul_add(x, core::f64::consts::FRAC_2_PI, ROUND);
+fn reduced<const FUSED: bool>(x: f64) -> (f64, f64) {
+    let shifted = multiply_add::<FUSED>(x, core::f64::consts::FRAC_2_PI, ROUND);
     let k = shifted - ROUND;
     let quadrant = shifted.to_bits();
     // Exact: k has 20 bits, the parts 33.
@@ -81,7 +104,7 @@ fn reduced(x: f64) -> (f64, f64) {
     let tail = lost - (k * PARTS[2] + k * REST);
     let r = second + tail;
     let low = (second - r) + tail;
-    let (sine, cosine) = (sine(r, low), cosine(r, low));
+    let (sine, cosine) = (sine::<FUSED>(r, low), cosine::<FUSED>(r, low));
     let swapped = quadrant & 1 == 1;
     let (s, c) = (
         if swapped { cosine } else { sine },
@@ -96,28 +119,28 @@ fn reduced(x: f64) -> (f64, f64) {
 
 /// Of r + low, |r| ≤ π/4.
 #[inline(always)]
-fn sine(r: f64, low: f64) -> f64 {
+fn sine<const FUSED: bool>(r: f64, low: f64) -> f64 {
     let z = r * r;
     let cube = z * r;
-    let rest = polynomial(z, &SINE[1..]);
+    let rest = polynomial::<FUSED>(z, &SINE[1..]);
     let correction = z * (0.5 * low - cube * rest) - low;
     r - (correction - cube * SINE[0])
 }
 
 /// Of r + low, |r| ≤ π/4.
 #[inline(always)]
-fn cosine(r: f64, low: f64) -> f64 {
+fn cosine<const FUSED: bool>(r: f64, low: f64) -> f64 {
     let z = r * r;
     let half = 0.5 * z;
     let w = 1.0 - half;
-    w + (((1.0 - w) - half) + (z * (z * polynomial(z, &COSINE)) - r * low))
+    w + (((1.0 - w) - half) + (z * (z * polynomial::<FUSED>(z, &COSINE)) - r * low))
 }
 
 /// Coefficients from the lowest.
 #[inline(always)]
-fn polynomial(z: f64, coefficients: &[f64]) -> f64 {
+fn polynomial<const FUSED: bool>(z: f64, coefficients: &[f64]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, &coefficient| {
-        Scalar::mul_add(sum, z, coefficient)
+        multiply_add::<FUSED>(sum, z, coefficient)
     })
 }
 

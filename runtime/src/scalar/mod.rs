@@ -7,14 +7,16 @@
 mod batch;
 mod dual;
 mod float;
+mod lane;
 #[cfg(feature = "wide")]
 mod lanes;
 mod rotation;
 mod series;
 
 pub use dual::Dual;
+pub use lane::Lane;
 #[cfg(feature = "wide")]
-pub use lanes::{F64x4, Mask4};
+pub use lanes::{F64x4, F64x8, Mask4, Mask8};
 
 use core::ops::Neg;
 use nalgebra::{

@@ -19,16 +19,34 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
     configuration: 16,
     freedoms: 7,
     speeds: 6,
-    forward_dynamics: Some(|q, v, tau, rates| {
-        if let (Some(q), Some(v), Some(tau), Some(rates)) = (
+    forward_dynamics: Some(|q, v, u, results| {
+        if let (Some(q), Some(v), Some(u), Some(results)) = (
             q.first_chunk(),
             v.first_chunk(),
-            tau.first_chunk(),
-            rates.first_chunk_mut(),
+            u.first_chunk(),
+            results.first_chunk_mut(),
         ) {
-            *rates = forward_dynamics::<f64>(q, v, tau);
+            *results = forward_dynamics::<f64>(q, v, u);
         }
     }),
+    inverse_dynamics: Some(|q, v, u, results| {
+        if let (Some(q), Some(v), Some(u), Some(results)) = (
+            q.first_chunk(),
+            v.first_chunk(),
+            u.first_chunk(),
+            results.first_chunk_mut(),
+        ) {
+            *results = inverse_dynamics::<f64>(q, v, u);
+        }
+    }),
+    in_lanes: ::hamel::compiled::InLanes {
+        forward_dynamics: Some(
+            ::hamel::compiled::many_states::<ForwardDynamics, 16, 6, 7>,
+        ),
+        inverse_dynamics: Some(
+            ::hamel::compiled::many_states::<InverseDynamics, 16, 6, 6>,
+        ),
+    },
     momenta: Some(|q, v, out| {
         if let (Some(q), Some(v), Some(out)) = (
             q.first_chunk(),
@@ -64,9 +82,30 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
     }),
 };
 
+/// `forward_dynamics` in a loop over states.
+struct ForwardDynamics;
+
+impl ::hamel::compiled::OfState<16, 6, 7> for ForwardDynamics {
+    #[inline(always)]
+    fn value<T: Scalar>(q: &[T; 16], v: &[T; 6], u: &[T; 7]) -> [T; 6] {
+        forward_dynamics(q, v, u)
+    }
+}
+
+/// `inverse_dynamics` in a loop over states.
+struct InverseDynamics;
+
+impl ::hamel::compiled::OfState<16, 6, 6> for InverseDynamics {
+    #[inline(always)]
+    fn value<T: Scalar>(q: &[T; 16], v: &[T; 6], u: &[T; 6]) -> [T; 6] {
+        inverse_dynamics(q, v, u)
+    }
+}
+
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
 /// Operations: 248 additions, 333 multiplications, 6 divisions.
+#[inline(always)]
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T; 6] {
@@ -831,6 +870,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
 /// Efforts τ̄ = S̄ᵀτ that the accelerations take at Q and v̄, (24), (34).
 ///
 /// Operations: 108 additions, 134 multiplications.
+#[inline(always)]
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6] {

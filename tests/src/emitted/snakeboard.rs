@@ -19,16 +19,21 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
     configuration: 9,
     freedoms: 6,
     speeds: 6,
-    forward_dynamics: Some(|q, v, tau, rates| {
-        if let (Some(q), Some(v), Some(tau), Some(rates)) = (
+    forward_dynamics: Some(|q, v, u, results| {
+        if let (Some(q), Some(v), Some(u), Some(results)) = (
             q.first_chunk(),
             v.first_chunk(),
-            tau.first_chunk(),
-            rates.first_chunk_mut(),
+            u.first_chunk(),
+            results.first_chunk_mut(),
         ) {
-            *rates = forward_dynamics::<f64>(q, v, tau);
+            *results = forward_dynamics::<f64>(q, v, u);
         }
     }),
+    inverse_dynamics: None,
+    in_lanes: ::hamel::compiled::InLanes {
+        forward_dynamics: None,
+        inverse_dynamics: None,
+    },
     momenta: None,
     speeds_from_momenta: None,
     momentum_rates: Some(|q, p, tau, speeds, rates| {

@@ -4,6 +4,7 @@
 //! quaternion and its velocity in body axes; `R` and `P` turn about and slide along an axis. Joints of the library act
 //! about z: placements turn them.
 
+mod mechanism;
 mod model;
 mod reference;
 mod states;

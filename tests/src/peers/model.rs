@@ -1,10 +1,7 @@
 //! `MODEL.txt`: one line a joint.
 
-use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::spatial::{MassProperties, Pose};
-use hamel_joints::registry;
-use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use std::sync::Arc;
+use nalgebra::{Matrix3, Vector3};
 
 /// The four joint types of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,16 +23,6 @@ impl JointKind {
             Self::FreeFlyer => (7, 6),
             Self::Spherical => (4, 3),
             Self::Revolute | Self::Prismatic => (1, 1),
-        }
-    }
-
-    /// The joint of the library.
-    const fn joint(self) -> &'static str {
-        match self {
-            Self::FreeFlyer => "free",
-            Self::Spherical => "ball_child",
-            Self::Revolute => "revolute",
-            Self::Prismatic => "prismatic",
         }
     }
 }
@@ -102,46 +89,6 @@ impl Model {
         let sizes = self.joints.iter().map(|joint| joint.kind.sizes());
         sizes.fold((0, 0), |(nq, nv), (q, v)| (nq + q, nv + v))
     }
-
-    /// The mechanism of the library's joints.
-    ///
-    /// # Errors
-    /// What the mechanism refuses.
-    pub fn mechanism(&self) -> Result<Arc<Mechanism>, ModelError> {
-        let registry = registry();
-        let bodies = self.joints.iter().enumerate().map(|(index, line)| {
-            let entry = registry.get(line.kind.joint());
-            let entry = entry.ok_or_else(|| ModelError("joint missing".to_owned()))?;
-            let joint = (entry.build)(&[]).map_err(|error| ModelError(error.to_string()))?;
-            let turn = Pose::from_rotation(onto(&line.axis, line.kind));
-            Ok(BodySpec {
-                name: format!("body {}", index + 1),
-                joint_name: format!("joint {}", index + 1),
-                parent: line.parent,
-                joint,
-                placement: line.placement * turn,
-                child_placement: turn.inverse(),
-                mass: line.mass,
-            })
-        });
-        let bodies: Result<Vec<_>, ModelError> = bodies.collect();
-        let mechanism = Mechanism::new(self.gravity, bodies?).map_err(|errors| {
-            let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
-            ModelError(errors.join("; "))
-        })?;
-        Ok(Arc::new(mechanism))
-    }
-}
-
-/// A rotation that turns z onto the axis of a joint that has one.
-fn onto(axis: &Vector3<f64>, kind: JointKind) -> Matrix3<f64> {
-    if matches!(kind, JointKind::FreeFlyer | JointKind::Spherical) {
-        return Matrix3::identity();
-    }
-    let axis = Unit::new_normalize(*axis);
-    let rotation = Rotation3::rotation_between(&Vector3::z_axis(), &axis);
-    let half_turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-    rotation.map_or(half_turn, Rotation3::into_inner)
 }
 
 fn joint<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<JointLine, ModelError> {

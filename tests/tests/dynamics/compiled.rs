@@ -278,7 +278,7 @@ fn random_trees_with_elements_agree() {
 }
 
 fn flops(model: &Model, kind: Kind) -> usize {
-    let chosen = compile(model, kind).expect("it is short");
+    let chosen = compile(model, kind, Loops::default()).expect("it is short");
     chosen.function.operations().flops()
 }
 

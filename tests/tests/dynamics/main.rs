@@ -1,6 +1,7 @@
 //! Dynamics of trees: both forms against each other, against other formulations and against other programs.
 
 mod allocation;
+mod batches;
 mod chains;
 mod compiled;
 mod derivatives;

@@ -82,12 +82,13 @@ fn belong_together(a: &Item, b: &Item) -> bool {
 
 /// Puts a blank line before each method of an `impl`, its documentation included.
 fn apart(text: &str) -> String {
-    let is_doc = |line: &str| line.starts_with("    ///");
+    // Documentation and attributes lead to what they stand above.
+    let leads = |line: &str| line.starts_with("    ///") || line.starts_with("    #[");
     let mut spaced = String::with_capacity(text.len());
     let mut before = "";
     for (i, line) in text.lines().enumerate() {
-        let starts = is_doc(line) || line.starts_with("    fn ");
-        if starts && i > 1 && !is_doc(before) {
+        let starts = leads(line) || line.starts_with("    fn ");
+        if starts && i > 1 && !leads(before) {
             spaced += "\n";
         }
         spaced += line;

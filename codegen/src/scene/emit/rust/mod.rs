@@ -1,11 +1,12 @@
 //! A module of functions in Rust, generic over the runtime's scalars.
 
+mod equations;
 mod lines;
 
 use super::{Function, Lowered, array};
 use crate::emit::rust::{WriteError, text};
-use crate::scene::functions::Kind;
 use crate::scene::model::Model;
+use equations::{equations, is_batched};
 use lines::{line, value};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -16,15 +17,22 @@ const RESERVED: [&str; 14] = [
     "hamel", "core",
 ];
 
-/// The module that holds `functions` of the model. `label` names the scene's file.
+/// The module that holds `functions` of the model. `label` names the scene's file; with `lanes` it can take many states at a time.
 ///
 /// # Errors
 /// Tokens that are no Rust: a fault of this crate.
-pub fn module(model: &Model, functions: &[Function], label: &str) -> Result<String, WriteError> {
+pub fn module(
+    model: &Model,
+    functions: &[Function],
+    label: &str,
+    lanes: bool,
+) -> Result<String, WriteError> {
     let bodies = identifiers(model);
     let sizes = sizes(model);
-    let items = functions.iter().map(|function| item(function, &bodies));
-    let equations = equations(model, functions);
+    let items = functions
+        .iter()
+        .map(|function| item(function, &bodies, lanes && is_batched(function)));
+    let equations = equations(model, functions, lanes);
     let tokens = quote! {
         use ::hamel::scalar::Scalar;
         #sizes
@@ -69,92 +77,6 @@ fn sizes(model: &Model) -> TokenStream {
     quote! { #(#items)* }
 }
 
-/// The constant by which the runtime finds the functions.
-fn equations(model: &Model, functions: &[Function]) -> TokenStream {
-    let [configuration, freedoms, speeds] = model.sizes().map(Literal::usize_unsuffixed);
-    let scene = &model.name;
-    let forward = match functions
-        .iter()
-        .find(|function| function.name == Kind::ForwardDynamics.name())
-    {
-        None => quote! { None },
-        Some(_) => quote! {
-            Some(|q, v, tau, rates| {
-                if let (Some(q), Some(v), Some(tau), Some(rates)) =
-                    (q.first_chunk(), v.first_chunk(), tau.first_chunk(), rates.first_chunk_mut())
-                {
-                    *rates = forward_dynamics::<f64>(q, v, tau);
-                }
-            })
-        },
-    };
-    let hamiltonian = hamiltonian_form(functions);
-    quote! {
-        /// These functions for the runtime, in double precision.
-        pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations {
-            scene: #scene,
-            configuration: #configuration,
-            freedoms: #freedoms,
-            speeds: #speeds,
-            forward_dynamics: #forward,
-            #hamiltonian
-        };
-    }
-}
-
-/// The fields of that constant for the port-Hamiltonian form.
-fn hamiltonian_form(functions: &[Function]) -> TokenStream {
-    let field = |kind: Kind, value: TokenStream| {
-        let name = Ident::new(kind.name(), Span::call_site());
-        match functions
-            .iter()
-            .any(|function| function.name == kind.name())
-        {
-            true => quote! { #name: Some(#value), },
-            false => quote! { #name: None, },
-        }
-    };
-    let map = |kind: Kind| {
-        let name = Ident::new(kind.name(), Span::call_site());
-        let value = quote! {
-            |q, v, out| {
-                if let (Some(q), Some(v), Some(out)) =
-                    (q.first_chunk(), v.first_chunk(), out.first_chunk_mut())
-                {
-                    *out = #name::<f64>(q, v);
-                }
-            }
-        };
-        field(kind, value)
-    };
-    let rates = quote! {
-        |q, p, tau, speeds, rates| {
-            if let (Some(q), Some(p), Some(tau), Some(speeds), Some(rates)) = (
-                q.first_chunk(),
-                p.first_chunk(),
-                tau.first_chunk(),
-                speeds.first_chunk_mut(),
-                rates.first_chunk_mut(),
-            ) {
-                [*speeds, *rates] = momentum_rates::<f64>(q, p, tau);
-            }
-        }
-    };
-    let energy = quote! {
-        |q, p| match (q.first_chunk(), p.first_chunk()) {
-            (Some(q), Some(p)) => hamiltonian::<f64>(q, p)[0],
-            _ => f64::NAN,
-        }
-    };
-    let fields = [
-        map(Kind::Momenta),
-        map(Kind::Speeds),
-        field(Kind::MomentumRates, rates),
-        field(Kind::Hamiltonian, energy),
-    ];
-    quote! { #(#fields)* }
-}
-
 /// Names of the bodies as parts of identifiers.
 fn identifiers(model: &Model) -> Vec<String> {
     let identifier = |name: &str| {
@@ -178,7 +100,9 @@ fn identifiers(model: &Model) -> Vec<String> {
         .collect()
 }
 
-fn item(function: &Function, bodies: &[String]) -> TokenStream {
+/// With `inlined`, a loop over states sees its body, for each level of instructions.
+fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
+    let inline = inlined.then(|| quote! { #[inline(always)] });
     let lowered = Lowered::new(function, bodies, &RESERVED);
     let name = Ident::new(function.name, Span::call_site());
     let arguments = function.arguments.iter().map(|&(argument, size)| {
@@ -229,6 +153,7 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
     ];
     quote! {
         #(#[doc = #docs])*
+        #inline
         #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
         #[must_use]
         pub fn #name<T: Scalar>(#(#arguments),*) -> #kind {

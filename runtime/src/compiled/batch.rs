@@ -1,0 +1,298 @@
+//! Many states of one compiled scene: rows of Q, v̄ and inputs in, rows of results out.
+
+use super::{Equations, Level, ManyStates, OneState};
+use alloc::string::String;
+use core::fmt::Write;
+
+/// Why a batch is not computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BatchError {
+    /// The module was compiled without the function.
+    #[error(
+        "the equations compiled for `{scene}` have no {function}: compile it with this function"
+    )]
+    Missing {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// The function.
+        function: &'static str,
+    },
+    /// The level of SIMD instructions is not that of this machine.
+    #[error("this machine, or this build without the feature `levels`, has no {0:?}")]
+    Level(Level),
+    /// Speeds that are no whole number of rows.
+    #[error("{found} speeds are no whole number of states of `{scene}`, which has {row}")]
+    Partial {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// Speeds of one state.
+        row: usize,
+        /// What was given.
+        found: usize,
+    },
+    /// Other quantities have not as many rows as the speeds.
+    #[error("a batch of {states} states of `{scene}`: {mistakes}")]
+    Sizes {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// States by the number of speeds.
+        states: usize,
+        /// Every quantity of another size, with what it must have and what it has.
+        mistakes: String,
+    },
+}
+
+/// States of one task where several threads share a batch: a multiple of eight, some ten microseconds of work.
+#[cfg(feature = "rayon")]
+const TASK: usize = 128;
+
+/// A compiled scene for many states at once.
+///
+/// State after state, each in the mechanism's layout: `q` holds `configuration` numbers a state, `v` and results hold `speeds`, τ holds `freedoms`. Modules
+/// compiled with lanes take eight states at a time at the [`Level`] that was chosen; others take them one by one. A state's
+/// results depend on that state and the level alone: not on the other states, nor on the number of threads. Between levels they
+/// differ by rounding. A state without finite results (a singular mass, an angle beyond 8e5 rad) is computed again in `f64`, so that what
+/// is not finite then is not finite in [`Equations`] either. Nothing allocates, but for what `rayon` itself needs for its tasks.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch {
+    equations: &'static Equations,
+    level: Level,
+}
+
+/// One call: what is asked for, checked.
+#[derive(Clone, Copy)]
+struct Call<'a> {
+    one: OneState,
+    many: Option<ManyStates>,
+    level: Level,
+    /// Numbers of a state: Q, v̄, inputs.
+    row: [usize; 3],
+    /// Those of all states.
+    of: [&'a [f64]; 3],
+}
+
+impl Batch {
+    /// At the best level that the machine has.
+    pub fn new(equations: &'static Equations) -> Self {
+        let level = Level::default();
+        Self { equations, level }
+    }
+
+    /// At a given level.
+    ///
+    /// # Errors
+    /// A level that the machine does not have.
+    pub fn at(equations: &'static Equations, level: Level) -> Result<Self, BatchError> {
+        match level.is_available() {
+            true => Ok(Self { equations, level }),
+            false => Err(BatchError::Level(level)),
+        }
+    }
+
+    /// The level at which it computes.
+    pub fn level(&self) -> Level {
+        self.level
+    }
+
+    /// Accelerations v̄̇ of all states, (24), (34), on this thread.
+    ///
+    /// # Errors
+    /// A module without forward dynamics; numbers that are no whole states, or not the same number of states in all arguments.
+    pub fn forward_dynamics(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        tau: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), BatchError> {
+        self.forward(q, v, tau, rates)?.run(0, rates);
+        Ok(())
+    }
+
+    /// Efforts τ̄ that the accelerations `a` take at all states, (24), (34), on this thread.
+    ///
+    /// # Errors
+    /// A module without inverse dynamics; numbers that are no whole states, or not the same number of states in all arguments.
+    pub fn inverse_dynamics(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        a: &[f64],
+        efforts: &mut [f64],
+    ) -> Result<(), BatchError> {
+        self.inverse(q, v, a, efforts)?.run(0, efforts);
+        Ok(())
+    }
+
+    /// [`Batch::forward_dynamics`] on the threads of rayon's current pool.
+    ///
+    /// # Errors
+    /// Those of [`Batch::forward_dynamics`].
+    #[cfg(feature = "rayon")]
+    pub fn par_forward_dynamics(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        tau: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), BatchError> {
+        self.forward(q, v, tau, rates)?.share(rates);
+        Ok(())
+    }
+
+    /// [`Batch::inverse_dynamics`] on the threads of rayon's current pool.
+    ///
+    /// # Errors
+    /// Those of [`Batch::inverse_dynamics`].
+    #[cfg(feature = "rayon")]
+    pub fn par_inverse_dynamics(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        a: &[f64],
+        efforts: &mut [f64],
+    ) -> Result<(), BatchError> {
+        self.inverse(q, v, a, efforts)?.share(efforts);
+        Ok(())
+    }
+
+    fn forward<'a>(
+        &self,
+        q: &'a [f64],
+        v: &'a [f64],
+        tau: &'a [f64],
+        rates: &[f64],
+    ) -> Result<Call<'a>, BatchError> {
+        let equations = self.equations;
+        let function = (
+            equations.forward_dynamics,
+            equations.in_lanes.forward_dynamics,
+        );
+        let inputs = ("efforts", equations.freedoms, tau);
+        self.call(
+            "forward dynamics",
+            function,
+            [q, v],
+            inputs,
+            ("rates", rates),
+        )
+    }
+
+    fn inverse<'a>(
+        &self,
+        q: &'a [f64],
+        v: &'a [f64],
+        a: &'a [f64],
+        efforts: &[f64],
+    ) -> Result<Call<'a>, BatchError> {
+        let equations = self.equations;
+        let function = (
+            equations.inverse_dynamics,
+            equations.in_lanes.inverse_dynamics,
+        );
+        let inputs = ("accelerations", equations.speeds, a);
+        self.call(
+            "inverse dynamics",
+            function,
+            [q, v],
+            inputs,
+            ("efforts", efforts),
+        )
+    }
+
+    /// The call, where sizes fit: as many states in all arguments as in the speeds.
+    fn call<'a>(
+        &self,
+        function: &'static str,
+        (one, many): (Option<OneState>, Option<ManyStates>),
+        [q, v]: [&'a [f64]; 2],
+        (inputs, width, u): (&'static str, usize, &'a [f64]),
+        (outputs, results): (&'static str, &[f64]),
+    ) -> Result<Call<'a>, BatchError> {
+        let Equations {
+            scene,
+            configuration,
+            speeds,
+            ..
+        } = *self.equations;
+        let one = one.ok_or(BatchError::Missing { scene, function })?;
+        // A scene without speeds has no results whatever the number of its states.
+        let states = v.len().checked_div(speeds).unwrap_or(0);
+        if states * speeds != v.len() {
+            return Err(BatchError::Partial {
+                scene,
+                row: speeds,
+                found: v.len(),
+            });
+        }
+        let sizes = [
+            ("configuration", states * configuration, q.len()),
+            (inputs, states * width, u.len()),
+            (outputs, states * speeds, results.len()),
+        ];
+        if let Some(mistakes) = mistakes(sizes) {
+            return Err(BatchError::Sizes {
+                scene,
+                states,
+                mistakes,
+            });
+        }
+        Ok(Call {
+            one,
+            many,
+            level: self.level,
+            row: [configuration, speeds, width],
+            of: [q, v, u],
+        })
+    }
+}
+
+/// What is wrong with sizes, given as name, right number and what was found.
+fn mistakes(sizes: [(&'static str, usize, usize); 3]) -> Option<String> {
+    let mut text = String::new();
+    for (quantity, expected, found) in sizes {
+        if expected != found {
+            let stop = if text.is_empty() { "" } else { "; " };
+            // Writing to a string does not fail.
+            _ = write!(
+                text,
+                "{stop}{quantity} must have {expected} numbers, not {found}"
+            );
+        }
+    }
+    (!text.is_empty()).then_some(text)
+}
+
+impl Call<'_> {
+    /// Results of states from `first`, as many as there is room for.
+    fn run(&self, first: usize, results: &mut [f64]) {
+        let [_, speeds, _] = self.row;
+        let Some(states) = results.len().checked_div(speeds) else {
+            return;
+        };
+        if let Some(many) = self.many {
+            let [q, v, u] = self.rows(first, states);
+            many(self.level, q, v, u, results);
+        }
+        for (state, results) in results.chunks_exact_mut(speeds).enumerate() {
+            if self.many.is_none() || !results.iter().all(|entry| entry.is_finite()) {
+                let [q, v, u] = self.rows(first + state, 1);
+                (self.one)(q, v, u, results);
+            }
+        }
+    }
+
+    fn rows(&self, first: usize, states: usize) -> [&[f64]; 3] {
+        core::array::from_fn(|i| &self.of[i][first * self.row[i]..(first + states) * self.row[i]])
+    }
+
+    #[cfg(feature = "rayon")]
+    fn share(&self, results: &mut [f64]) {
+        use rayon::prelude::*;
+        let task = TASK * self.row[1].max(1);
+        results
+            .par_chunks_mut(task)
+            .enumerate()
+            .for_each(|(number, results)| self.run(number * TASK, results));
+    }
+}

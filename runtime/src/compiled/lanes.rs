@@ -1,0 +1,183 @@
+//! Eight states at a time: a loop over states whose body is one straight-line function, which the compiler vectorises for each level of
+//! instructions.
+//!
+//! The source is the one that serves single states, in the scalar [`Lane`]. What the loop computes for a state depends on that state alone, so
+//! that neither the number of states nor their order shows in any result. Levels with fused multiply–adds and those without
+//! differ by rounding.
+
+use crate::scalar::{Lane, Scalar};
+
+/// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
+pub const LANES: usize = 8;
+
+/// A function of one state for any scalar: Q, v̄ and inputs in, as many results as speeds. Its code must be inlined into `value`.
+pub trait OfState<const Q: usize, const V: usize, const U: usize> {
+    /// The results.
+    fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U]) -> [T; V];
+}
+
+/// A function of many states at a level that the machine has: rows of Q, v̄ and inputs, and of results.
+pub type ManyStates = fn(Level, &[f64], &[f64], &[f64], &mut [f64]);
+
+/// SIMD instructions, from the fewest to the most. The default is the best that the machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Level {
+    /// What the program is built for.
+    Baseline,
+    /// x86-64 with AVX2 and FMA: four doubles a register.
+    Avx2,
+    /// x86-64 with AVX-512: eight doubles a register.
+    Avx512,
+}
+
+impl Level {
+    /// All levels.
+    pub const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
+
+    /// Whether this machine has it. Without the feature `levels` it is the baseline alone.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            #[cfg(all(feature = "levels", target_arch = "x86_64"))]
+            Self::Avx2 => pulp::x86::V3::try_new().is_some(),
+            #[cfg(all(feature = "levels", target_arch = "x86_64"))]
+            Self::Avx512 => pulp::x86::V4::try_new().is_some(),
+            #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
+            _ => false,
+        }
+    }
+}
+
+impl Default for Level {
+    fn default() -> Self {
+        let mut available = Self::ALL.into_iter().filter(|level| level.is_available());
+        available.next_back().unwrap_or(Self::Baseline)
+    }
+}
+
+/// `F` of as many states as there are rows in all arguments, eight at a time. What a machine does not have is done at the baseline.
+///
+/// Modules that are compiled with lanes hold this function of theirs: see [`Equations`](super::Equations).
+pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
+    level: Level,
+    q: &[f64],
+    v: &[f64],
+    u: &[f64],
+    results: &mut [f64],
+) where
+    F: OfState<Q, V, U>,
+{
+    let rows = Rows {
+        q: q.as_chunks().0,
+        v: v.as_chunks().0,
+        u: u.as_chunks().0,
+        results: results.as_chunks_mut().0,
+    };
+    #[cfg(all(feature = "levels", target_arch = "x86_64"))]
+    match level {
+        Level::Baseline => {}
+        Level::Avx2 => {
+            if let Some(simd) = pulp::x86::V3::try_new() {
+                return simd.vectorize(At::<F, Q, V, U>(rows, core::marker::PhantomData));
+            }
+        }
+        Level::Avx512 => {
+            if let Some(simd) = pulp::x86::V4::try_new() {
+                return simd.vectorize(At::<F, Q, V, U>(rows, core::marker::PhantomData));
+            }
+        }
+    }
+    // There is but one.
+    #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
+    let _ = level;
+    rows.fill::<F, { cfg!(target_feature = "fma") }>();
+}
+
+/// Arguments and results, a row for each state.
+struct Rows<'a, const Q: usize, const V: usize, const U: usize> {
+    q: &'a [[f64; Q]],
+    v: &'a [[f64; V]],
+    u: &'a [[f64; U]],
+    results: &'a mut [[f64; V]],
+}
+
+/// The same for a level with fused multiply–adds.
+#[cfg(all(feature = "levels", target_arch = "x86_64"))]
+struct At<'a, F, const Q: usize, const V: usize, const U: usize>(
+    Rows<'a, Q, V, U>,
+    core::marker::PhantomData<F>,
+);
+
+#[cfg(all(feature = "levels", target_arch = "x86_64"))]
+impl<F: OfState<Q, V, U>, const Q: usize, const V: usize, const U: usize> pulp::NullaryFnOnce
+    for At<'_, F, Q, V, U>
+{
+    type Output = ();
+
+    // Inlined, as all that it calls, into a function that may use the instructions of the level.
+    #[inline(always)]
+    fn call(self) {
+        self.0.fill::<F, true>();
+    }
+}
+
+impl<const Q: usize, const V: usize, const U: usize> Rows<'_, Q, V, U> {
+    #[inline(always)]
+    fn fill<F: OfState<Q, V, U>, const FUSED: bool>(self) {
+        let count = self.results.len();
+        let count = count.min(self.q.len()).min(self.v.len()).min(self.u.len());
+        let mut start = 0;
+        while start < count {
+            let q = side_by_side(self.q, start);
+            let v = side_by_side(self.v, start);
+            let u = side_by_side(self.u, start);
+            let mut results = [[0.0; LANES]; V];
+            eight::<F, FUSED, Q, V, U>(&q, &v, &u, &mut results);
+            for (lane, row) in self.results[start..count]
+                .iter_mut()
+                .take(LANES)
+                .enumerate()
+            {
+                for i in 0..V {
+                    row[i] = results[i][lane];
+                }
+            }
+            start += LANES;
+        }
+    }
+}
+
+/// Entry by entry the numbers of eight rows from `start`, the last one repeated.
+#[inline(always)]
+fn side_by_side<const N: usize>(rows: &[[f64; N]], start: usize) -> [[f64; LANES]; N] {
+    let mut lanes = [[0.0; LANES]; N];
+    for lane in 0..LANES {
+        let row = &rows[(start + lane).min(rows.len() - 1)];
+        for i in 0..N {
+            lanes[i][lane] = row[i];
+        }
+    }
+    lanes
+}
+
+/// Eight states: the loop that is vectorised. Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
+#[inline(always)]
+fn eight<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize>(
+    q: &[[f64; LANES]; Q],
+    v: &[[f64; LANES]; V],
+    u: &[[f64; LANES]; U],
+    results: &mut [[f64; LANES]; V],
+) where
+    F: OfState<Q, V, U>,
+{
+    for lane in 0..LANES {
+        let q = core::array::from_fn(|i| Lane::<FUSED>(q[i][lane]));
+        let v = core::array::from_fn(|i| Lane::<FUSED>(v[i][lane]));
+        let u = core::array::from_fn(|i| Lane::<FUSED>(u[i][lane]));
+        let value = F::value(&q, &v, &u);
+        for i in 0..V {
+            results[i][lane] = value[i].0;
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Compiled scenes as a program that the peer harness (`tests/peers`) measures: writes a project of `tests/peers/compiled/main.rs` with a module
+//! for each model, builds it for this machine's instructions, and starts it.
+//!
+//! ```text
+//! peer_compiled [--build] [--limit OPERATIONS] FOLDER MODEL.txt[:ALGO,ALGO...] ...
+//! ```
+//!
+//! ALGO is one of rnea, nle, crba, aba; all of them by default, and with rnea and aba those for 4 and 8 lanes. With `--build` the program is not started: its path is
+//! printed. A function of more operations than the limit (30000) is left out; of a model that has none left, or that the compiler refuses, the
+//! program says `skip` and why.
+
+use hamel_codegen::scene::emit::{self, Function};
+use hamel_codegen::scene::functions::{Kind, Loops, compile};
+use hamel_tests::compiled;
+use hamel_tests::peers::Model;
+use std::error::Error;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Operations of the longest function that is compiled by default: beyond it the Rust compiler takes minutes.
+const LIMIT: usize = 30_000;
+
+const KINDS: [(&str, Kind); 4] = [
+    ("rnea", Kind::InverseDynamics),
+    ("nle", Kind::BiasForces),
+    ("crba", Kind::MassMatrix),
+    ("aba", Kind::ForwardDynamics),
+];
+
+struct Options {
+    build: bool,
+    limit: usize,
+    folder: PathBuf,
+    models: Vec<String>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = options()?;
+    let mut list = String::from("use hamel::scalar::F64x4;\n");
+    let mut arms = String::new();
+    let folder = options.folder.join("src/models");
+    std::fs::create_dir_all(&folder)?;
+    for asked in &options.models {
+        let (path, algorithms) = asked.split_once(':').unwrap_or((asked, ""));
+        let name = Path::new(path).file_stem().unwrap_or_default();
+        let name = name.to_string_lossy().replace('-', "_");
+        match module(path, &name, algorithms, options.limit) {
+            Ok((text, functions)) => {
+                std::fs::write(folder.join(format!("{name}.rs")), text)?;
+                writeln!(list, "mod {name};")?;
+                let functions = functions.join(" ");
+                writeln!(
+                    arms,
+                    "        {name:?} => Ok(crate::functions!({name}: {functions})),"
+                )?;
+            }
+            Err(reason) => {
+                let reason = reason.to_string();
+                eprintln!("{name}: {reason}");
+                writeln!(arms, "        {name:?} => Err({reason:?}.into()),")?;
+            }
+        }
+    }
+    list += "\n/// The functions of a model, or why there are none.\n";
+    list += "pub fn find(name: &str) -> Result<crate::Functions, String> {\n    match name {\n";
+    list += &arms;
+    list += "        _ => Err(\"not among the models that were compiled\".into()),\n    }\n}\n";
+    std::fs::write(folder.join("mod.rs"), list)?;
+    start(&options)
+}
+
+fn options() -> Result<Options, Box<dyn Error>> {
+    let usage =
+        "usage: peer_compiled [--build] [--limit OPERATIONS] FOLDER MODEL.txt[:ALGO,ALGO...] ...";
+    let mut arguments = std::env::args().skip(1).peekable();
+    let mut options = Options {
+        build: false,
+        limit: LIMIT,
+        folder: PathBuf::new(),
+        models: vec![],
+    };
+    while let Some(option) = arguments.next_if(|argument| argument.starts_with("--")) {
+        match option.as_str() {
+            "--build" => options.build = true,
+            "--limit" => options.limit = arguments.next().ok_or(usage)?.parse()?,
+            _ => return Err(usage.into()),
+        }
+    }
+    options.folder = std::path::absolute(arguments.next().ok_or(usage)?)?;
+    options.models = arguments.collect();
+    Ok(options)
+}
+
+/// The module of a model, and the names of its functions.
+fn module(
+    path: &str,
+    name: &str,
+    algorithms: &str,
+    limit: usize,
+) -> Result<(String, Vec<&'static str>), Box<dyn Error>> {
+    let asked: Vec<&str> = algorithms
+        .split(',')
+        .filter(|name| !name.is_empty())
+        .collect();
+    for algorithm in &asked {
+        if !KINDS.iter().any(|(known, _)| known == algorithm) {
+            return Err(
+                format!("no algorithm `{algorithm}`: rnea, nle, crba, aba are there").into(),
+            );
+        }
+    }
+    let model = Model::parse(&std::fs::read_to_string(path)?).map_err(|error| error.0)?;
+    let mechanism = model.mechanism().map_err(|error| error.0)?;
+    let model = compiled::model(name, &mechanism);
+    let mut functions = vec![];
+    for (algorithm, kind) in KINDS {
+        if !asked.is_empty() && !asked.contains(&algorithm) {
+            continue;
+        }
+        let chosen = compile(&model, kind, Loops::Long).map(|chosen| chosen.function);
+        let operations = chosen.as_ref().map_or(usize::MAX, Function::written);
+        match chosen {
+            Ok(function) if operations <= limit => functions.push(function),
+            Ok(_) => eprintln!("{name}: {algorithm} left out, it has {operations} operations"),
+            Err(long) => eprintln!("{name}: {algorithm} left out: {long}"),
+        }
+    }
+    if functions.is_empty() {
+        return Err(format!("every function has more than {limit} operations").into());
+    }
+    // Loops over like bodies do not become SIMD code.
+    let lanes = functions.iter().all(|function| function.plan.is_none());
+    let text = emit::module(&model, &functions, &format!("{name}.txt"), lanes)?;
+    Ok((
+        text,
+        functions.iter().map(|function| function.name).collect(),
+    ))
+}
+
+/// Builds the project and starts it.
+fn start(options: &Options) -> Result<(), Box<dyn Error>> {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = &options.folder;
+    std::fs::copy(
+        tests.join("peers/compiled/main.rs"),
+        folder.join("src/main.rs"),
+    )?;
+    std::fs::create_dir_all(folder.join("src/peers"))?;
+    for file in ["model.rs", "states.rs"] {
+        let from = tests.join("src/peers").join(file);
+        std::fs::copy(from, folder.join("src/peers").join(file))?;
+    }
+    std::fs::write(folder.join("Cargo.toml"), manifest(tests))?;
+    // The versions of this workspace.
+    std::fs::copy(tests.join("../Cargo.lock"), folder.join("Cargo.lock"))?;
+    let built = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()))
+        .args(["build", "--quiet", "--release", "--manifest-path"])
+        .arg(folder.join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(folder.join("target"))
+        .env("RUSTFLAGS", "-C target-cpu=native")
+        // Standard output is for the protocol.
+        .stdout(Stdio::null())
+        .status()?;
+    if !built.success() {
+        return Err(format!("{} is not built", folder.display()).into());
+    }
+    let program = folder.join("target/release/peer");
+    if options.build {
+        println!("{}", program.display());
+        return Ok(());
+    }
+    let status = Command::new(program).status()?;
+    std::process::exit(status.code().unwrap_or(1));
+}
+
+fn manifest(tests: &Path) -> String {
+    let root = tests.join("..").display().to_string();
+    format!(
+        r#"[package]
+name = "peer"
+version = "0.0.0"
+edition = "2024"
+
+[workspace]
+
+[dependencies]
+cpu-time = "1.0"
+hamel = {{ path = "{root}/runtime", features = ["levels", "wide"] }}
+nalgebra = {{ version = "0.35", default-features = false, features = ["libm", "std"] }}
+
+[profile.release]
+debug = false
+"#
+    )
+}

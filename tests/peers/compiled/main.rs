@@ -1,0 +1,308 @@
+//! Compiled scenes as one of the programs that the peer harness measures: the protocol is in `tests/peers/README.md`.
+//!
+//! The example `peer_compiled` makes a project of this file, with a folder `models` of a module for each model.
+
+#[allow(dead_code, reason = "not all of every module is called")]
+mod models;
+
+/// The harness's formats, as the suites read them.
+#[allow(dead_code, reason = "states alone are read here")]
+mod peers {
+    mod model;
+    mod states;
+    pub use model::{JointKind, Model};
+    pub use states::{States, convert};
+}
+
+use hamel::compiled::{Batch, Equations};
+use hamel::scalar::F64x4;
+use peers::{Model, States, convert};
+use std::error::Error;
+use std::hint::black_box;
+use std::io::{BufRead, Write};
+
+/// States that the batched algorithms take in one call at most.
+const BATCH: usize = 64;
+
+/// What a module holds, behind pointers.
+#[derive(Clone, Copy)]
+pub struct Functions {
+    equations: &'static Equations,
+    mass_matrix: Option<fn(&[f64], &mut [f64])>,
+    bias_forces: Option<fn(&[f64], &[f64], &mut [f64])>,
+    forward_x4: Option<Four>,
+    inverse_x4: Option<Four>,
+}
+
+/// A function of four states side by side.
+type Four = fn(&[F64x4], &[F64x4], &[F64x4], &mut [F64x4]);
+
+/// The functions of a module; the names of those that it has stand behind its own.
+#[macro_export]
+macro_rules! functions {
+    ($module:ident: $($function:ident)*) => {{
+        let mut functions = $crate::Functions::new(&$module::EQUATIONS);
+        $($crate::function!(functions, $module, $function);)*
+        functions
+    }};
+}
+
+/// One function of a module.
+#[macro_export]
+macro_rules! function {
+    ($functions:ident, $module:ident, mass_matrix) => {
+        $functions.mass_matrix = Some(|q, results| {
+            if let Some(q) = q.first_chunk() {
+                results.copy_from_slice($module::mass_matrix::<f64>(q).as_flattened());
+            }
+        })
+    };
+    ($functions:ident, $module:ident, bias_forces) => {
+        $functions.bias_forces = Some(|q, v, results| {
+            if let (Some(q), Some(v)) = (q.first_chunk(), v.first_chunk()) {
+                results.copy_from_slice(&$module::bias_forces::<f64>(q, v));
+            }
+        })
+    };
+    ($functions:ident, $module:ident, forward_dynamics) => {
+        $functions.forward_x4 = Some($crate::four!($module, forward_dynamics))
+    };
+    ($functions:ident, $module:ident, inverse_dynamics) => {
+        $functions.inverse_x4 = Some($crate::four!($module, inverse_dynamics))
+    };
+}
+
+/// A function of four states side by side.
+#[macro_export]
+macro_rules! four {
+    ($module:ident, $function:ident) => {
+        |q, v, u, results| {
+            if let (Some(q), Some(v), Some(u)) = (q.first_chunk(), v.first_chunk(), u.first_chunk())
+            {
+                results.copy_from_slice(&$module::$function::<F64x4>(q, v, u));
+            }
+        }
+    };
+}
+
+impl Functions {
+    const fn new(equations: &'static Equations) -> Self {
+        Self {
+            equations,
+            mass_matrix: None,
+            bias_forces: None,
+            forward_x4: None,
+            inverse_x4: None,
+        }
+    }
+
+    /// The algorithms that there are, by the harness's names.
+    fn algorithms(&self) -> String {
+        let equations = self.equations;
+        let lanes = &equations.in_lanes;
+        let all = [
+            ("rnea", equations.inverse_dynamics.is_some()),
+            ("nle", self.bias_forces.is_some()),
+            ("crba", self.mass_matrix.is_some()),
+            ("aba", equations.forward_dynamics.is_some()),
+            ("aba_x4", self.forward_x4.is_some()),
+            ("aba_x8", lanes.forward_dynamics.is_some()),
+            ("rnea_x4", self.inverse_x4.is_some()),
+            ("rnea_x8", lanes.inverse_dynamics.is_some()),
+        ];
+        let there = all.iter().filter(|(_, there)| *there);
+        there.map(|(name, _)| format!(" {name}")).collect()
+    }
+}
+
+/// One model, loaded.
+struct Loaded {
+    model: Model,
+    functions: Functions,
+    batch: Batch,
+    states: States,
+    /// The same states one after the other.
+    rows: [Vec<f64>; 3],
+    /// The same in groups of four, entry by entry.
+    fours: [Vec<F64x4>; 3],
+    out: Vec<f64>,
+    out_four: Vec<F64x4>,
+    mass: Vec<f64>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut loaded: Option<Loaded> = None;
+    let mut output = std::io::stdout().lock();
+    for line in std::io::stdin().lock().lines() {
+        let line = line?;
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if words.first() == Some(&"quit") {
+            break;
+        }
+        let answer = answer(&words, &mut loaded);
+        let answer = answer.unwrap_or_else(|error| format!("skip {error}"));
+        writeln!(output, "{}", answer.replace('\n', " "))?;
+        output.flush()?;
+    }
+    Ok(())
+}
+
+fn answer(words: &[&str], loaded: &mut Option<Loaded>) -> Result<String, Box<dyn Error>> {
+    match (words, loaded) {
+        (["info"], _) => Ok(info()),
+        (["load", name, model, states], loaded) => {
+            let new = Loaded::read(name, model, states)?;
+            let algorithms = new.functions.algorithms();
+            *loaded = Some(new);
+            Ok(format!("ok{algorithms}"))
+        }
+        (["bench", algorithm, milliseconds], Some(loaded)) => {
+            let time = loaded.bench(algorithm, milliseconds.parse()?)?;
+            Ok(format!("{time:.4}"))
+        }
+        (["check", algorithm, state], Some(loaded)) => loaded.check(algorithm, state.parse()?),
+        _ => Err("unknown command, or no model loaded".into()),
+    }
+}
+
+fn info() -> String {
+    let fused = match cfg!(target_feature = "fma") {
+        true => "with fused multiply-add",
+        false => "baseline instructions",
+    };
+    let level = hamel::compiled::Level::default();
+    format!("hamel, compiled scenes, {fused}; x8 by `Batch` at level {level:?}, x4 by `F64x4`")
+}
+
+impl Loaded {
+    fn read(name: &str, model: &str, states: &str) -> Result<Self, Box<dyn Error>> {
+        let functions = models::find(name)?;
+        let model = Model::parse(&std::fs::read_to_string(model)?).map_err(|error| error.0)?;
+        let states = States::parse(&model, &std::fs::read(states)?);
+        let of = [&states.q, &states.v, &states.tau];
+        let equations = functions.equations;
+        Ok(Self {
+            batch: Batch::new(equations),
+            rows: of.map(|rows| rows.concat()),
+            fours: of.map(|rows| rows.chunks_exact(4).flat_map(side_by_side).collect()),
+            out: vec![0.0; BATCH * equations.speeds],
+            out_four: vec![F64x4::default(); equations.speeds],
+            mass: vec![0.0; equations.speeds * equations.speeds],
+            functions,
+            model,
+            states,
+        })
+    }
+
+    /// States of one call.
+    fn together(&self, algorithm: &str) -> usize {
+        let most = match algorithm.split_once('_') {
+            Some((_, "x4")) => 4,
+            Some((_, "x8")) => BATCH,
+            _ => 1,
+        };
+        most.min(self.states.q.len())
+    }
+
+    /// One call of `algorithm` for the group of states `k`.
+    fn call(&mut self, algorithm: &str, k: usize) -> Result<(), Box<dyn Error>> {
+        let states = self.together(algorithm);
+        let functions = self.functions;
+        let equations = functions.equations;
+        let missing = || format!("no algorithm `{algorithm}`");
+        let size = equations.speeds;
+        match algorithm {
+            "aba_x4" | "rnea_x4" => {
+                let function = match algorithm {
+                    "aba_x4" => functions.forward_x4,
+                    _ => functions.inverse_x4,
+                };
+                let [q, v, u] = group(&self.fours, &self.states, k, 1);
+                function.ok_or_else(missing)?(q, v, u, &mut self.out_four);
+            }
+            "aba_x8" => {
+                let [q, v, u] = group(&self.rows, &self.states, k, states);
+                let out = &mut self.out[..states * size];
+                self.batch.forward_dynamics(q, v, u, out)?;
+            }
+            "rnea_x8" => {
+                // The accelerations are the states' efforts.
+                let [q, v, u] = group(&self.rows, &self.states, k, states);
+                let out = &mut self.out[..states * size];
+                self.batch.inverse_dynamics(q, v, u, out)?;
+            }
+            _ => {
+                let (q, v, u) = (&self.states.q[k], &self.states.v[k], &self.states.tau[k]);
+                let out = &mut self.out[..size];
+                match algorithm {
+                    "aba" => equations.forward_dynamics.ok_or_else(missing)?(q, v, u, out),
+                    "rnea" => equations.inverse_dynamics.ok_or_else(missing)?(q, v, u, out),
+                    "nle" => functions.bias_forces.ok_or_else(missing)?(q, v, out),
+                    "crba" => functions.mass_matrix.ok_or_else(missing)?(q, &mut self.mass),
+                    _ => return Err(missing().into()),
+                }
+            }
+        }
+        black_box((&self.out, &self.out_four, &self.mass));
+        Ok(())
+    }
+
+    /// Nanoseconds of one state.
+    fn bench(&mut self, algorithm: &str, milliseconds: f64) -> Result<f64, Box<dyn Error>> {
+        let target = milliseconds * 1e6;
+        let mut calls = 1;
+        let mut time = self.time(algorithm, calls)?;
+        while time < 0.2 * target {
+            calls *= 2;
+            time = self.time(algorithm, calls)?;
+        }
+        let calls = (target * calls as f64 / time) as usize + 1;
+        let states = calls * self.together(algorithm);
+        Ok(self.time(algorithm, calls)? / states as f64)
+    }
+
+    /// Nanoseconds of CPU time for `calls` calls over all states in turn.
+    fn time(&mut self, algorithm: &str, calls: usize) -> Result<f64, Box<dyn Error>> {
+        let groups = self.states.q.len() / self.together(algorithm);
+        let start = cpu_time::ThreadTime::now();
+        for call in 0..calls {
+            self.call(algorithm, call % groups)?;
+        }
+        Ok(start.elapsed().as_nanos() as f64)
+    }
+
+    fn check(&mut self, algorithm: &str, k: usize) -> Result<String, Box<dyn Error>> {
+        let states = self.together(algorithm);
+        self.call(algorithm, k / states)?;
+        let order = convert::order(&self.model);
+        let size = order.len();
+        let lane = k % states;
+        let numbers: Vec<f64> = match algorithm {
+            "crba" => {
+                let pairs = order.iter().flat_map(|&i| order.iter().map(move |&j| (i, j)));
+                pairs.map(|(i, j)| self.mass[i * size + j]).collect()
+            }
+            "aba_x4" | "rnea_x4" => {
+                let lanes = order.iter().map(|&i| self.out_four[i].to_array());
+                lanes.map(|lanes| lanes[lane]).collect()
+            }
+            _ => order.iter().map(|&i| self.out[lane * size + i]).collect(),
+        };
+        let texts: Vec<String> = numbers.iter().map(|x| format!("{x:.17e}")).collect();
+        Ok(texts.join(" "))
+    }
+}
+
+/// Four rows, entry by entry.
+fn side_by_side(rows: &[Vec<f64>]) -> Vec<F64x4> {
+    let entries = 0..rows[0].len();
+    entries
+        .map(|i| F64x4::new([0, 1, 2, 3].map(|lane| rows[lane][i])))
+        .collect()
+}
+
+/// The numbers of group `k` of `count` rows in each of the states' vectors.
+fn group<'a, T>(all: &'a [Vec<T>; 3], states: &States, k: usize, count: usize) -> [&'a [T]; 3] {
+    let sizes = [&states.q, &states.v, &states.tau].map(|rows| count * rows[0].len());
+    [0, 1, 2].map(|i| &all[i][k * sizes[i]..(k + 1) * sizes[i]])
+}
