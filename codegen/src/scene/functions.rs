@@ -300,44 +300,52 @@ fn pairs(model: &Model) -> usize {
         .sum()
 }
 
-/// The same with links that are known.
+/// The same with links that are known, and however long.
 pub fn compile_with(model: &Model, links: &[Link], kind: Kind, loops: Loops) -> Chosen {
     let ways = kind.ways(model).into_iter();
-    let written = ways.map(|(name, way)| (name, write(model, links, kind, loops, way)));
-    let mut written: Vec<(&'static str, Function)> = written.collect();
+    let straight = ways.map(|(name, way)| {
+        let (outputs, graph) = record(|| run(model, links, way));
+        (name, way, function(model, kind, outputs, graph, None))
+    });
+    let mut straight: Vec<(&'static str, Run, Function)> = straight.collect();
     let flops = |function: &Function| function.operations().flops();
-    let tried = written
+    let tried = straight
         .iter()
-        .map(|(name, function)| (*name, flops(function)))
+        .map(|(name, _, function)| (*name, flops(function)))
         .collect();
-    written.sort_by_key(|(_, function)| flops(function));
-    let (way, function) = written.swap_remove(0);
+    straight.sort_by_cached_key(|(.., function)| flops(function));
+    let (name, way, function) = straight.swap_remove(0);
+    let looped = looped(model, links, &function, (kind, way), loops);
     Chosen {
-        function,
-        way,
+        function: looped.unwrap_or(function),
+        way: name,
         tried,
     }
 }
 
-fn write(model: &Model, links: &[Link], kind: Kind, loops: Loops, way: Run) -> Function {
-    let build = || -> Vec<Value> {
-        let tree = Tree::new(model, links.to_vec());
-        way(&tree).into_iter().map(Sym::value).collect()
-    };
-    let (outputs, graph) = record(build);
-    let straight = function(model, kind, outputs, graph, None);
+fn run(model: &Model, links: &[Link], way: Run) -> Vec<Value> {
+    let tree = Tree::new(model, links.to_vec());
+    way(&tree).into_iter().map(Sym::value).collect()
+}
+
+/// The function with loops over like bodies, where these are wanted.
+fn looped(
+    model: &Model,
+    links: &[Link],
+    straight: &Function,
+    (kind, way): (Kind, Run),
+    loops: Loops,
+) -> Option<Function> {
     let whole = straight.operations().flops();
-    // Its rows are as long as the way to the root: no two are alike.
+    // Rows of the mass matrix are as long as the way to the root: no two are alike.
     let never = kind == Kind::MassMatrix || loops == Loops::Never;
     if never || loops == Loops::Long && whole < LOOPED {
-        return straight;
+        return None;
     }
-    let (outputs, graph) = record_alike(build);
+    let (outputs, graph) = record_alike(|| run(model, links, way));
     let plan = Plan::new(&graph, &outputs);
-    if loops == Loops::Long && 2 * plan.written(&graph) >= whole {
-        return straight;
-    }
-    function(model, kind, outputs, graph, Some(plan))
+    let pays = loops == Loops::Always || 2 * plan.written(&graph) < whole;
+    pays.then(|| function(model, kind, outputs, graph, Some(plan)))
 }
 
 fn function(

@@ -86,10 +86,11 @@ impl Blocks {
         (section, run): (u32, Vec<u32>),
         latest: &mut FxHashMap<u32, usize>,
     ) {
-        let operands = run
-            .iter()
-            .flat_map(|&node| graph.nodes[node as usize].operation.operands());
-        let needed = operands.filter_map(|node| self.home.get(&node)).max();
+        let mut needed = None;
+        for &node in &run {
+            let operation = &graph.nodes[node as usize].operation;
+            operation.each_operand(|node| needed = needed.max(self.home.get(&node)));
+        }
         let place = match latest.get(&section) {
             Some(&block) if needed.is_none_or(|&needed| needed <= block) => block,
             _ => {
@@ -109,13 +110,14 @@ impl Blocks {
     fn find_outputs(&mut self, graph: &Graph) {
         let mut read: Vec<u32> = vec![];
         for (index, block) in self.blocks.iter().enumerate() {
-            let operands = block
-                .nodes
-                .iter()
-                .flat_map(|&node| graph.nodes[node as usize].operation.operands());
-            read.extend(
-                operands.filter(|node| self.home.get(node).is_some_and(|&home| home != index)),
-            );
+            for &node in &block.nodes {
+                let operation = &graph.nodes[node as usize].operation;
+                operation.each_operand(|node| {
+                    if self.home.get(&node).is_some_and(|&home| home != index) {
+                        read.push(node);
+                    }
+                });
+            }
         }
         read.sort_unstable();
         read.dedup();

@@ -136,10 +136,7 @@ impl Reader<'_> {
                     .for_each(|&value| self.signed(value));
             }
             Operation::Several(_, values) => values.iter().for_each(|&value| self.signed(value)),
-            plain => plain
-                .operands()
-                .into_iter()
-                .for_each(|node| self.operand(node)),
+            plain => plain.each_operand(|node| self.operand(node)),
         }
     }
 

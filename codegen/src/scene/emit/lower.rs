@@ -79,12 +79,11 @@ impl Lowering<'_> {
     }
 
     fn drop_empty_headings(&mut self) {
-        let is_heading = |line: Option<&Line>| matches!(line, Some(Line::Heading(_)) | None);
-        let lines = std::mem::take(&mut self.lines);
-        for (place, line) in lines.iter().enumerate() {
-            let is_empty = matches!(line, Line::Heading(_)) && is_heading(lines.get(place + 1));
-            if !is_empty {
-                self.lines.push(line.clone());
+        let mut lines = std::mem::take(&mut self.lines).into_iter().peekable();
+        while let Some(line) = lines.next() {
+            let ends = matches!(lines.peek(), Some(Line::Heading(_)) | None);
+            if !(ends && matches!(line, Line::Heading(_))) {
+                self.lines.push(line);
             }
         }
     }

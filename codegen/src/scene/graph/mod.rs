@@ -87,21 +87,22 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// The nodes that it reads.
-    pub fn operands(&self) -> Vec<u32> {
+    /// Visits the nodes that it reads.
+    pub fn each_operand(&self, mut visit: impl FnMut(u32)) {
         match self {
-            Self::Input(..) | Self::Constant(_) => vec![],
-            Self::Opposite(of) => vec![*of],
+            Self::Input(..) | Self::Constant(_) => {}
+            Self::Opposite(of) | Self::Part(of, _) => visit(*of),
             Self::Sum(a, b)
             | Self::Difference(a, b)
             | Self::Product(a, b)
-            | Self::Quotient(a, b) => vec![*a, *b],
+            | Self::Quotient(a, b) => {
+                visit(*a);
+                visit(*b);
+            }
             Self::Call(_, a, b) => std::iter::once(a)
                 .chain(b)
-                .map(|value| value.node)
-                .collect(),
-            Self::Several(_, arguments) => arguments.iter().map(|value| value.node).collect(),
-            Self::Part(of, _) => vec![*of],
+                .for_each(|value| visit(value.node)),
+            Self::Several(_, arguments) => arguments.iter().for_each(|value| visit(value.node)),
         }
     }
 }
@@ -191,9 +192,8 @@ impl Graph {
         }
         for (number, node) in self.nodes.iter().enumerate().rev() {
             if uses[number] > 0 {
-                for operand in node.operation.operands() {
-                    uses[operand as usize] += 1;
-                }
+                node.operation
+                    .each_operand(|operand| uses[operand as usize] += 1);
             }
         }
         uses
