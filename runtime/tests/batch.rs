@@ -25,6 +25,10 @@ const IN_LANES: Equations = Equations {
     configuration: 2,
     freedoms: 3,
     speeds: 2,
+    momenta: None,
+    speeds_from_momenta: None,
+    momentum_rates: None,
+    hamiltonian: None,
     forward_dynamics: Some(|q, v, u, rates| {
         if let (Some(q), Some(v), Some(u), Some(rates)) = (
             q.first_chunk(),
