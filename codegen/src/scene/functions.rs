@@ -211,10 +211,12 @@ fn worth_factorising(model: &Model) -> bool {
 
 /// Operations of a function from which on like bodies are looped over, if that halves what is written.
 ///
-/// Below, one body after the other is faster: by 30 % on 3000 operations, by 15 % on 9000.
+/// Below, one body after the other is faster: looped forward dynamics took 1.33 times as long on anymal (3200 operations), 1.28 times on eight
+/// ball joints (7000) and 1.20 times on g1 (8700).
 const LOOPED: usize = 10_000;
 
-/// Operations, those of loops once, that a function may have: about three minutes of the Rust compiler.
+/// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
+/// of 31 000 operations (32 ball joints) already took it more than 100 s.
 pub const LONGEST: usize = 100_000;
 
 /// A function that would be too long.
