@@ -167,7 +167,7 @@ impl Recursive {
         let yields = self.holonomic && self.mechanism.drives().is_empty();
         if let (true, Some((inverse, factors))) = (yields, &mut out.few) {
             self.differentiate_needed(q, speeds, &out.rates, inverse);
-            self.invert_few(&out.responses.branches, factors, &mut out.by_efforts);
+            self.invert_few(factors, &mut out.by_efforts);
             negative_product(&out.by_efforts, &inverse.by_local, &mut out.by_local);
             negative_product(&out.by_efforts, &inverse.by_speeds, &mut out.by_speeds);
             return Ok(());

@@ -14,8 +14,14 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{Vector3, Vector6};
 
-/// Four numbers side by side, for vector instructions.
-type Four = [f64; 4];
+/// Four numbers side by side, for vector instructions: where one of them crosses a line of the cache, reading it takes twice as long.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Four([f64; 4]);
+
+impl Four {
+    const ZERO: Self = Self([0.0; 4]);
+}
 
 /// What a freedom and a speed of a joint meet the [`Below`] of a joint under it with: two of X̄, W and W_v, and the angular parts of U and X̄.
 type Above = [Four; 9];
@@ -38,6 +44,10 @@ pub struct InverseDerivatives {
     met: Vec<Four>,
     /// One a body.
     coriolis: Vec<Coriolis>,
+    /// One a body: from its parent's frame to its own, in world axes.
+    offsets: Vec<Vector3<f64>>,
+    /// Whether each freedom is a speed, at the same place.
+    square: bool,
     acting: Acting,
 }
 
@@ -45,13 +55,18 @@ impl InverseDerivatives {
     /// Room for the derivatives of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        let branches = branches(mechanism);
         Self {
             by_local: Sensitivity::new(speeds, freedoms),
             by_speeds: Sensitivity::new(speeds, speeds),
-            branches: branches(mechanism),
+            square: branches
+                .iter()
+                .all(|branch| branch.freedoms == branch.speeds),
+            offsets: vec![Vector3::zeros(); branches.len()],
+            branches,
             variations: vec![Variation::zero(); freedoms],
-            above: vec![[[0.0; 4]; 9]; freedoms],
-            met: vec![[0.0; 4]; freedoms],
+            above: vec![[Four::ZERO; 9]; freedoms],
+            met: vec![Four::ZERO; freedoms],
             coriolis: vec![Coriolis::zero(); mechanism.bodies().len()],
             acting: Acting::new(mechanism),
         }
@@ -120,8 +135,9 @@ impl Recursive {
         accelerations: &[f64],
         out: &mut InverseDerivatives,
     ) {
-        for (own, node) in out.coriolis.iter_mut().zip(&self.nodes) {
-            *own = Coriolis::of(&node.rigid, &node.motion.twist);
+        for (index, node) in self.nodes.iter().enumerate() {
+            out.coriolis[index] = Coriolis::of(&node.rigid, &node.motion.twist);
+            out.offsets[index] = node.motion.placement.offset;
         }
         self.sum_subtrees(&mut out.coriolis);
         for index in 0..self.links.len() {
@@ -149,10 +165,9 @@ impl Recursive {
 
     /// Rows and columns of one joint against itself and those above it.
     fn differentiate_joint(&self, index: usize, q: &[f64], out: &mut InverseDerivatives) {
-        let (link, node, coriolis) = (&self.links[index], &self.nodes[index], &out.coriolis[index]);
+        let (link, node, coriolis) = (&self.links[index], &self.nodes[index], out.coriolis[index]);
         let branch = out.branches[index];
         let columns = &self.columns[link.speeds.clone()];
-        let mut below = [[[0.0; 4]; 9]; MOST_FREEDOMS];
         for slot in branch.freedoms.0..branch.freedoms.1 {
             let variation = &out.variations[slot];
             let b = slot - branch.freedoms.0;
@@ -162,29 +177,34 @@ impl Recursive {
                 out.by_local.set(speed, slot, column.dot(&raised));
             }
             let turned = raised - bracket_dual_product(&variation.local, &node.wrench);
-            let Some(column) = columns.get(b) else {
+            let below = match columns.get(b) {
                 // More freedoms than speeds.
-                out.above[slot] = above(&Vector6::zeros(), variation);
-                let zero = Vector6::zeros();
-                below[b] = self::below(&[turned, zero], &zero, &Vector3::zeros());
-                continue;
+                None => {
+                    let zero = Vector6::zeros();
+                    out.above[slot] = above(&zero, variation);
+                    below(&[turned, zero], &zero, &Vector3::zeros())
+                }
+                Some(column) => {
+                    let (turn, _) = split(column);
+                    let faster = node.rigid.apply(&variation.speed_rate) + coriolis.apply(&turn);
+                    for (speed, column) in link.speeds.clone().zip(columns) {
+                        out.by_speeds
+                            .set(speed, branch.speeds.0 + b, column.dot(&faster));
+                    }
+                    out.above[slot] = above(column, variation);
+                    let momentum = node.rigid.apply(column);
+                    let transposed = coriolis.apply_transposed(column);
+                    below(&[turned, faster], &momentum, &transposed)
+                }
             };
-            let (turn, _) = split(column);
-            let faster = node.rigid.apply(&variation.speed_rate) + coriolis.apply(&turn);
-            for (speed, column) in link.speeds.clone().zip(columns) {
-                out.by_speeds
-                    .set(speed, branch.speeds.0 + b, column.dot(&faster));
+            meet_above(index, &below, out);
+            match out.square {
+                true => climb_square(index, slot, out),
+                false => climb_pairs(index, slot, out),
             }
-            out.above[slot] = above(column, variation);
-            let momentum = node.rigid.apply(column);
-            let transposed = coriolis.apply_transposed(column);
-            below[b] = self::below(&[turned, faster], &momentum, &transposed);
         }
         if !link.joint.structures().twist_gradient.is_zero() {
             self.add_own_gradient(index, q, out);
-        }
-        for slot in branch.freedoms.0..branch.freedoms.1 {
-            self.climb_pairs(index, slot, &below[slot - branch.freedoms.0], out);
         }
     }
 
@@ -208,50 +228,80 @@ impl Recursive {
             }
         }
     }
+}
 
-    /// One freedom and speed against all above its joint.
-    fn climb_pairs(&self, index: usize, slot: usize, below: &Below, out: &mut InverseDerivatives) {
-        self.meet_above(index, below, out);
-        let own_speed = speed_of(&out.branches[index], slot);
-        let (locals, speeds) = (out.by_local.columns, out.by_speeds.columns);
-        let (by_local, by_speeds) = (&mut out.by_local.entries, &mut out.by_speeds.entries);
-        let mut body = out.branches[index].parent;
-        while body != WORLD {
-            let branch = &out.branches[body];
-            for other in branch.freedoms.0..branch.freedoms.1 {
-                let [raised, faster, local, speed] = out.met[other];
-                let other_speed = speed_of(branch, other);
-                if let Some(row) = other_speed {
-                    by_local[row * locals + slot] = raised;
-                }
-                if let Some(row) = own_speed {
-                    by_local[row * locals + other] = local;
-                }
-                if let (Some(above), Some(own)) = (other_speed, own_speed) {
-                    by_speeds[above * speeds + own] = faster;
-                    by_speeds[own * speeds + above] = speed;
-                }
+/// The products of one freedom and speed with those of all joints above into their rows and columns.
+fn climb_pairs(index: usize, slot: usize, out: &mut InverseDerivatives) {
+    let own_speed = speed_of(&out.branches[index], slot);
+    let (locals, speeds) = (out.by_local.columns, out.by_speeds.columns);
+    let (by_local, by_speeds) = (&mut out.by_local.entries, &mut out.by_speeds.entries);
+    let mut body = out.branches[index].parent;
+    while body != WORLD {
+        let branch = &out.branches[body];
+        for other in branch.freedoms.0..branch.freedoms.1 {
+            let Four([raised, faster, local, speed]) = out.met[other];
+            let other_speed = speed_of(branch, other);
+            if let Some(row) = other_speed {
+                by_local[row * locals + slot] = raised;
             }
-            body = branch.parent;
+            if let Some(row) = own_speed {
+                by_local[row * locals + other] = local;
+            }
+            if let (Some(above), Some(own)) = (other_speed, own_speed) {
+                by_speeds[above * speeds + own] = faster;
+                by_speeds[own * speeds + above] = speed;
+            }
+        }
+        body = branch.parent;
+    }
+}
+
+/// The same where each freedom is a speed.
+fn climb_square(index: usize, slot: usize, out: &mut InverseDerivatives) {
+    let size = out.by_local.columns;
+    let (local_above, local_own) = out.by_local.entries.split_at_mut(slot * size);
+    let (speed_above, speed_own) = out.by_speeds.entries.split_at_mut(slot * size);
+    let (local_own, speed_own) = (&mut local_own[..size], &mut speed_own[..size]);
+    let mut body = out.branches[index].parent;
+    while body != WORLD {
+        let branch = &out.branches[body];
+        let others = branch.freedoms.0..branch.freedoms.1;
+        for (other, met) in others.clone().zip(&out.met[others]) {
+            let Four([raised, faster, local, speed]) = *met;
+            local_above[other * size + slot] = raised;
+            speed_above[other * size + slot] = faster;
+            local_own[other] = local;
+            speed_own[other] = speed;
+        }
+        body = branch.parent;
+    }
+}
+
+/// The products of one freedom and speed with those of all joints above, by their freedoms.
+// On its own and through memory, so that the four products stay side by side in vector registers.
+#[inline(never)]
+fn meet_above(index: usize, below: &Below, out: &mut InverseDerivatives) {
+    let mut below = *below;
+    let mut branch = &out.branches[index];
+    let mut body = index;
+    while branch.parent != WORLD {
+        shift(&mut below, &out.offsets[body]);
+        body = branch.parent;
+        branch = &out.branches[body];
+        let (first, end) = branch.freedoms;
+        match end - first {
+            1 => out.met[first] = products(&out.above[first], &below),
+            _ => meet_joint(&out.above[first..end], &below, &mut out.met[first..end]),
         }
     }
+}
 
-    /// The products of one freedom and speed with those of all joints above, by their freedoms.
-    // On its own and through memory, so that the four products stay side by side in vector registers.
-    #[inline(never)]
-    fn meet_above(&self, index: usize, below: &Below, out: &mut InverseDerivatives) {
-        let mut below = *below;
-        let mut branch = &out.branches[index];
-        let mut body = index;
-        while branch.parent != WORLD {
-            shift(&mut below, &self.nodes[body].motion.placement.offset);
-            body = branch.parent;
-            branch = &out.branches[body];
-            let own = branch.freedoms.0..branch.freedoms.1;
-            for (met, above) in out.met[own.clone()].iter_mut().zip(&out.above[own]) {
-                *met = products(above, &below);
-            }
-        }
+/// The same for the freedoms of one joint.
+// On its own, so that they are not done side by side, for which all numbers would have to be laid out anew.
+#[inline(never)]
+fn meet_joint(above: &[Above], below: &Below, met: &mut [Four]) {
+    for (met, above) in met.iter_mut().zip(above) {
+        *met = products(above, below);
     }
 }
 
@@ -264,29 +314,25 @@ fn speed_of(branch: &Branch, slot: usize) -> Option<usize> {
 
 #[inline(always)]
 fn above(column: &Vector6<f64>, variation: &Variation<f64>) -> Above {
-    let mut above = [[0.0; 4]; 9];
+    let mut above = [Four::ZERO; 9];
     for i in 0..6 {
-        above[i] = [
-            column[i],
-            column[i],
-            variation.rate[i],
-            variation.speed_rate[i],
-        ];
+        let (rate, speed_rate) = (variation.rate[i], variation.speed_rate[i]);
+        above[i] = Four([column[i], column[i], rate, speed_rate]);
     }
     for i in 0..3 {
-        above[6 + i] = [0.0, 0.0, variation.drift[i], column[i]];
+        above[6 + i] = Four([0.0, 0.0, variation.drift[i], column[i]]);
     }
     above
 }
 
 #[inline(always)]
 fn below(raised: &[Vector6<f64>; 2], momentum: &Vector6<f64>, transposed: &Vector3<f64>) -> Below {
-    let mut below = [[0.0; 4]; 9];
+    let mut below = [Four::ZERO; 9];
     for i in 0..6 {
-        below[i] = [raised[0][i], raised[1][i], momentum[i], momentum[i]];
+        below[i] = Four([raised[0][i], raised[1][i], momentum[i], momentum[i]]);
     }
     for i in 0..3 {
-        below[6 + i] = [0.0, 0.0, transposed[i], transposed[i]];
+        below[6 + i] = Four([0.0, 0.0, transposed[i], transposed[i]]);
     }
     below
 }
@@ -295,7 +341,15 @@ fn below(raised: &[Vector6<f64>; 2], momentum: &Vector6<f64>, transposed: &Vecto
 #[inline(always)]
 fn shift(below: &mut Below, offset: &Vector3<f64>) {
     let [x, y, z] = (*offset).into();
-    let [mx, my, mz, fx, fy, fz, ..] = below;
+    let [
+        Four(mx),
+        Four(my),
+        Four(mz),
+        Four(fx),
+        Four(fy),
+        Four(fz),
+        ..,
+    ] = below;
     for lane in 0..4 {
         let force = (fx[lane], fy[lane], fz[lane]);
         mx[lane] = Scalar::mul_add(y, force.2, Scalar::mul_add(-z, force.1, mx[lane]));
@@ -308,18 +362,16 @@ fn shift(below: &mut Below, offset: &Vector3<f64>) {
 fn products(above: &Above, below: &Below) -> Four {
     let mut sum = [0.0; 4];
     let mut other = [0.0; 4];
-    for i in 0..5 {
+    let add = |sum: &mut [f64; 4], i: usize| {
+        let (Four(above), Four(below)) = (&above[i], &below[i]);
         for lane in 0..4 {
-            sum[lane] = Scalar::mul_add(above[i][lane], below[i][lane], sum[lane]);
+            sum[lane] = Scalar::mul_add(above[lane], below[lane], sum[lane]);
         }
-    }
-    for i in 5..9 {
-        for lane in 0..4 {
-            other[lane] = Scalar::mul_add(above[i][lane], below[i][lane], other[lane]);
-        }
-    }
+    };
+    (0..5).for_each(|i| add(&mut sum, i));
+    (5..9).for_each(|i| add(&mut other, i));
     for lane in 0..4 {
         sum[lane] += other[lane];
     }
-    sum
+    Four(sum)
 }

@@ -5,99 +5,131 @@ use crate::scalar::Scalar;
 
 /// `out = −leftᵀ right`.
 pub(super) fn negative_product(left: &Sensitivity, right: &Sensitivity, out: &mut Sensitivity) {
-    rows(
-        &Product {
-            left,
-            right,
-            sign: -1.0,
-            beyond: left.rows,
-        },
-        out,
-    );
+    let all = left.rows;
+    by_rows::<false>(&Product { left, right, all }, out);
 }
 
 /// `out = rootsᵀ roots`, where column i has no entries below row `i + beyond`.
 pub(super) fn gram(roots: &Sensitivity, beyond: usize, out: &mut Sensitivity) {
-    rows(
-        &Product {
-            left: roots,
-            right: roots,
-            sign: 1.0,
-            beyond,
-        },
-        out,
-    );
+    let product = Product {
+        left: roots,
+        right: roots,
+        all: beyond,
+    };
+    by_rows::<true>(&product, out);
 }
 
-/// `sign leftᵀ right`, with at most so many rows below the diagonals of both.
 struct Product<'a> {
     left: &'a Sensitivity,
     right: &'a Sensitivity,
-    sign: f64,
-    beyond: usize,
+    /// How many rows count: all of them, or so many below the diagonals.
+    all: usize,
 }
 
-fn rows(product: &Product<'_>, out: &mut Sensitivity) {
-    match product.left.columns {
-        0..4 => columns::<1>(product, out),
-        _ => columns::<4>(product, out),
+/// The product, six rows of it at a time and fewer at the end.
+fn by_rows<const GRAM: bool>(product: &Product<'_>, out: &mut Sensitivity) {
+    let mut i = 0;
+    loop {
+        i += match product.left.columns - i {
+            0 => return,
+            1 => by_columns::<GRAM, 1>(product, out, i),
+            2 | 3 => by_columns::<GRAM, 2>(product, out, i),
+            4 | 5 | 8 => by_columns::<GRAM, 4>(product, out, i),
+            _ => by_columns::<GRAM, 6>(product, out, i),
+        };
     }
 }
 
-fn columns<const R: usize>(product: &Product<'_>, out: &mut Sensitivity) {
-    match product.right.columns {
-        0..4 => tiles::<R, 1>(product, out),
-        4..8 => tiles::<R, 4>(product, out),
-        _ => tiles::<R, 8>(product, out),
-    }
-}
-
-fn tiles<const R: usize, const W: usize>(product: &Product<'_>, out: &mut Sensitivity) {
-    for i in starts(product.left.columns, R, 0) {
-        for j in starts(product.right.columns, W, 0) {
-            tile::<R, W>(product, out, (i, j));
+/// R rows of the product; R.
+fn by_columns<const GRAM: bool, const R: usize>(
+    product: &Product<'_>,
+    out: &mut Sensitivity,
+    i: usize,
+) -> usize {
+    for span in Span::cover(0..product.right.columns, product.right.columns) {
+        match span {
+            Span::Eight(j) => tile::<GRAM, R, 8>(product, out, (i, j)),
+            Span::Four(j) => tile::<GRAM, R, 4>(product, out, (i, j)),
+            Span::One(j) => tile::<GRAM, R, 1>(product, out, (i, j)),
         }
     }
+    R
 }
 
-/// Where blocks of a length begin that cover the entries from `first` to before `end`. The last one overlaps what is before it: to do some entries
-/// twice costs less than to do them one by one.
-pub(super) fn starts(end: usize, block: usize, first: usize) -> impl Iterator<Item = usize> {
-    (0..(end - first).div_ceil(block))
-        .map(move |number| (first + number * block).min(end.saturating_sub(block)))
+/// Columns that are done at once, from the first one on.
+#[derive(Clone, Copy)]
+pub(super) enum Span {
+    Eight(usize),
+    Four(usize),
+    One(usize),
+}
+
+impl Span {
+    /// Spans over `columns` of a matrix that has `width`. They may reach beyond, or overlap: to do some entries twice costs less than to do them one by
+    /// one.
+    #[inline(always)]
+    pub(super) fn cover(
+        columns: core::ops::Range<usize>,
+        width: usize,
+    ) -> impl Iterator<Item = Self> {
+        let mut next = columns.start;
+        core::iter::from_fn(move || {
+            let left = columns.end.checked_sub(next).filter(|left| *left > 0)?;
+            let (span, taken) = match left {
+                _ if width < 4 => (Self::One(next), 1),
+                0..=4 => (Self::Four(next.min(width - 4)), 4),
+                _ if width < 8 => (Self::Four(next), 4),
+                5..=7 => (Self::Eight(next.min(width - 8)), 8),
+                _ => (Self::Eight(next), 8),
+            };
+            next += taken;
+            Some(span)
+        })
+    }
 }
 
 /// R rows and W columns of the product.
 #[inline(never)]
-fn tile<const R: usize, const W: usize>(
+fn tile<const GRAM: bool, const R: usize, const W: usize>(
     product: &Product<'_>,
     out: &mut Sensitivity,
     (i, j): (usize, usize),
 ) {
-    let (left, right) = (product.left, product.right);
-    let mut sum = [[0.0; W]; R];
-    let rows = right.entries.chunks_exact(right.columns);
-    let depth = (i + R).min(j + W) + product.beyond;
-    for (weights, row) in left
-        .entries
-        .chunks_exact(left.columns)
-        .zip(rows)
-        .take(depth)
-    {
-        let weights: [f64; R] = weights[i..i + R].try_into().unwrap_or([0.0; R]);
-        let row: [f64; W] = row[j..j + W].try_into().unwrap_or([0.0; W]);
-        for r in 0..R {
-            for w in 0..W {
-                sum[r][w] = Scalar::mul_add(weights[r], row[w], sum[r][w]);
-            }
-        }
-    }
+    let depth = match GRAM {
+        true => ((i + R).min(j + W) + product.all).min(product.left.rows),
+        false => product.all,
+    };
+    let sum = sums::<R, W>(
+        (&product.left.entries[i..], product.left.columns),
+        (&product.right.entries[j..], product.right.columns),
+        depth,
+    );
     for (r, sum) in sum.iter().enumerate() {
         let start = (i + r) * out.columns + j;
         for (entry, sum) in out.entries[start..start + W].iter_mut().zip(sum) {
-            *entry = product.sign * sum;
+            *entry = if GRAM { *sum } else { -sum };
         }
     }
+}
+
+/// The products of R columns of the one matrix with W columns of the other, over `depth` rows; each begins where its slice does and has its width.
+#[inline(always)]
+pub(super) fn sums<const R: usize, const W: usize>(
+    (left, lefts): (&[f64], usize),
+    (right, rights): (&[f64], usize),
+    depth: usize,
+) -> [[f64; W]; R] {
+    let mut sum = [[0.0; W]; R];
+    for row in 0..depth {
+        let weights = &left[row * lefts..][..R];
+        let entries = &right[row * rights..][..W];
+        for r in 0..R {
+            for w in 0..W {
+                sum[r][w] = Scalar::mul_add(weights[r], entries[w], sum[r][w]);
+            }
+        }
+    }
+    sum
 }
 
 /// `out += left right`.
