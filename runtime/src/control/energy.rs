@@ -42,8 +42,8 @@ pub struct Pump {
 
 /// `u = −∂V_s/∂Q − (d + g (H_d − H_d*)) y` at each port.
 ///
-/// With the springs' V_s the closed loop is Hamiltonian again, with `H_d = H + V_s`, whatever else the mechanism carries, and with passive joints as well:
-/// nothing has to match. It loses `Ḣ_d = −Σ (d + g (H_d − H_d*)) |y|²`, where no port is at its limit. So it settles where H_d is least as long as g = 0; with d = 0 and
+/// With the springs' V_s the closed loop is Hamiltonian again, with `H_d = H + V_s`, and with passive joints as well: nothing has to match. Where nothing else does
+/// work on the mechanism (no damper, wrench or prescribed motion) it loses `Ḣ_d = −Σ (d + g (H_d − H_d*)) |y|²`, as long as no port is at its limit. So it settles where H_d is least as long as g = 0; with d = 0 and
 /// g > 0 it comes to the energy of the goal at rest, `H_d*`, and swings a pendulum up.
 ///
 /// (R. Ortega, A. J. van der Schaft, B. Maschke and G. Escobar, *Interconnection and damping assignment passivity-based control of port-controlled
@@ -67,7 +67,7 @@ impl EnergyShaping {
     /// The law that has its least energy at the configuration `goal`, as far as `ports` see to it.
     ///
     /// # Errors
-    /// No such body; numbers out of range; a wrong size; a joint whose motion is prescribed.
+    /// No such body; numbers out of range; a wrong size; a joint whose motion is prescribed, or that has two ports.
     pub fn new(
         mechanism: Arc<Mechanism>,
         goal: &[f64],
@@ -75,6 +75,14 @@ impl EnergyShaping {
         pump: Pump,
     ) -> Result<Self, ControlError> {
         mechanism.check_configuration(goal)?;
+        for (place, port) in ports.iter().enumerate() {
+            if ports[..place].iter().any(|other| other.body == port.body) {
+                return Err(ControlError::Joint {
+                    joint: mechanism.body(port.body)?.joint_name().into(),
+                    reason: "has two ports: the limit of one would cut off what the other does",
+                });
+            }
+        }
         let gain = pump.gain;
         require(
             "gain of the pump",

@@ -1,5 +1,6 @@
 //! Why a controller cannot be made, or cannot go on.
 
+use super::reach::Motion;
 use crate::dynamics::DynamicsError;
 use crate::elements::ElementError;
 use crate::integrate::StepFailure;
@@ -42,7 +43,7 @@ pub enum ControlError {
     Mechanism(&'static str),
     /// The goal is not an equilibrium under the efforts that the law has.
     #[error(
-        "joint `{joint}` does not rest at the goal: its speed `{speed}` feels {force:e} N m or N there, more than {limit:e}, and no input acts on it"
+        "joint `{joint}` does not rest at the goal: its speed `{speed}` feels {force:e} N m or N there, no input acts on it, and the mechanism accelerates by {acceleration:e} rad/s² or m/s², more than {limit:e}"
     )]
     NotAtRest {
         /// The joint.
@@ -51,6 +52,8 @@ pub enum ControlError {
         speed: &'static str,
         /// The force.
         force: f64,
+        /// The largest entry of v̄̇.
+        acceleration: f64,
         /// What passes for rounding.
         limit: f64,
     },
@@ -66,9 +69,23 @@ pub enum ControlError {
         /// The limit.
         limit: f64,
     },
-    /// No feedback of the inputs holds the goal.
+    /// A motion that does not fade by itself is reached by no input: no feedback is stable.
+    #[error("no input reaches a motion that does not fade by itself: {0}")]
+    BeyondReach(Motion),
+    /// A motion that does not fade by itself is seen by no weight: the least cost leaves it alone.
+    #[error("no weight sees a motion that does not fade by itself: {0}")]
+    Unseen(Motion),
+    /// One of these two, of a mechanism about its goal.
+    #[error("about the goal, most of all at joint `{joint}`: {cause}")]
+    AboutGoal {
+        /// The joint with the largest part in the motion.
+        joint: String,
+        /// Which of the two.
+        cause: alloc::boxed::Box<ControlError>,
+    },
+    /// No feedback was found that is stable.
     #[error(
-        "no feedback of these inputs brings the mechanism back to the goal: to first order a motion is beyond their reach, and does not fade by itself"
+        "no solution of the Riccati equation is found: inputs or weights are too small, or too large, beside the others"
     )]
     NotStabilizable,
     /// The commanded speeds do not answer to the efforts.

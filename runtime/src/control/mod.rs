@@ -20,6 +20,7 @@ mod feedback;
 mod path;
 #[cfg(feature = "mpc")]
 mod predictive;
+mod reach;
 mod reference;
 mod regulator;
 pub mod riccati;
@@ -32,6 +33,7 @@ pub use feedback::Feedback;
 pub use path::{Curve, PathFollower, PathGains};
 #[cfg(feature = "mpc")]
 pub use predictive::PredictiveRegulator;
+pub use reach::Motion;
 pub use reference::Reference;
 pub use regulator::{Equilibrium, Regulator, Weights};
 

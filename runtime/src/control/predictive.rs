@@ -3,6 +3,7 @@
 mod program;
 
 use super::error::{positive, require, size};
+use super::reach::Time;
 use super::regulator::{Equilibrium, Weights};
 use super::riccati::{self, Optimum, Weighting};
 use super::state::check_sizes;
@@ -101,6 +102,10 @@ impl PredictiveRegulator {
             }
         }
         let (state, input) = weights.matrices(&equilibrium)?;
+        // Of the motion itself: the step damps what swings, and so hides what no input reaches.
+        let (a, b) = equilibrium.linearized()?;
+        riccati::solvable(&a, &b, &state, Time::Continuous)
+            .map_err(|cause| equilibrium.locate(cause))?;
         let mut step = LinearStep::new(mechanism, Form::Lagrangian, &Tableau::RK4);
         let still = vec![0.0; mechanism.layout().speeds];
         step.linearize(equilibrium.goal(), &still, equilibrium.efforts(), period)?;
@@ -109,7 +114,8 @@ impl PredictiveRegulator {
             state: &state,
             input: &input,
         };
-        let Optimum { cost, gain } = riccati::discrete(&a, &b, weighting)?;
+        let Optimum { cost, gain } =
+            riccati::discrete(&a, &b, weighting).map_err(|cause| equilibrium.locate(cause))?;
         let rest: Vec<f64> = rest.collect();
         Ok(Self {
             program: Program::new(horizon * limits.len())?,

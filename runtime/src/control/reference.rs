@@ -39,7 +39,7 @@ impl Reference {
     ///
     /// # Errors
     /// A nonholonomic joint, or one whose motion is prescribed; constraints that couple joints; a wrong size; numbers that are not finite; a
-    /// configuration off its manifold; a motion of more than 1e6 knots, which are 0.1 rad or m apart.
+    /// configuration off its manifold; a motion of more than 1e5 knots, which are 0.1 rad or m apart.
     pub fn new(
         mechanism: Arc<Mechanism>,
         start: &[f64],

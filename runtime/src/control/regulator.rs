@@ -4,31 +4,33 @@ use super::error::{require, size};
 use super::riccati::{self, Optimum, Weighting};
 use super::state::{check_free, check_sizes, deviation, largest};
 use super::{ControlError, Controller, DEVIATIONS, Measure};
-use crate::dynamics::{ForwardDerivatives, Recursive};
+use crate::dynamics::{Dynamics, ForwardDerivatives, Recursive};
 use crate::mechanism::{Body, Mechanism};
+use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// Forces at rest that pass for rounding, as parts of the largest.
-const ROUNDING: f64 = 1e-9;
+/// Accelerations at rest that pass for rounding, rad/s² or m/s²: a goal typed with nine digits, with gravity of 10 m/s² on an arm of 1 m, has about 1e-8.
+const AT_REST: f64 = 1e-7;
 
 /// A configuration at which a mechanism rests under constant efforts of some freedoms, and the freedoms that have inputs.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
     mechanism: Arc<Mechanism>,
     goal: Vec<f64>,
+    /// In the order in which their joints were named.
     inputs: Vec<usize>,
     /// τ of all freedoms at rest; 0 without input.
     efforts: Vec<f64>,
 }
 
 impl Equilibrium {
-    /// The equilibrium `goal` of `mechanism` with inputs on the freedoms of the joints under the bodies `actuated`.
+    /// The equilibrium `goal` of `mechanism` with inputs on the freedoms of the joints under the bodies `actuated`, in that order.
     ///
     /// # Errors
-    /// No joint that has inputs, or a nonholonomic one among them; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
+    /// No joint that has inputs, a nonholonomic one among them, or one twice; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
     /// that gravity or elements would move there and that no input holds.
     pub fn new(
         mechanism: Arc<Mechanism>,
@@ -46,18 +48,19 @@ impl Equilibrium {
                     reason: "is nonholonomic: no smooth feedback of its speeds brings it back to a configuration",
                 });
             }
-            inputs.extend(body.ranges().freedoms.clone());
+            let freedoms = body.ranges().freedoms.clone();
+            if inputs.contains(&freedoms.start) {
+                return Err(ControlError::Joint {
+                    joint: body.joint_name().into(),
+                    reason: "is given its inputs twice",
+                });
+            }
+            inputs.extend(freedoms);
         }
-        inputs.sort_unstable();
-        inputs.dedup();
         if inputs.is_empty() {
             return Err(ControlError::Mechanism("no joint has inputs"));
         }
-        let layout = *mechanism.layout();
-        let mut forces = vec![0.0; layout.speeds];
-        let rest = vec![0.0; layout.speeds];
-        Recursive::new(Arc::clone(&mechanism)).bias_forces(&goal, &rest, &mut forces)?;
-        let efforts = held(&mechanism, &inputs, &forces)?;
+        let efforts = held(&mechanism, &goal, &inputs)?;
         Ok(Self {
             mechanism,
             goal,
@@ -76,7 +79,7 @@ impl Equilibrium {
         &self.goal
     }
 
-    /// The freedoms that have inputs, ascending.
+    /// The freedoms that have inputs, in the order in which their joints were named.
     pub fn inputs(&self) -> &[usize] {
         &self.inputs
     }
@@ -160,6 +163,25 @@ impl Equilibrium {
         Ok((a, b))
     }
 
+    /// Names the joint of a motion that cannot be held.
+    pub(super) fn locate(&self, cause: ControlError) -> ControlError {
+        let (ControlError::BeyondReach(motion) | ControlError::Unseen(motion)) = &cause else {
+            return cause;
+        };
+        let freedoms = self.goal_sizes().0;
+        let moved = self.mechanism.bodies().iter().find(|body| {
+            let ranges = body.ranges();
+            match motion.state.checked_sub(freedoms) {
+                None => ranges.freedoms.contains(&motion.state),
+                Some(speed) => ranges.speeds.contains(&speed),
+            }
+        });
+        ControlError::AboutGoal {
+            joint: moved.map_or("", Body::joint_name).into(),
+            cause: Box::new(cause),
+        }
+    }
+
     /// `S₀⁻¹ S̄` of one joint at the goal.
     fn kinematics(&self, body: &Body) -> DMatrix<f64> {
         let ranges = body.ranges();
@@ -175,10 +197,19 @@ impl Equilibrium {
     }
 }
 
-/// The efforts at rest of the freedoms that have inputs; every other speed must be at rest by itself.
-fn held(mechanism: &Mechanism, inputs: &[usize], forces: &[f64]) -> Result<Vec<f64>, ControlError> {
-    let mut efforts = vec![0.0; mechanism.layout().freedoms];
-    let limit = ROUNDING * largest(forces).max(1.0);
+/// The efforts at rest of the freedoms that have inputs; with them, nothing may accelerate.
+fn held(
+    mechanism: &Arc<Mechanism>,
+    goal: &[f64],
+    inputs: &[usize],
+) -> Result<Vec<f64>, ControlError> {
+    let layout = *mechanism.layout();
+    let mut dynamics = Recursive::new(Arc::clone(mechanism));
+    let (rest, mut forces) = (vec![0.0; layout.speeds], vec![0.0; layout.speeds]);
+    dynamics.bias_forces(goal, &rest, &mut forces)?;
+    let mut efforts = vec![0.0; layout.freedoms];
+    // The speed without input that feels the most.
+    let mut free: Option<(&Body, usize, f64)> = None;
     for body in mechanism.bodies() {
         let ranges = body.ranges();
         // Joints with inputs are holonomic: each freedom has its speed.
@@ -187,17 +218,26 @@ fn held(mechanism: &Mechanism, inputs: &[usize], forces: &[f64]) -> Result<Vec<f
             let force = forces[speed];
             if has_inputs {
                 efforts[ranges.freedoms.start + place] = force;
-            } else if force.is_nan() || force.abs() > limit {
-                return Err(ControlError::NotAtRest {
-                    joint: body.joint_name().into(),
-                    speed: body.joint().speeds()[place],
-                    force,
-                    limit,
-                });
+            } else if free.is_none_or(|(.., most)| most.is_finite() && force.abs() > most.abs()) {
+                free = Some((body, place, force));
             }
         }
     }
-    Ok(efforts)
+    let mut rates = rest.clone();
+    dynamics.accelerations(goal, &rest, &efforts, &mut rates)?;
+    let acceleration = largest(&rates);
+    match free {
+        Some((body, place, force)) if acceleration.is_nan() || acceleration > AT_REST => {
+            Err(ControlError::NotAtRest {
+                joint: body.joint_name().into(),
+                speed: body.joint().speeds()[place],
+                force,
+                acceleration,
+                limit: AT_REST,
+            })
+        }
+        _ => Ok(efforts),
+    }
 }
 
 /// What deviations and inputs cost: the diagonals of Q and R.
@@ -281,8 +321,9 @@ impl Regulator {
             state: &state,
             input: &input,
         };
+        let optimum = riccati::continuous(&a, &b, weighting);
         Ok(Self {
-            optimum: riccati::continuous(&a, &b, weighting)?,
+            optimum: optimum.map_err(|cause| equilibrium.locate(cause))?,
             x: vec![0.0; equilibrium.states()],
             equilibrium,
         })

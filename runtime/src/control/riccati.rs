@@ -1,16 +1,17 @@
 //! Algebraic Riccati equations, by doubling.
 //!
 //! Each step of the doubling algorithm squares the closed loop, so that convergence is quadratic and what is left of its matrix says whether it is
-//! stable: no eigenvalue is computed, no subspace chosen. (B. D. O. Anderson, *Second-order convergent algorithms for the steady-state Riccati equation*,
+//! stable: no subspace is chosen. That there is a solution is asked before ([`reach`]), since rounding would make one up. (B. D. O. Anderson, *Second-order convergent algorithms for the steady-state Riccati equation*,
 //! 1978; for continuous time after a Cayley transform, E. K.-W. Chu, H.-Y. Fan and W.-W. Lin, *A structure-preserving doubling algorithm for
 //! continuous-time algebraic Riccati equations*, 2005.)
 
 use super::ControlError;
+use super::reach::{self, Time};
 use nalgebra::DMatrix;
 use num_traits::Float;
 
-/// Steps of doubling at most: the slowest closed loop that is found fades over 2⁶⁰ steps.
-const MOST_STEPS: usize = 60;
+/// Steps of doubling at most: the slowest closed loop that is found fades over 2⁴⁰ steps.
+const MOST_STEPS: usize = 40;
 
 /// What may be left of the closed loop's matrix, as its largest entry.
 const FADED: f64 = 1e-12;
@@ -36,13 +37,14 @@ pub struct Weighting<'a> {
 /// The optimum for `x′ = A x + B u`: `P = Q + AᵀPA − AᵀPB (R + BᵀPB)⁻¹ BᵀPA`, `K = (R + BᵀPB)⁻¹ BᵀPA`.
 ///
 /// # Errors
-/// [`ControlError::NotStabilizable`] where no feedback is stable, or Q does not see an unstable motion; sizes that do not fit.
+/// [`ControlError::BeyondReach`] and [`ControlError::Unseen`] where a motion that does not fade by itself is reached by no input, or not seen by Q;
+/// [`ControlError::NotStabilizable`] where no solution is found; sizes that do not fit.
 pub fn discrete(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
     weighting: Weighting<'_>,
 ) -> Result<Optimum, ControlError> {
-    check(a, b, weighting)?;
+    check(a, b, weighting, Time::Discrete)?;
     let inverse = invert(weighting.input.clone())?;
     let reach = b * inverse * b.transpose();
     let cost = double(a.clone(), reach, weighting.state.clone())?;
@@ -60,7 +62,7 @@ pub fn continuous(
     b: &DMatrix<f64>,
     weighting: Weighting<'_>,
 ) -> Result<Optimum, ControlError> {
-    check(a, b, weighting)?;
+    check(a, b, weighting, Time::Continuous)?;
     let inverse = invert(weighting.input.clone())?;
     let reach = b * &inverse * b.transpose();
     // Any rate above the norm of A keeps A − γ regular; those of the closed loop are no faster than this by much.
@@ -115,7 +117,12 @@ fn invert(matrix: DMatrix<f64>) -> Result<DMatrix<f64>, ControlError> {
         .ok_or(ControlError::NotStabilizable)
 }
 
-fn check(a: &DMatrix<f64>, b: &DMatrix<f64>, weighting: Weighting<'_>) -> Result<(), ControlError> {
+fn check(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    weighting: Weighting<'_>,
+    time: Time,
+) -> Result<(), ControlError> {
     use super::error::size;
     let (n, m) = (a.nrows(), b.ncols());
     size("a row of A", n, a.ncols())?;
@@ -123,5 +130,22 @@ fn check(a: &DMatrix<f64>, b: &DMatrix<f64>, weighting: Weighting<'_>) -> Result
     size("a row of Q", n, weighting.state.ncols())?;
     size("a column of Q", n, weighting.state.nrows())?;
     size("a row of R", m, weighting.input.ncols())?;
-    size("a column of R", m, weighting.input.nrows())
+    size("a column of R", m, weighting.input.nrows())?;
+    solvable(a, b, weighting.state, time)
+}
+
+/// Whether each motion that does not fade by itself is reached by an input, and seen by Q.
+pub(super) fn solvable(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    state: &DMatrix<f64>,
+    time: Time,
+) -> Result<(), ControlError> {
+    if let Some(motion) = reach::beyond(a, b, time) {
+        return Err(ControlError::BeyondReach(motion));
+    }
+    match reach::beyond(&a.transpose(), state, time) {
+        Some(motion) => Err(ControlError::Unseen(motion)),
+        None => Ok(()),
+    }
 }

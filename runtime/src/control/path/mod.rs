@@ -57,7 +57,7 @@ impl PathFollower {
     /// The law that leads the joint under `body` along `curve`.
     ///
     /// # Errors
-    /// No such body; a joint that does not roll and turn about its z axis with two speeds; gains that are not positive.
+    /// No such body; a joint that does not roll and turn about its z axis with two speeds, or one of whose speeds constraints make depend on others; gains that are not positive.
     pub fn new(
         mechanism: Arc<Mechanism>,
         body: usize,
@@ -68,8 +68,20 @@ impl PathFollower {
         positive("rate", gains.rate)?;
         curve.check()?;
         let layout = *mechanism.layout();
+        let roller = Roller::new(&mechanism, body)?;
+        let led = mechanism.body(body)?;
+        let coupled = mechanism.dependent_speeds().iter();
+        if coupled
+            .into_iter()
+            .any(|speed| led.ranges().speeds.contains(speed))
+        {
+            return Err(ControlError::Joint {
+                joint: led.joint_name().into(),
+                reason: "has a speed that constraints make depend on others, and so efforts that are not its own",
+            });
+        }
         Ok(Self {
-            roller: Roller::new(&mechanism, body)?,
+            roller,
             dynamics: Recursive::new(Arc::clone(&mechanism)),
             mechanism,
             curve,

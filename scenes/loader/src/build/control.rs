@@ -59,8 +59,10 @@ impl Fit<'_> {
             LawDescription::Lqr(regulator) => ControlLaw::Lqr(self.goal(regulator, sink)?),
             LawDescription::EnergyShaping { ports, goals, pump } => {
                 let goal = self.configuration(goals, sink);
+                let sound = unique(ports.iter().map(|port| &port.joint), sink);
                 let ports: Vec<_> = ports.iter().map(|port| self.port(port)).collect();
                 let ports: Option<Vec<Port>> = ports.into_iter().collect();
+                let ports = ports.filter(|_| sound);
                 ControlLaw::EnergyShaping {
                     goal: goal?,
                     ports: ports?,

@@ -87,35 +87,103 @@ fn random_systems_have_small_residuals_and_stable_loops() -> Result<(), ControlE
     Ok(())
 }
 
-/// An unstable or undamped motion that no input reaches, or that no weight sees, has no stabilising solution.
+/// A motion of its own, by its rates: eigenvalues on or beside the imaginary axis.
+fn alone(kind: &str, damping: f64) -> DMatrix<f64> {
+    match kind {
+        "still" => dmatrix![-damping],
+        "free" => dmatrix![0.0, 1.0; 0.0, -damping],
+        "swinging" => dmatrix![0.0, 1.0; -9.0, -damping],
+        _ => dmatrix![-damping, 5.0; -5.0, -damping],
+    }
+}
+
+/// An inverted pendulum in reach of the input, and a motion that is not, in mixed coordinates.
+fn with_unreached(own: &DMatrix<f64>, rng: &mut ChaCha8Rng) -> [DMatrix<f64>; 3] {
+    let n = 2 + own.nrows();
+    let mut a = DMatrix::zeros(n, n);
+    a.view_mut((0, 0), (2, 2))
+        .copy_from(&dmatrix![0.0, 1.0; 10.0, -0.1]);
+    a.view_mut((2, 2), own.shape()).copy_from(own);
+    let mut b = DMatrix::zeros(n, 1);
+    b[(1, 0)] = 1.0;
+    // Any turn and a stretch of each coordinate by up to 10: as units may differ.
+    let turn = random(n, n, rng).qr().q();
+    let stretch = DMatrix::from_diagonal(&nalgebra::DVector::from_fn(n, |_, _| {
+        10.0_f64.powf(rng.random_range(-1.0..1.0))
+    }));
+    let mix = stretch * turn;
+    let back = mix.clone().try_inverse().expect("a turn and a stretch");
+    [&mix * a * &back, &mix * b, back]
+}
+
+/// A motion that goes on for ever and that no input reaches, or that no weight sees, has no stabilising solution, however coordinates mix it with others.
 #[test]
 fn what_cannot_be_stabilized_is_refused() {
-    let unit = DMatrix::identity(2, 2);
-    let (b, r) = (dmatrix![0.0; 1.0], DMatrix::identity(1, 1));
-    let reached = Weighting {
-        state: &unit,
-        input: &r,
-    };
-    for rate in [0.5, 0.0] {
-        let a = dmatrix![rate, 0.0; 0.0, -1.0];
-        assert_eq!(
-            continuous(&a, &b, reached),
-            Err(ControlError::NotStabilizable)
-        );
-        let a = dmatrix![1.0 + rate, 0.0; 0.0, 0.5];
-        assert_eq!(
-            discrete(&a, &b, reached),
-            Err(ControlError::NotStabilizable)
-        );
+    let mut rng = ChaCha8Rng::seed_from_u64(17);
+    for kind in ["still", "free", "swinging", "turning"] {
+        for _ in 0..100 {
+            let [a, b, _] = with_unreached(&alone(kind, 0.0), &mut rng);
+            let n = a.nrows();
+            let (unit, one) = (DMatrix::identity(n, n), DMatrix::identity(1, 1));
+            let weighting = Weighting {
+                state: &unit,
+                input: &one,
+            };
+            let refused = continuous(&a, &b, weighting);
+            assert!(
+                matches!(refused, Err(ControlError::BeyondReach(_))),
+                "{kind}: {refused:?}"
+            );
+            // What no input reaches, no weight sees of the transposed system.
+            let unseen = &b * b.transpose();
+            let all = Weighting {
+                state: &unseen,
+                input: &unit,
+            };
+            let refused = continuous(&a.transpose(), &unit, all);
+            assert!(
+                matches!(refused, Err(ControlError::Unseen(_))),
+                "{kind}: {refused:?}"
+            );
+            let step = 0.05;
+            let (exact, reach) = ((&a * step).exp(), &b * step);
+            let refused = discrete(&exact, &reach, weighting);
+            assert!(
+                matches!(refused, Err(ControlError::BeyondReach(_))),
+                "{kind}: {refused:?}"
+            );
+        }
     }
-    let unseen = DMatrix::zeros(2, 2);
-    let unseen = Weighting {
-        state: &unseen,
-        input: &r,
-    };
-    let a = dmatrix![0.0, 1.0; 0.0, 0.0];
-    assert_eq!(
-        continuous(&a, &b, unseen),
-        Err(ControlError::NotStabilizable)
-    );
+}
+
+/// A motion beyond reach that fades by itself, however slowly, does not keep the rest from being held: the gain of what is in reach is that without it.
+#[test]
+fn what_fades_by_itself_is_left_alone() -> Result<(), ControlError> {
+    let mut rng = ChaCha8Rng::seed_from_u64(18);
+    let one = DMatrix::identity(1, 1);
+    let alone_weight = DMatrix::identity(2, 2);
+    let held = continuous(
+        &dmatrix![0.0, 1.0; 10.0, -0.1],
+        &dmatrix![0.0; 1.0],
+        Weighting {
+            state: &alone_weight,
+            input: &one,
+        },
+    )?;
+    for kind in ["still", "swinging", "turning"] {
+        for _ in 0..50 {
+            let [a, b, back] = with_unreached(&alone(kind, 1e-3), &mut rng);
+            let state = back.transpose() * &back;
+            let weighting = Weighting {
+                state: &state,
+                input: &one,
+            };
+            let found = continuous(&a, &b, weighting)?;
+            let gain = found.gain * back.try_inverse().expect("a turn and a stretch");
+            let own = gain.columns(0, 2) - &held.gain;
+            // Rounding, times 1e3 to 1e4 for rates that differ by so much, and 1e2 for the coordinates.
+            assert!(own.amax() <= 1e-9 * held.gain.amax(), "{kind}: {own}");
+        }
+    }
+    Ok(())
 }
