@@ -13,7 +13,9 @@ use super::standing::{Standing, add};
 use super::stepper::{Solves, Span, Stepper};
 use alloc::vec;
 use alloc::vec::Vec;
-use num_traits::Float;
+
+/// From where to where derivatives in time are taken, as a part of the step.
+const PART_OF_STEP: f64 = 1e-3;
 
 /// The method at work. Vectors have ϕ first, then y.
 pub(super) struct Exponential {
@@ -61,23 +63,12 @@ impl Exponential {
         &mut self,
         standing: &Standing,
         flow: &mut Flow<'_>,
-        Span { time, step }: Span,
+        span: Span,
     ) -> Result<(), StepFailure> {
+        let Span { time, step } = span;
         if self.at != time {
             store(&standing.rates, &mut self.first);
-            // Half the digits of a difference; the drift is that of inputs and prescribed motions alone.
-            let later = Float::sqrt(f64::EPSILON) * step;
-            flow.evaluate(
-                time + later,
-                &standing.base,
-                &standing.offset,
-                &standing.y,
-                &mut self.rates,
-            )?;
-            store(&self.rates, &mut self.drift);
-            for (drift, first) in self.drift.iter_mut().zip(&self.first) {
-                *drift = (*drift - first) / later;
-            }
+            self.differentiate_in_time(standing, flow, span)?;
             self.jacobian.evaluate(standing, flow, time)?;
             self.solves.jacobians += 1;
             self.at = time;
@@ -93,8 +84,57 @@ impl Exponential {
         if !self.phi.evaluate(|i, j| step * self.jacobian.entry(i, j)) {
             *of_step = f64::NAN;
             return Err(StepFailure::SingularIteration {
-                joint: flow.joint_name(0),
+                joint: flow.row_name(self.stiffest()),
             });
+        }
+        Ok(())
+    }
+
+    /// The largest row of J, or one that is not finite.
+    fn stiffest(&self) -> usize {
+        let size = self.jacobian.size();
+        let rows = self.jacobian.entries().chunks_exact(size.max(1));
+        let sizes = rows.map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>());
+        let largest = sizes.enumerate().fold((0, 0.0), |largest, (row, size)| {
+            match size > largest.1 || size.is_nan() {
+                true => (row, size),
+                false => largest,
+            }
+        });
+        largest.0
+    }
+
+    /// ∂f/∂t at the state: that of inputs and prescribed motions alone.
+    ///
+    /// From f after one and two parts of the step, `(−3 f₀ + 4 f₁ − f₂) / 2d`: within the step, since inputs may jump where it begins. With d so long, rounding
+    /// of f adds less than 1e-12 of it to the result of a step, and what the difference leaves out is 1e-6 of what the method does.
+    fn differentiate_in_time(
+        &mut self,
+        standing: &Standing,
+        flow: &mut Flow<'_>,
+        Span { time, step }: Span,
+    ) -> Result<(), StepFailure> {
+        let first = time + PART_OF_STEP * step;
+        let later = first - time;
+        if later <= 0.0 {
+            self.drift.fill(0.0);
+            return Ok(());
+        }
+        for (drift, here) in self.drift.iter_mut().zip(&self.first) {
+            *drift = -1.5 * here / later;
+        }
+        for (instant, weight) in [(first, 2.0), (first + later, -0.5)] {
+            flow.evaluate(
+                instant,
+                &standing.base,
+                &standing.offset,
+                &standing.y,
+                &mut self.rates,
+            )?;
+            let rates = self.rates.phi.iter().chain(&self.rates.y);
+            for (drift, there) in self.drift.iter_mut().zip(rates) {
+                *drift += weight * there / later;
+            }
         }
         Ok(())
     }

@@ -180,6 +180,20 @@ impl<'a> Flow<'a> {
         bodies.get(body).map_or("", |body| body.joint_name()).into()
     }
 
+    /// The joint whose ϕ or y stands in a row of both.
+    pub(super) fn row_name(&self, row: usize) -> String {
+        let freedoms = self.mechanism.layout().freedoms;
+        let owns = |body: &&crate::mechanism::Body| {
+            let ranges = body.ranges();
+            match row.checked_sub(freedoms) {
+                None => ranges.freedoms.contains(&row),
+                Some(speed) => ranges.speeds.contains(&speed),
+            }
+        };
+        let body = self.mechanism.bodies().iter().find(owns);
+        body.map_or("", |body| body.joint_name()).into()
+    }
+
     /// Q at which the equations were evaluated last.
     pub(super) fn configuration(&self) -> &[f64] {
         &self.configuration

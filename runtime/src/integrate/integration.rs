@@ -1,6 +1,7 @@
 //! An integration with all that may be asked of it.
 
 use super::driver::Driver;
+use super::options::check_length;
 use super::{
     Event, Inputs, IntegrateError, Observer, Options, Solution, State, Step, no_inputs, no_observer,
 };
@@ -112,7 +113,7 @@ impl<'a> Integration<'a> {
 
     fn check(&self) -> Result<(), IntegrateError> {
         let (initial, options) = (self.initial, self.options);
-        let period = self.period.unwrap_or(1.0);
+        let period = self.period.unwrap_or(f64::MAX);
         if !(period > 0.0 && period.is_finite()) {
             return Err(IntegrateError::Option {
                 option: "period",
@@ -121,6 +122,7 @@ impl<'a> Integration<'a> {
             });
         }
         options.check(initial.time)?;
+        check_length("period", period, initial.time, options.t_end)?;
         let mechanism = self.dynamics.mechanism();
         mechanism.check_configuration(&initial.configuration)?;
         mechanism.check_speeds("speeds", &initial.speeds)?;

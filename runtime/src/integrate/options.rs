@@ -89,7 +89,7 @@ impl Scheme {
             }
             Self::Verner9 => "Verner 9(8), step control: for tolerances near rounding",
             Self::Explicit(_) => "an explicit method of the caller's",
-            Self::Midpoint => "implicit midpoint rule, order 2, symmetric, fixed step",
+            Self::Midpoint => "implicit midpoint rule, order 2, fixed step",
             Self::Gauss2 => "Gauss with 2 stages, order 4, symmetric, fixed step",
             Self::Gauss3 => "Gauss with 3 stages, order 6, symmetric, fixed step: for long runs",
             Self::Radau5 => "Radau IIA of order 5, implicit, step control: for stiff damped scenes",
@@ -249,6 +249,18 @@ impl Method {
         }
     }
 
+    /// The lengths that it prescribes, with their names, s.
+    fn lengths(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let lengths = match *self {
+            Self::Fixed { dt, .. } => [Some(("dt", dt)), None],
+            Self::Controlled { control, .. } => [
+                Some(("max_step", control.max_step)),
+                control.first_step.map(|first| ("first_step", first)),
+            ],
+        };
+        lengths.into_iter().flatten()
+    }
+
     fn check(&self) -> Result<(), IntegrateError> {
         match self {
             &Self::Fixed { dt, .. } => {
@@ -262,6 +274,26 @@ impl Method {
             Self::Controlled { control, .. } => control.check(),
         }
     }
+}
+
+/// The least step with which time moves on from `start` to `end`, s: below some roundings of the time it would not.
+pub(super) fn least_step(start: f64, end: f64) -> f64 {
+    16.0 * f64::EPSILON * start.abs().max(end.abs())
+}
+
+/// A length of time that is long enough to move on by.
+pub(super) fn check_length(
+    option: &'static str,
+    length: f64,
+    start: f64,
+    end: f64,
+) -> Result<(), IntegrateError> {
+    require(
+        option,
+        length,
+        length >= least_step(start, end),
+        "at least 16 roundings (2.2e-16) of the times that are integrated over",
+    )
 }
 
 fn require(
@@ -332,6 +364,9 @@ impl Options {
             });
         }
         self.method.check()?;
+        for (option, length) in self.method.lengths() {
+            check_length(option, length, start, self.t_end)?;
+        }
         let mut earliest = start;
         for (index, &time) in self.samples.iter().enumerate() {
             // A comparison that NaN fails as well.

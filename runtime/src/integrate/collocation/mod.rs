@@ -34,6 +34,9 @@ const SLOW_CONTROLLED: f64 = 1e-3;
 /// Changes below this that no longer shrink are rounding's: far above what any regular system makes of it, far below any error allowed.
 const STALLED: f64 = 1e-9;
 
+/// Changes that come to less than this part of the least one so far still shrink.
+const SHRINKS: f64 = 0.8;
+
 /// A collocation method at work.
 pub(super) struct Collocation {
     method: &'static Coefficients,
@@ -141,7 +144,7 @@ impl Collocation {
             correction.begin(standing, flow)?;
         }
         self.guess(standing, span.step);
-        let mut last = f64::INFINITY;
+        let (mut last, mut least, mut idle) = (f64::INFINITY, f64::INFINITY, 0);
         for _ in 0..MOST_ITERATIONS {
             self.solves.iterations += 1;
             self.evaluate(standing, flow, span)?;
@@ -156,10 +159,15 @@ impl Collocation {
             // The first change says nothing yet of how fast the next will shrink.
             let contraction = if last.is_finite() { size / last } else { 1.0 };
             let before = core::mem::replace(&mut self.contraction, contraction);
-            if self.stands(size, before) {
+            match size < SHRINKS * least {
+                true => (least, idle) = (size, 0),
+                false => idle += 1,
+            }
+            let stalled = size < STALLED && idle >= 2;
+            if self.stands(size, stalled) {
                 return Ok(());
             }
-            if size.is_nan() || (last.is_finite() && self.is_hopeless(before)) {
+            if size.is_nan() || (last.is_finite() && self.is_hopeless(size, before)) {
                 break;
             }
             last = size;
@@ -168,7 +176,7 @@ impl Collocation {
     }
 
     /// Whether the change just made was the last one needed.
-    fn stands(&self, size: f64, before: f64) -> bool {
+    fn stands(&self, size: f64, stalled: bool) -> bool {
         let contraction = self.contraction;
         let left = size * contraction / (1.0 - contraction);
         match self.tolerance {
@@ -179,13 +187,14 @@ impl Collocation {
                 contraction < 1.0 && left <= allowed.max(10.0 * f64::EPSILON)
             }
             // The next change would be lost in rounding; or rounding has stopped them.
-            None if contraction < 0.5 => left < 0.05 * f64::EPSILON,
-            None => size < STALLED && before >= 0.5,
+            None => stalled || contraction < 0.5 && left < 0.05 * f64::EPSILON,
         }
     }
 
-    fn is_hopeless(&self, before: f64) -> bool {
+    fn is_hopeless(&self, size: f64, before: f64) -> bool {
         match self.newton {
+            // Rounding may be all that is left.
+            _ if self.tolerance.is_none() && size < STALLED => false,
             // Step control had better try a shorter step; the correction for the energy may upset one iteration.
             Some(_) => {
                 self.contraction.min(if self.tolerance.is_some() {
@@ -464,16 +473,7 @@ fn lagrange(nodes: &[f64], i: usize, at: f64) -> f64 {
 
 /// The matrix of the iteration is singular in a row.
 fn no_solution(flow: &Flow<'_>, row: usize) -> StepFailure {
-    let freedoms = flow.mechanism.layout().freedoms;
-    let owns = |body: &&crate::mechanism::Body| {
-        let ranges = body.ranges();
-        ranges.freedoms.contains(&row)
-            || row
-                .checked_sub(freedoms)
-                .is_some_and(|speed| ranges.speeds.contains(&speed))
-    };
-    let body = flow.mechanism.bodies().iter().find(owns);
     StepFailure::SingularIteration {
-        joint: body.map_or("", |body| body.joint_name()).into(),
+        joint: flow.row_name(row),
     }
 }
