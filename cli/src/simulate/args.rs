@@ -14,7 +14,7 @@ Examples:
   hamel simulate scenes/ball_pendulum.toml --method rk4 --dt 1e-3 --csv swing.csv
       with fixed steps, trajectory to swing.csv
   hamel simulate scenes/heavy_top.toml --method verner9 --tol 2e-16
-      as accurate as doubles allow: order 8, and sums that lose no rounding
+      as accurate as doubles allow: order 9, and sums that lose no rounding
   hamel simulate scenes/rolling_disk.toml --html disk.html
       one page to open in a browser, with no network: the motion in three dimensions, and plots along the time
   hamel simulate scenes/snake.toml --parquet snake.parquet

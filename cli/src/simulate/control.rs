@@ -37,7 +37,7 @@ pub struct Outcome {
     pub period_s: Option<f64>,
     /// The quantities by which it is judged.
     pub errors: Vec<MeasureOutcome>,
-    /// The largest effort of any freedom, N m or N.
+    /// The largest effort of any freedom at the ends of steps, N m or N.
     pub largest_effort: f64,
 }
 
@@ -121,16 +121,12 @@ impl Loop {
         let state = &mut *self.state.borrow_mut();
         state.take(time, q, speeds);
         efforts.copy_from_slice(&state.efforts);
-        let sizes = efforts.iter().map(|effort| effort.abs());
-        state.largest_effort = sizes.fold(state.largest_effort, f64::max);
     }
 
     /// τ from the end of `step` on: where it is held, as it was taken last, which is then at the latest.
     pub fn efforts(&self, step: &Step<'_>) -> Vec<f64> {
         let state = &mut *self.state.borrow_mut();
-        if self.period.is_none() {
-            state.take(step.time, step.configuration, step.speeds);
-        }
+        state.bring(step, self.period);
         state.efforts.clone()
     }
 
@@ -138,6 +134,9 @@ impl Loop {
     pub fn see(&self, step: &Step<'_>) {
         let state = &mut *self.state.borrow_mut();
         state.failure = None;
+        state.bring(step, self.period);
+        let sizes = state.efforts.iter().map(|effort| effort.abs());
+        state.largest_effort = sizes.fold(state.largest_effort, f64::max);
         let (q, speeds) = (step.configuration, step.speeds);
         let values = &mut state.values;
         match state.controller.measure(step.time, q, speeds, values) {
@@ -168,6 +167,13 @@ impl Loop {
 }
 
 impl State {
+    /// Takes τ at the end of `step`, unless it is held.
+    fn bring(&mut self, step: &Step<'_>, period: Option<f64>) {
+        if period.is_none() {
+            self.take(step.time, step.configuration, step.speeds);
+        }
+    }
+
     /// τ of the law; NaN where it fails.
     fn take(&mut self, time: f64, q: &[f64], speeds: &[f64]) {
         self.efforts.fill(0.0);

@@ -1,5 +1,6 @@
 //! What the page plots: which columns there are, what they are called, and their values at a time.
 
+use super::super::plan::Plan;
 use hamel::integrate::Step;
 use hamel::mechanism::{Body, Kinematics, Mechanism};
 use hamel::spatial::split;
@@ -43,10 +44,11 @@ pub struct Charts<'a> {
 }
 
 impl<'a> Charts<'a> {
-    /// The charts of a mechanism; one with efforts where it is `controlled`.
-    pub fn new(mechanism: &'a Mechanism, controlled: bool) -> Self {
+    /// The charts of what is simulated; one with efforts where it is controlled.
+    pub fn new(plan: &'a Plan) -> Self {
+        let mechanism = &plan.scene.mechanism;
         let mut columns = 0;
-        let described = described(mechanism, controlled, &mut columns);
+        let described = described(plan, &mut columns);
         Self {
             mechanism,
             described,
@@ -135,13 +137,19 @@ fn local_coordinates(body: &Body, q: &[f64]) -> Vec<f64> {
 }
 
 /// Which columns there are, numbered in the order of [`Charts::values`].
-fn described(mechanism: &Mechanism, controlled: bool, next: &mut usize) -> Vec<Chart> {
+fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
+    let mechanism = &plan.scene.mechanism;
     let mut plain = |name: &str, unit: &str, columns: &[&str]| {
         let columns = numbered(columns.iter().copied(), next);
         variant(name, unit, None, columns)
     };
     let energy = vec![plain("", "J", &["kinetic", "potential", "total"])];
-    let drift = vec![plain("", "J", &["total − initial"])];
+    let change = vec![plain("", "J", &["total − initial"])];
+    // With nothing at work it is the integrator's alone.
+    let change_title = match plan.does_work() {
+        true => "Energy change",
+        false => "Energy drift",
+    };
     let about = |point: &str| format!("angular, about {point}");
     let momentum = vec![
         plain("linear", "kg m/s", &["x", "y", "z"]),
@@ -160,7 +168,7 @@ fn described(mechanism: &Mechanism, controlled: bool, next: &mut usize) -> Vec<C
         };
     let coordinates = joints(|body| body.joint().freedoms(), ["rad", "m"], next);
     let speeds = joints(|body| body.joint().speeds(), ["rad/s", "m/s"], next);
-    let efforts = match controlled {
+    let efforts = match plan.control.is_some() {
         true => joints(|body| body.joint().freedoms(), ["N m", "N"], next),
         false => Vec::new(),
     };
@@ -168,7 +176,7 @@ fn described(mechanism: &Mechanism, controlled: bool, next: &mut usize) -> Vec<C
     let steps = vec![variant("", "s", None, columns)];
     [
         ("Energy", false, energy),
-        ("Energy drift", false, drift),
+        (change_title, false, change),
         ("Momentum", false, momentum),
         ("Coordinates ϕ from home", false, coordinates),
         ("Speeds v̄", false, speeds),

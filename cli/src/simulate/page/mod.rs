@@ -55,7 +55,7 @@ impl<'a> Page<'a> {
             error,
         })?;
         let bodies = plan.scene.mechanism.bodies().len() as f64;
-        let charts = Charts::new(&plan.scene.mechanism, plan.control.is_some());
+        let charts = Charts::new(plan);
         Ok(Some(Self {
             blob: Blob::new(charts.columns()),
             charts,
