@@ -2,12 +2,14 @@
 
 pub mod accuracy;
 pub mod compiled;
+pub mod derivatives;
 pub mod differences;
 pub mod emitted;
 pub mod extended;
 pub mod figures;
 pub mod fuzz;
 pub mod laws;
+pub mod linear_step;
 pub mod motion;
 pub mod newton;
 pub mod oracle;

@@ -1,7 +1,7 @@
 //! Seeded random mechanisms and states: trees of any joints, placed anywhere, with physical inertias.
 
 use hamel::erased::AnyJoint;
-use hamel::mechanism::{BodySpec, Mechanism};
+use hamel::mechanism::{Body, BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::registry::{JointEntry, JointRegistry};
 use hamel::spatial::{MassProperties, Pose, so3};
@@ -69,6 +69,53 @@ fn case(kinds: &[Arc<dyn AnyJoint>], largest: usize, seed: u64) -> Case {
     let size = 1 + seed as usize % largest;
     let root = &kinds[seed as usize % kinds.len()];
     rooted(kinds, root, GRAVITY, size, seed)
+}
+
+/// As [`cases`], with needles for every other body: their moments are as 1 to 1e-5, about an axis of the joint's child frame.
+pub fn slender_cases(
+    kinds: &[Arc<dyn AnyJoint>],
+    largest: usize,
+    count: u64,
+) -> impl Iterator<Item = Case> + '_ {
+    cases(kinds, largest, count).map(slender)
+}
+
+fn slender(case: Case) -> Case {
+    let mut random = ChaCha8Rng::seed_from_u64(case.seed);
+    let bodies = case.mechanism.bodies().iter().enumerate();
+    let specs = bodies.map(|(index, body)| match index.is_multiple_of(2) {
+        true => BodySpec {
+            child_placement: Pose::identity(),
+            mass: needle(&mut random),
+            ..spec(body)
+        },
+        false => spec(body),
+    });
+    let gravity = *case.mechanism.gravity();
+    let mechanism = Mechanism::new(gravity, specs.collect()).expect("valid by construction");
+    Case {
+        mechanism: Arc::new(mechanism),
+        ..case
+    }
+}
+
+/// What a body was made of.
+fn spec(body: &Body) -> BodySpec {
+    BodySpec {
+        name: body.name().to_owned(),
+        joint_name: body.joint_name().to_owned(),
+        parent: body.parent(),
+        joint: body.shared_joint(),
+        placement: *body.placement(),
+        child_placement: *body.child_placement(),
+        mass: *body.mass(),
+    }
+}
+
+fn needle(random: &mut ChaCha8Rng) -> MassProperties {
+    let moments = Matrix3::from_diagonal(&Vector3::new(0.7, 0.700_003, 1e-5));
+    let com = Vector3::new(0.0, 0.0, random.random_range(-1.0..1.0));
+    MassProperties::new(1.5, com, moments).expect("physical by construction")
 }
 
 /// `count` cases without gravity: trees of 1 to `largest` joints, the first of them `root` and the others of the given kinds.

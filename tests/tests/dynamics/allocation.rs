@@ -1,6 +1,5 @@
 //! After construction nothing allocates: every method of the recursive form and of its mass matrix, and steps of the integrators.
 
-use crate::derivatives::Equipment;
 use allocation_counter::measure;
 use hamel::dynamics::{
     Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, MassMatrix,
@@ -14,6 +13,7 @@ use hamel::integrate::{
 use hamel::mechanism::NamedFrame;
 use hamel::nalgebra::{Vector3, Vector6};
 use hamel::spatial::Pose;
+use hamel_tests::derivatives::Equipment;
 use hamel_tests::random::{Case, cases, library};
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -22,7 +22,7 @@ const DIRECTIONS: [&str; 6] = [
 ];
 
 /// The least pivot of `J M̄⁻¹ Jᵀ`, scaled to a diagonal of ones, that can be inverted: its rounding, some 1e-16 times the number of joints, is then
-/// less than a thousandth of it for trees of a hundred.
+/// a hundredth of it for trees of a hundred.
 const LEAST_PIVOT: f64 = 1e-12;
 
 impl Recursive {

@@ -1,12 +1,12 @@
 //! Both forms where constraints couple joints, against differences of the dynamics itself along the motions that the constraints allow.
 
-use super::{Equipment, matrix};
 use hamel::dynamics::{
     Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive,
 };
 use hamel::elements::{Drive, Law, PointConstraint};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{DMatrix, Vector3};
+use hamel_tests::derivatives::{Equipment, Equipped, matrix};
 use hamel_tests::differences::{STEP, derivative, moved};
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::random::{Case, cases, library, numbers};
@@ -20,49 +20,53 @@ use std::sync::Arc;
 const FINE: f64 = STEP / 16.0;
 const BOUND: f64 = 1e-8;
 
-/// The trees themselves, in the order of their seeds.
-pub fn trees() -> Vec<Case> {
-    cases(&library(), 8, 48).collect()
+/// Trees with one or two constraints.
+fn all() -> Vec<Case> {
+    equipped().into_iter().map(|all| all.case).collect()
 }
 
-/// Trees with one or two constraints; every other one with elements and rotors, every third one with a driven joint.
-pub fn all() -> Vec<Case> {
-    let coupled = |case: Case| {
-        let mut random = ChaCha8Rng::seed_from_u64(case.seed);
-        let mut mechanism = Arc::clone(&case.mechanism);
-        if case.seed.is_multiple_of(2) {
-            mechanism = Equipment::random(&mechanism, &case.q, case.seed).equip(&mechanism);
-        }
-        let mut mechanism = (*mechanism).clone();
-        let count = mechanism.bodies().len();
-        if case.seed.is_multiple_of(3) {
-            mechanism = driven(mechanism, count / 2);
-        }
-        let bodies = [count - 1, 0];
-        let bodies = &bodies[..1 + usize::from(case.speeds.len() > 6)];
-        let mut vector = || Vector3::from_vec(numbers(&mut random, 3));
-        let constraints = bodies.iter().map(|&body| PointConstraint {
-            name: format!("edge {body}"),
-            body,
-            point: vector(),
-            direction: vector(),
-        });
-        let constraints = constraints.collect();
-        // The joints of some trees allow nothing that the edges forbid, or are all driven.
-        let mechanism = Arc::new(mechanism.with_constraints(constraints, &case.q).ok()?);
-        let mut speeds = case.speeds.clone();
-        Recursive::new(Arc::clone(&mechanism))
-            .complete_speeds(&case.q, &mut speeds)
-            .expect("determined");
-        Some(Case {
-            mechanism,
-            speeds,
-            ..case
-        })
-    };
-    let all: Vec<Case> = trees().into_iter().filter_map(coupled).collect();
+/// The same, with what they carry: every other one elements and rotors, every third one a driven joint.
+pub fn equipped() -> Vec<Equipped> {
+    let all: Vec<_> = cases(&library(), 8, 48).filter_map(coupled).collect();
     assert!(all.len() >= 36, "{} trees take constraints", all.len());
     all
+}
+
+/// `None` where the joints of a tree allow nothing that the edges forbid, or are all driven.
+fn coupled(case: Case) -> Option<Equipped> {
+    let mut random = ChaCha8Rng::seed_from_u64(case.seed);
+    let Equipped {
+        case, equipment, ..
+    } = match case.seed.is_multiple_of(2) {
+        true => Equipped::fully(case),
+        false => Equipped::new(case, Equipment::default()),
+    };
+    let mut mechanism = (*case.mechanism).clone();
+    let count = mechanism.bodies().len();
+    if case.seed.is_multiple_of(3) {
+        mechanism = driven(mechanism, count / 2);
+    }
+    let bodies = [count - 1, 0];
+    let bodies = &bodies[..1 + usize::from(case.speeds.len() > 6)];
+    let mut vector = || Vector3::from_vec(numbers(&mut random, 3));
+    let constraints = bodies.iter().map(|&body| PointConstraint {
+        name: format!("edge {body}"),
+        body,
+        point: vector(),
+        direction: vector(),
+    });
+    let constraints = constraints.collect();
+    let mechanism = Arc::new(mechanism.with_constraints(constraints, &case.q).ok()?);
+    let mut speeds = case.speeds.clone();
+    Recursive::new(Arc::clone(&mechanism))
+        .complete_speeds(&case.q, &mut speeds)
+        .expect("determined");
+    let case = Case {
+        mechanism,
+        speeds,
+        ..case
+    };
+    Some(Equipped::new(case, equipment))
 }
 
 fn driven(mechanism: Mechanism, body: usize) -> Mechanism {

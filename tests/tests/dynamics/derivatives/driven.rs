@@ -1,12 +1,12 @@
 //! Forward dynamics and the port-Hamiltonian form where the motion of some joints is prescribed: the others answer, and the accelerations of the
 //! driven ones are inputs.
 
-use super::{
-    BOUND, Equipment, Equipped, Expected, constants, derivatives, matrix, place, relative,
-};
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, Recursive};
 use hamel::elements::{Drive, Law};
 use hamel::nalgebra::{DMatrix, DVector};
+use hamel_tests::derivatives::{
+    BOUND, Equipment, Equipped, Expected, constants, derivatives, matrix, relative,
+};
 use hamel_tests::figures::Largest;
 use hamel_tests::random::{Case, cases, library};
 use std::sync::Arc;
@@ -29,7 +29,7 @@ fn all() -> Vec<Equipped> {
         let mechanism = (*mechanism).clone().with_drives(drives.collect());
         let mechanism = Arc::new(mechanism.expect("they fit"));
         let case = Case { mechanism, ..case };
-        Equipped { case, equipment }
+        Equipped::new(case, equipment)
     };
     cases(&library(), 12, 48).map(equipped).collect()
 }
@@ -105,7 +105,7 @@ fn free_joints_answer() {
         for ((worst, found), side) in worst.iter_mut().zip(found).zip(&sides) {
             let free = of_free(case, &found.matrix());
             let expected = of_free(case, &answer(case, &oracle.mass, side));
-            worst.meet(relative(&free, &expected) / condition, place(&equipped));
+            worst.meet(relative(&free, &expected) / condition, equipped.place());
         }
         driven_obey(case, &found.map(|found| found.matrix()));
     }
@@ -187,7 +187,7 @@ fn free_joints_answer_in_the_port_hamiltonian_form() {
         ];
         for ((worst, found), expected) in worst.iter_mut().zip(found).zip(&expected) {
             let error = relative(&found.matrix(), expected) / condition;
-            worst.meet(error, place(&equipped));
+            worst.meet(error, equipped.place());
         }
     }
     worst.iter().for_each(|worst| worst.assert_within(BOUND));

@@ -6,12 +6,13 @@ mod equipment;
 mod kernels;
 
 pub use equipment::Equipment;
+pub use kernels::{Kernels, Lookup, behind, library_kernels, of};
 
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{Vector3, Vector6};
 use hamel::scalar::Dual;
 use hamel::spatial::{Pose, SpatialInertia, bracket_dual_product, bracket_product, join};
-use kernels::{Kernels, constants, kernels};
+use kernels::constants;
 use std::sync::Arc;
 
 type D = Dual<f64>;
@@ -38,8 +39,11 @@ pub struct DualForm {
 /// A state in dual numbers.
 #[derive(Clone)]
 pub struct DualState {
+    /// All joints' Q.
     pub q: Vec<D>,
+    /// v̄.
     pub speeds: Vec<D>,
+    /// τ.
     pub efforts: Vec<D>,
 }
 
@@ -51,8 +55,13 @@ fn lifted(pose: &Pose<f64>) -> Pose<D> {
 }
 
 impl DualForm {
-    /// A mechanism that carries the given equipment.
+    /// A mechanism on joints of the library that carries the given equipment.
     pub fn new(mechanism: &Arc<Mechanism>, equipment: Equipment) -> Self {
+        Self::of(mechanism, equipment, library_kernels)
+    }
+
+    /// A mechanism on joints whose kernels are found elsewhere.
+    pub fn of(mechanism: &Arc<Mechanism>, equipment: Equipment, lookup: Lookup) -> Self {
         let bodies = mechanism.bodies();
         let body = |body: &hamel::mechanism::Body| {
             let above = body
@@ -70,7 +79,7 @@ impl DualForm {
             (lifted_inertia.inertia.xz, lifted_inertia.inertia.yy) = (lift(i.xz), lift(i.yy));
             (lifted_inertia.inertia.yz, lifted_inertia.inertia.zz) = (lift(i.yz), lift(i.zz));
             Body {
-                joint: kernels(body.joint()),
+                joint: lookup(body.joint()),
                 parent: body.parent(),
                 frame: lifted(&(above * *body.placement())),
                 fixed: lifted(body.child_placement()),
@@ -117,27 +126,14 @@ impl DualForm {
         let poses = self.poses(q);
         let zero = Vector3::zeros();
         let base = join(&zero, &if falls { -self.gravity } else { zero });
-        let mut motions: Vec<(Vector6<D>, Vector6<D>)> = vec![];
-        let mut columns: Vec<Vec<Vector6<D>>> = vec![];
-        for (body, pose) in self.bodies.iter().zip(&poses) {
-            let (twist, rate) = body.parent.map_or((Vector6::zeros(), base), |p| motions[p]);
-            let own = body.joint.columns(&q[body.configuration.clone()]);
-            let speeds = &speeds[body.speeds.clone()];
-            let relative = sum(&own, speeds);
-            let twist = pose.act_twist_inverse(&twist) + relative;
-            let rate = pose.act_twist_inverse(&rate)
-                + sum(&own, &accelerations[body.speeds.clone()])
-                + body.joint.bias(&q[body.configuration.clone()], speeds)
-                + bracket_product(&twist, &relative);
-            motions.push((twist, rate));
-            columns.push(own);
-        }
+        let motions = self.motions(&poses, (q, speeds, accelerations), base);
         let wrench = |(body, (twist, rate)): (&Body, &(_, _))| body.inertia.wrench(twist, rate);
         let own: Vec<Vector6<D>> = self.bodies.iter().zip(&motions).map(wrench).collect();
         let wrenches = self.gathered(&poses, own);
         let mut efforts = vec![Dual::constant(0.0); speeds.len()];
-        for ((body, columns), wrench) in self.bodies.iter().zip(&columns).zip(&wrenches) {
-            for (effort, column) in efforts[body.speeds.clone()].iter_mut().zip(columns) {
+        for (body, wrench) in self.bodies.iter().zip(&wrenches) {
+            let columns = body.joint.columns(&q[body.configuration.clone()]);
+            for (effort, column) in efforts[body.speeds.clone()].iter_mut().zip(&columns) {
                 *effort = column.dot(wrench);
             }
         }
@@ -149,6 +145,29 @@ impl DualForm {
             }
         }
         efforts
+    }
+
+    /// Twists and their rates in child axes, for a world that accelerates with `base`.
+    fn motions(
+        &self,
+        poses: &[Pose<D>],
+        (q, speeds, accelerations): (&[D], &[D], &[D]),
+        base: Vector6<D>,
+    ) -> Vec<(Vector6<D>, Vector6<D>)> {
+        let mut motions: Vec<(Vector6<D>, Vector6<D>)> = vec![];
+        for (body, pose) in self.bodies.iter().zip(poses) {
+            let (twist, rate) = body.parent.map_or((Vector6::zeros(), base), |p| motions[p]);
+            let own = body.joint.columns(&q[body.configuration.clone()]);
+            let speeds = &speeds[body.speeds.clone()];
+            let relative = sum(&own, speeds);
+            let twist = pose.act_twist_inverse(&twist) + relative;
+            let rate = pose.act_twist_inverse(&rate)
+                + sum(&own, &accelerations[body.speeds.clone()])
+                + body.joint.bias(&q[body.configuration.clone()], speeds)
+                + bracket_product(&twist, &relative);
+            motions.push((twist, rate));
+        }
+        motions
     }
 
     /// S̄ᵀ τ.
@@ -210,6 +229,21 @@ impl DualForm {
         let power =
             |(body, wrench): &(usize, Vector6<f64>)| wrench.map(Dual::constant).dot(&twists[*body]);
         wrenches.iter().map(power).collect()
+    }
+
+    /// The rates of [`DualForm::powers`] along a motion.
+    pub fn power_rates(
+        &self,
+        (q, speeds, accelerations): (&[D], &[D], &[D]),
+        wrenches: &[(usize, Vector6<f64>)],
+    ) -> Vec<D> {
+        let motion = (q, speeds, accelerations);
+        let motions = self.motions(&self.poses(q), motion, Vector6::zeros());
+        let rate = |(body, wrench): &(usize, Vector6<f64>)| {
+            let (_, rate) = &motions[*body];
+            wrench.map(Dual::constant).dot(rate)
+        };
+        wrenches.iter().map(rate).collect()
     }
 
     /// Kinetic energy, and potential energy in gravity.

@@ -2,15 +2,15 @@
 
 use super::kernels::constants;
 use super::{D, DualForm};
+use crate::random::numbers;
 use hamel::elements::{
     BodySpring, BodyWrench, Element, JointDamper, JointEffort, JointSpring, RotationSpring,
     WrenchAxes,
 };
-use hamel::mechanism::Mechanism;
+use hamel::mechanism::{Body, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3, Vector6};
 use hamel::scalar::Dual;
 use hamel::spatial::{Pose, join, so3, split, vee};
-use hamel_tests::random::numbers;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
@@ -42,6 +42,19 @@ fn stiffness(random: &mut ChaCha8Rng, size: usize) -> Vec<f64> {
         .collect()
 }
 
+/// A place about `near` of the joint's own, nearer where ϕ would not be found back from there.
+fn rest(owner: &Body, q: &[f64], mut near: Vec<f64>) -> Vec<f64> {
+    let (joint, q) = (owner.joint(), owner.configuration(q));
+    let (mut rest, mut back) = (vec![0.0; q.len()], near.clone());
+    loop {
+        joint.retract(q, &near, &mut rest);
+        if joint.local(&rest, q, &mut back).is_ok() {
+            return rest;
+        }
+        near.iter_mut().for_each(|entry| *entry *= 0.5);
+    }
+}
+
 impl Equipment {
     /// Everything at every body, of order 1.
     pub fn random(mechanism: &Mechanism, q: &[f64], seed: u64) -> Self {
@@ -52,10 +65,7 @@ impl Equipment {
             let ranges = owner.ranges();
             let size = ranges.freedoms.len();
             let near = numbers(&mut random, size);
-            let mut rest = vec![0.0; ranges.configuration.len()];
-            owner
-                .joint()
-                .retract(owner.configuration(q), &near, &mut rest);
+            let rest = rest(owner, q, near);
             let name = |kind: &str| format!("{kind} {body}");
             all.springs.push(JointSpring {
                 name: name("spring"),
@@ -107,6 +117,9 @@ impl Equipment {
     }
 
     /// The mechanism with it.
+    ///
+    /// # Panics
+    /// Where the mechanism is another.
     pub fn equip(&self, mechanism: &Mechanism) -> Arc<Mechanism> {
         fn shared<E: Element + Clone + 'static>(all: &[E]) -> Vec<Arc<dyn Element>> {
             let shared = |element: &E| -> Arc<dyn Element> { Arc::new(element.clone()) };

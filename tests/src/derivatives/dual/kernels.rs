@@ -8,13 +8,18 @@ use hamel::scalar::Dual;
 use hamel::spatial::Pose;
 
 /// The kernels of one joint in dual numbers.
-pub(super) trait Kernels {
+pub trait Kernels {
+    /// The joint's name and the values of its parameters.
+    fn identity(&self) -> (&'static str, Vec<f64>);
     /// Φ(Q, ϕ).
     fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D>;
+    /// H.
     fn pose(&self, q: &[D]) -> Pose<D>;
     /// The columns of X̄^c.
     fn columns(&self, q: &[D]) -> Vec<Vector6<D>>;
+    /// c.
     fn bias(&self, q: &[D], speeds: &[D]) -> Vector6<D>;
+    /// Ẋ̄ᵀ h.
     fn bias_momentum(&self, q: &[D], speeds: &[D], h: &Vector6<D>) -> Vec<D>;
     /// S̄ᵀ τ.
     fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D>;
@@ -41,6 +46,11 @@ pub(super) fn constants(values: &[f64]) -> Vec<D> {
 impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize> Kernels
     for Of<J, N, K, S, C>
 {
+    fn identity(&self) -> (&'static str, Vec<f64>) {
+        let parameters = self.0.parameters().map(|(_, value)| value);
+        (J::NAME, parameters.collect())
+    }
+
     fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D> {
         let moved = self.0.retract(&vector::<N>(&constants(q)), &vector(phi));
         moved.iter().copied().collect()
@@ -104,22 +114,45 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     }
 }
 
-/// The joint of the library behind an erased one.
-pub(super) fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
-    let mut found: Option<Box<dyn Kernels>> = None;
+/// The kernels of a joint.
+pub fn of<J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: J,
+) -> Box<dyn Kernels>
+where
+    J: Joint<N, K, S, C> + 'static,
+{
+    Box::new(Of::<J, N, K, S, C>(joint))
+}
+
+/// Where the kernels behind an erased joint are found.
+pub type Lookup = fn(&dyn AnyJoint) -> Box<dyn Kernels>;
+
+/// The one of `all` that has the name and the parameters of an erased joint.
+///
+/// # Panics
+/// Where there is none.
+pub fn behind(
+    joint: &dyn AnyJoint,
+    all: impl IntoIterator<Item = Box<dyn Kernels>>,
+) -> Box<dyn Kernels> {
     let mut parameters = vec![];
     joint.parameters(&mut |_, value| parameters.push(value));
-    macro_rules! pick {
+    let mut all = all.into_iter();
+    let found = all.find(|own| own.identity() == (joint.name(), parameters.clone()));
+    found.unwrap_or_else(|| panic!("no kernels of `{}` with {parameters:?}", joint.name()))
+}
+
+/// The joint of the library behind an erased one.
+///
+/// # Panics
+/// Where it is another's, or has other parameters than [`crate::random::library`].
+pub fn library_kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
+    let mut all = vec![];
+    macro_rules! add {
         ($module:ident, $type:ty, $example:expr, $n:literal, $k:literal, $s:literal, $c:literal) => {
-            if joint.name() == stringify!($module) {
-                let example = $example;
-                let own = Joint::<$n, $k, $s, $c>::parameters(&example);
-                let own: Vec<f64> = own.map(|(_, value)| value).collect();
-                assert_eq!(own, parameters, "{}", joint.name());
-                found = Some(Box::new(Of::<$type, $n, $k, $s, $c>(example)));
-            }
+            all.push(of::<$type, $n, $k, $s, $c>($example));
         };
     }
-    hamel_joints::for_each_joint!(pick);
-    found.expect("a joint of the library")
+    hamel_joints::for_each_joint!(add);
+    behind(joint, all)
 }

@@ -1,0 +1,92 @@
+//! Derivatives of the dynamics and linearised steps on random trees of this crate's joints.
+
+use hamel::erased::AnyJoint;
+use hamel::registry::JointRegistry;
+use hamel_downstream::joints::{
+    BallCayley, BallTurns, Bead, Catenary, CatenaryLength, DirectionSensor, ENTRIES, PlanarTurns,
+    PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SpherePoint,
+};
+use hamel_tests::derivatives::{self, Equipment, Equipped, Kernels, behind, of};
+use hamel_tests::differences::STEP;
+use hamel_tests::linear_step;
+use hamel_tests::random::{self, cases};
+use std::sync::Arc;
+
+/// Every joint at the root of three trees.
+const TREES: u64 = 39;
+
+/// These joints bend more than those of the library: h⁶ f⁽⁷⁾ is 1.2e-7 with the usual step, and 4096 times less with a fourth of it.
+const FINE: f64 = STEP / 4.0;
+
+fn kinds() -> Vec<Arc<dyn AnyJoint>> {
+    let mut registry = JointRegistry::new();
+    registry
+        .extend(ENTRIES.iter().copied())
+        .expect("distinct names");
+    random::kinds(&registry)
+}
+
+/// The kernels of the joints of [`kinds`].
+fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
+    let all = [
+        of(BallCayley),
+        of(BallTurns),
+        of(Bead::new(0.7)),
+        of(Catenary::new(0.7)),
+        of(CatenaryLength::new(0.7)),
+        of(DirectionSensor::new(0.7)),
+        of(PlanarTurns),
+        of(PowerGuide::new(0.7)),
+        of(RollingBallCayley::new(0.7)),
+        of(Scara),
+        of(SkateHeading),
+        of(SkewScrew),
+        of(SpherePoint::new(0.7)),
+    ];
+    behind(joint, all)
+}
+
+/// Bare, and with elements of all kinds and rotors at every joint.
+fn all() -> Vec<Equipped> {
+    let kinds = kinds();
+    let bare = cases(&kinds, 8, TREES);
+    let bare = bare.map(|case| Equipped::new(case, Equipment::default()));
+    let equipped = cases(&kinds, 8, TREES).map(Equipped::fully);
+    let all = bare.chain(equipped);
+    all.map(|equipped| equipped.on(kernels)).collect()
+}
+
+#[test]
+fn inverse_dynamics() {
+    derivatives::inverse_dynamics(all());
+}
+
+#[test]
+fn forward_dynamics() {
+    derivatives::forward_dynamics(all());
+}
+
+#[test]
+fn port_hamiltonian_form() {
+    derivatives::port_hamiltonian_form(all());
+}
+
+#[test]
+fn energies() {
+    derivatives::energies(all());
+}
+
+#[test]
+fn linear_steps_of_bare_trees() {
+    linear_step::bare(cases(&kinds(), 5, TREES), FINE);
+}
+
+#[test]
+fn linear_steps_of_equipped_trees() {
+    linear_step::equipped(cases(&kinds(), 4, TREES), FINE);
+}
+
+#[test]
+fn linear_steps_of_coupled_trees() {
+    linear_step::constrained(cases(&kinds(), 5, TREES), 20);
+}
