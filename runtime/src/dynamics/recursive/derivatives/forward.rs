@@ -6,7 +6,7 @@ use super::coupled::Coupled;
 use super::factor::Factors;
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
-use super::sweep::{LANES, Push, Sweep, Tree};
+use super::sweep::{Push, Sweep, Tree};
 use super::{Branch, Sensitivity, branches, in_child};
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
@@ -67,27 +67,6 @@ impl Responses {
             faster: vec![Push::none(); layout.speeds],
             forced: vec![Push::none(); layout.freedoms],
         }
-    }
-}
-
-/// The responses to all `pushes`, column by column of `out`; `TURNS` says whether any has a U.
-pub(super) fn respond<const TURNS: bool>(
-    tree: &Tree<'_>,
-    sweep: &mut Sweep,
-    pushes: &[Push],
-    out: &mut Sensitivity,
-) {
-    let width = out.columns;
-    for (block, pushes) in pushes.chunks(LANES).enumerate() {
-        sweep.respond::<TURNS>(tree, pushes, (&mut out.entries, width, block * LANES));
-    }
-}
-
-/// M̄⁻¹, from a unit force on every speed.
-pub(super) fn invert(tree: &Tree<'_>, sweep: &mut Sweep, pushes: &[Push], out: &mut Sensitivity) {
-    let width = out.columns;
-    for (block, pushes) in pushes.chunks(LANES).enumerate() {
-        sweep.respond_symmetrically(tree, pushes, (&mut out.entries, width, block * LANES));
     }
 }
 
@@ -188,11 +167,11 @@ impl Recursive {
             drags: &responses.drags,
         };
         let sweep = &mut responses.sweep;
-        respond::<true>(&tree, sweep, &responses.pushes, &mut out.by_local);
-        respond::<true>(&tree, sweep, &responses.faster, &mut out.by_speeds);
+        sweep.respond::<true>(&tree, &responses.pushes, &mut out.by_local);
+        sweep.respond::<true>(&tree, &responses.faster, &mut out.by_speeds);
         match yields {
-            true => invert(&tree, sweep, &responses.forced, &mut out.by_efforts),
-            false => respond::<false>(&tree, sweep, &responses.forced, &mut out.by_efforts),
+            true => sweep.respond_symmetrically(&tree, &responses.forced, &mut out.by_efforts),
+            false => sweep.respond::<false>(&tree, &responses.forced, &mut out.by_efforts),
         }
         for link in self.links.iter().filter(|link| link.driven) {
             for (speed, effort) in link.speeds.clone().zip(link.freedoms.clone()) {
@@ -202,7 +181,7 @@ impl Recursive {
         if self.acted_on {
             self.push_units(&mut out.yielding);
             let Yielding { units, inverse } = &mut out.yielding;
-            invert(&tree, sweep, units, inverse);
+            sweep.respond_symmetrically(&tree, units, inverse);
             add_response(inverse, &out.acting.by_local, &mut out.by_local);
             add_response(inverse, &out.acting.by_speeds, &mut out.by_speeds);
         }

@@ -12,7 +12,7 @@
 
 use super::acting::Acting;
 use super::coupled_momenta::CoupledMomenta;
-use super::forward::{Responses, invert, respond};
+use super::forward::Responses;
 use super::product::add_product;
 use super::sweep::{Push, Tree};
 use super::{Sensitivity, in_child};
@@ -241,11 +241,11 @@ impl Recursive {
             drags: &responses.drags,
         };
         let sweep = &mut responses.sweep;
-        respond::<false>(&tree, sweep, &responses.pushes, &mut out.speeds_by_local);
+        sweep.respond::<false>(&tree, &responses.pushes, &mut out.speeds_by_local);
         if self.mechanism.drives().is_empty() {
-            return invert(&tree, sweep, &out.by_momenta, &mut out.speeds_by_momenta);
+            return sweep.respond_symmetrically(&tree, &out.by_momenta, &mut out.speeds_by_momenta);
         }
-        respond::<false>(&tree, sweep, &out.by_momenta, &mut out.speeds_by_momenta);
+        sweep.respond::<false>(&tree, &out.by_momenta, &mut out.speeds_by_momenta);
         let driven = self.links.iter().filter(|link| link.driven);
         for speed in driven.flat_map(|link| link.speeds.clone()) {
             out.speeds_by_momenta.set(speed, speed, 1.0);

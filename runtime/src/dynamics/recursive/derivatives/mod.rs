@@ -235,6 +235,8 @@ struct Branch {
     speeds: (usize, usize),
     /// Whether any column of X̄ has an angular part, and whether any has a linear one.
     parts: (bool, bool),
+    /// Whether any body but the next one hangs on it.
+    forks: bool,
 }
 
 /// The parent of a body that hangs on the world.
@@ -248,7 +250,15 @@ fn branches(mechanism: &Mechanism) -> Vec<Branch> {
             freedoms: (ranges.freedoms.start, ranges.freedoms.end),
             speeds: (ranges.speeds.start, ranges.speeds.end),
             parts: body.joint().parts(),
+            forks: false,
         }
     };
-    mechanism.bodies().iter().map(branch).collect()
+    let mut branches: Vec<_> = mechanism.bodies().iter().map(branch).collect();
+    for body in 0..branches.len() {
+        let parent = branches[body].parent;
+        if parent != WORLD && parent + 1 != body {
+            branches[parent].forks = true;
+        }
+    }
+    branches
 }

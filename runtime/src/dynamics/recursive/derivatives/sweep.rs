@@ -1,6 +1,6 @@
 //! Linear responses of the articulated tree, eight at a time: inward along the branches of what pushes, outward over all bodies.
 
-use super::{Branch, WORLD};
+use super::{Branch, Sensitivity, WORLD};
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::recursive::link::Node;
 use crate::scalar::Scalar;
@@ -11,10 +11,15 @@ use alloc::vec::Vec;
 use nalgebra::{Vector3, Vector6};
 
 /// Responses that go through the tree side by side.
-pub(super) const LANES: usize = 8;
+const LANES: usize = 8;
 
-/// One number of each response.
-type Lane = [f64; LANES];
+/// Sweeps whose results are written together: 256 bytes of each row.
+const GROUP: usize = 4;
+
+/// One number of each response; aligned so that none lies across two lines of the cache, whose stores the next body's loads would wait for.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Lane([f64; LANES]);
 
 /// What asks for a response: something at one joint, and what it means for all below.
 #[derive(Clone, Copy, Debug)]
@@ -59,23 +64,25 @@ pub(super) struct Tree<'a> {
 pub(super) struct Sweep {
     /// One a body: the wrench that a sweep inward carries.
     wrenches: Vec<[Lane; 6]>,
-    /// One a body: the rate of what hangs on it.
+    /// One a body that forks: the rate of what hangs on it.
     motions: Vec<[Lane; 6]>,
-    /// One a body: the angular U of what hangs on it.
+    /// One a body that forks: the angular U of what hangs on it.
     turns: Vec<[Lane; 3]>,
     /// One a speed.
     loads: Vec<Lane>,
     /// Whether the sweep inward has met a body.
     met: Vec<bool>,
+    /// One a speed, of each of a group of sweeps: rows of results are written where several of their numbers are known, since each is far from the others.
+    answers: Vec<Lane>,
 }
 
-const ZERO: Lane = [0.0; LANES];
+const ZERO: Lane = Lane([0.0; LANES]);
 
 /// `sum += weight lane`.
 #[inline(always)]
 fn add(sum: &mut Lane, lane: &Lane, weight: f64) {
     for l in 0..LANES {
-        sum[l] = Scalar::mul_add(lane[l], weight, sum[l]);
+        sum.0[l] = Scalar::mul_add(lane.0[l], weight, sum.0[l]);
     }
 }
 
@@ -99,38 +106,55 @@ impl Sweep {
             turns: vec![[ZERO; 3]; bodies],
             loads: vec![ZERO; speeds],
             met: vec![false; bodies],
+            answers: vec![ZERO; GROUP * speeds],
         }
     }
 
-    /// The rates that all speeds answer with, into `rows` (one a speed, of `width` entries), columns from `first` on: one a push, of which there
-    /// are at most eight. `TURNS` says whether any of them has a U.
+    /// The rates that all speeds answer with, into columns of `out`: one a push. `TURNS` says whether any of them has a U.
     pub(super) fn respond<const TURNS: bool>(
         &mut self,
         tree: &Tree<'_>,
         pushes: &[Push],
-        out: (&mut [f64], usize, usize),
+        out: &mut Sensitivity,
     ) {
-        let last = self.inward(tree, pushes);
-        self.outward::<TURNS, true>(tree, pushes, (last, tree.branches.len()), out);
-        self.met[..=last].fill(false);
+        let end = tree.branches.len();
+        for (group, pushes) in pushes.chunks(GROUP * LANES).enumerate() {
+            let mut answers = core::mem::take(&mut self.answers);
+            for (stripe, pushes) in answers
+                .chunks_exact_mut(out.rows().max(1))
+                .zip(pushes.chunks(LANES))
+            {
+                let last = self.inward(tree, pushes);
+                self.outward::<TURNS, true>(tree, pushes, (last, end), stripe);
+                self.met[..=last].fill(false);
+            }
+            write_down(&answers, group * GROUP * LANES, pushes.len(), out);
+            self.answers = answers;
+        }
     }
 
-    /// [`Sweep::respond`] to unit forces on the speeds from `first` on, whose responses are symmetric: half of them are found by outward sweeps, the
-    /// others are copied.
+    /// [`Sweep::respond`] to unit forces on the speeds, whose responses are symmetric: half of them are found by outward sweeps, the others are copied.
     pub(super) fn respond_symmetrically(
         &mut self,
         tree: &Tree<'_>,
         pushes: &[Push],
-        (rows, width, first): (&mut [f64], usize, usize),
+        out: &mut Sensitivity,
     ) {
-        let last = self.inward(tree, pushes);
-        self.outward::<false, false>(tree, pushes, (last, last + 1), (rows, width, first));
-        self.met[..=last].fill(false);
-        let (before, own) = rows.split_at_mut(first * width);
-        for (row, entries) in before.chunks_exact(width).enumerate() {
-            for (lane, entry) in entries[first..first + pushes.len()].iter().enumerate() {
-                own[lane * width + row] = *entry;
+        for (group, pushes) in pushes.chunks(GROUP * LANES).enumerate() {
+            let mut answers = core::mem::take(&mut self.answers);
+            let start = group * GROUP * LANES;
+            for (place, (stripe, pushes)) in answers
+                .chunks_exact_mut(out.rows().max(1))
+                .zip(pushes.chunks(LANES))
+                .enumerate()
+            {
+                let last = self.inward(tree, pushes);
+                self.outward::<false, false>(tree, pushes, (last, last + 1), stripe);
+                self.met[..=last].fill(false);
+                mirror(stripe, start + place * LANES, pushes.len(), out);
             }
+            write_down_triangle(&answers, start, pushes.len(), out);
+            self.answers = answers;
         }
     }
 
@@ -152,14 +176,14 @@ impl Sweep {
             self.meet(tree, push.body);
             let (start, end) = branch.speeds;
             for (load, own) in self.loads[start..end].iter_mut().zip(&push.loads) {
-                load[lane] = *own;
+                load.0[lane] = *own;
             }
             if branch.parent != WORLD {
                 self.meet(tree, branch.parent);
                 let offset = &tree.nodes[push.body].motion.placement.offset;
                 let carried = shift_wrench(&push.wrench, offset);
                 for (sum, entry) in self.wrenches[branch.parent].iter_mut().zip(&carried) {
-                    sum[lane] += entry;
+                    sum.0[lane] += entry;
                 }
             }
         }
@@ -190,7 +214,7 @@ impl Sweep {
                     add(&mut load, &wrench[i], column[i]);
                 }
             }
-            for entry in &mut load {
+            for entry in &mut load.0 {
                 *entry *= -pivot.inverse;
             }
             let momentum = pivot.momentum.data.0[0];
@@ -216,16 +240,22 @@ impl Sweep {
         tree: &Tree<'_>,
         pushes: &[Push],
         (last, end): (usize, usize),
-        (rows, width, first): (&mut [f64], usize, usize),
+        answers: &mut [Lane],
     ) {
-        let count = pushes.len();
+        // Those of the body before, on which most bodies hang, never leave for memory: a long chain's do not fit into the nearest cache.
+        let (mut motion, mut turn) = ([ZERO; 6], [ZERO; 3]);
         for (body, branch) in tree.branches[..end].iter().enumerate() {
-            let (mut motion, mut turn) = ([ZERO; 6], [ZERO; 3]);
-            if branch.parent != WORLD {
-                motion = self.motions[branch.parent];
-                if TURNS {
-                    turn = self.turns[branch.parent];
+            match branch.parent {
+                WORLD => (motion, turn) = ([ZERO; 6], [ZERO; 3]),
+                parent if parent + 1 == body => {}
+                parent => {
+                    motion = self.motions[parent];
+                    if TURNS {
+                        turn = self.turns[parent];
+                    }
                 }
+            }
+            if branch.parent != WORLD {
                 let [x, y, z] = tree.nodes[body].motion.placement.offset.into();
                 let [wx, wy, wz, ..] = motion;
                 add(&mut motion[3], &wy, z);
@@ -266,32 +296,76 @@ impl Sweep {
                         add(&mut motion[i], &rate, column[i]);
                     }
                 }
-                let start = speed * width + first;
-                match <&mut Lane>::try_from(&mut rows[start..start + count]) {
-                    Ok(whole) => *whole = rate,
-                    Err(_) => rows[start..start + count].copy_from_slice(&rate[..count]),
-                }
-            }
-            self.motions[body] = motion;
-            if TURNS {
-                self.turns[body] = turn;
+                answers[speed] = rate;
             }
             if MOVES && pushes.first().is_some_and(|push| push.body <= body) && body <= last {
-                self.add_own(pushes, body);
+                add_own(pushes, body, &mut motion, &mut turn);
+            }
+            if branch.forks {
+                self.motions[body] = motion;
+                if TURNS {
+                    self.turns[body] = turn;
+                }
             }
         }
     }
+}
 
-    /// W and U of the pushes at the joint of `body`, for what hangs on it.
-    fn add_own(&mut self, pushes: &[Push], body: usize) {
-        for (lane, push) in pushes.iter().enumerate() {
-            if push.body == body {
-                for (sum, rate) in self.motions[body].iter_mut().zip(&push.rate.data.0[0]) {
-                    sum[lane] += rate;
-                }
-                for (own, turn) in self.turns[body].iter_mut().zip(&push.turn.data.0[0]) {
-                    own[lane] = *turn;
-                }
+/// The rows of `answers` from the sweeps of `count` pushes into columns of `out` from `first` on.
+fn write_down(answers: &[Lane], first: usize, count: usize, out: &mut Sensitivity) {
+    let (rows, width) = (out.rows(), out.columns);
+    for (row, entries) in out.entries.chunks_exact_mut(width).enumerate() {
+        let own = entries[first..first + count].chunks_mut(LANES);
+        for (own, answer) in own.zip(answers[row..].iter().step_by(rows)) {
+            match <&mut [f64; LANES]>::try_from(&mut *own) {
+                Ok(whole) => *whole = answer.0,
+                Err(_) => own.copy_from_slice(&answer.0[..own.len()]),
+            }
+        }
+    }
+}
+
+/// [`write_down`] of what stands above the diagonal and on it.
+fn write_down_triangle(answers: &[Lane], first: usize, count: usize, out: &mut Sensitivity) {
+    let (rows, width) = (out.rows(), out.columns);
+    for (row, entries) in out
+        .entries
+        .chunks_exact_mut(width)
+        .take(first + count)
+        .enumerate()
+    {
+        let known = row.saturating_sub(first) / LANES;
+        let own = entries[first..first + count].chunks_mut(LANES).enumerate();
+        for (stripe, own) in own.skip(known) {
+            own.copy_from_slice(&answers[stripe * rows + row].0[..own.len()]);
+        }
+    }
+}
+
+/// What the speeds before `first` answer to unit forces on those from it on, as what these answer to forces on them.
+fn mirror(stripe: &[Lane], first: usize, count: usize, out: &mut Sensitivity) {
+    let width = out.columns;
+    for (lane, row) in out.entries[first * width..]
+        .chunks_exact_mut(width)
+        .take(count)
+        .enumerate()
+    {
+        for (entry, answer) in row.iter_mut().zip(&stripe[..first]) {
+            *entry = answer.0[lane];
+        }
+    }
+}
+
+/// W and U of the pushes at the joint of `body`, for what hangs on it.
+#[inline(never)]
+fn add_own(pushes: &[Push], body: usize, motion: &mut [Lane; 6], turn: &mut [Lane; 3]) {
+    for (lane, push) in pushes.iter().enumerate() {
+        if push.body == body {
+            for (sum, rate) in motion.iter_mut().zip(&push.rate.data.0[0]) {
+                sum.0[lane] += rate;
+            }
+            for (own, turn) in turn.iter_mut().zip(&push.turn.data.0[0]) {
+                own.0[lane] = *turn;
             }
         }
     }
