@@ -183,3 +183,32 @@ fn the_storage_of_attitudes_makes_no_difference() {
         assert!(found <= ALIKE, "{a}, {b}: {found:e}");
     }
 }
+
+/// Weights and gains of inputs are in the order in which their joints are named, not in that of the bodies.
+#[test]
+fn inputs_keep_the_order_in_which_their_joints_are_named() {
+    let scene = scene("panda7_tracking");
+    let count = scene.mechanism.bodies().len();
+    let gain = |order: &[usize]| {
+        let goal = scene.mechanism.home();
+        let equilibrium = Equilibrium::new(Arc::clone(&scene.mechanism), goal, order);
+        let equilibrium = equilibrium.expect("every joint holds itself");
+        assert_eq!(equilibrium.inputs(), order);
+        let weights = Weights {
+            position: vec![10.0; count],
+            speed: vec![1.0; count],
+            effort: order.iter().map(|&joint| 1.0 + joint as f64).collect(),
+        };
+        let regulator = Regulator::new(equilibrium, &weights).expect("every motion has its input");
+        regulator.optimum().gain.clone()
+    };
+    let straight: Vec<usize> = (0..count).collect();
+    let reversed: Vec<usize> = straight.iter().rev().copied().collect();
+    let (expected, found) = (gain(&straight), gain(&reversed));
+    let size = expected.amax();
+    for (row, &joint) in reversed.iter().enumerate() {
+        let apart = (found.row(row) - expected.row(joint)).amax();
+        // The Riccati equation is solved with sums in another order: rounding times its conditioning, some 1e4.
+        assert!(apart <= 1e-11 * size, "input {joint}: {apart:e}");
+    }
+}
