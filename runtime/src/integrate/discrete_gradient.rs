@@ -1,12 +1,18 @@
 //! What turns the midpoint rule into a discrete-gradient method on the port-Hamiltonian form: one number a step.
 //!
-//! The midpoint rule takes `ϕ̇ = T v̄`, `p̄̇ = J̄22 v̄ − Tᵀ∂H/∂ϕ + τ̄` with `v̄ = ∂H/∂p̄` half-way. With `v̄ + λ M̄⁻¹Δp̄` for v̄ under T and J̄22, Δp̄ the change over the
-//! step, that is the discrete gradient of O. Gonzalez (*Time integration and discrete Hamiltonian systems*, 1996) with its correction
-//! along p̄, in the metric of the kinetic energy: the structure matrix stays skew, and λ is chosen such that the energy at the end is what it shall be. It is
-//! held against the energy at the beginning of all steps and the work done since, so that rounding does not add up.
+//! The midpoint rule takes `ϕ̇ = T v̄`, `p̄̇ = J̄22 v̄ − Tᵀ∂H/∂ϕ + τ̄` with `v̄ = ∂H/∂p̄` half-way. A discrete gradient takes other partial derivatives of H: those half-way
+//! and a correction along the change over the step, such that their product with the change is that of H (O. Gonzalez, *Time integration and
+//! discrete Hamiltonian systems*, 1996), while the structure matrix stays skew. Here, in the metric of the kinetic energy:
+//! - `v̄ + λ M̄⁻¹Δp̄` for v̄ under T and J̄22, and in the work done;
+//! - `Tᵀ∂H/∂ϕ + λ p̄/h`, along `T⁻¹Δϕ = h v̄`.
+//!
+//! λ is chosen such that the energy at the end is what it shall be. What it lacks changes with λ by `−p̄ᵀv̄ − Δp̄ᵀM̄⁻¹Δp̄`, which vanishes at rest alone: where
+//! the motion is fastest Δp̄ is small, where it turns p̄ is. The energy is held against that at the beginning of all steps and the work done since, so
+//! that rounding does not add up.
 
 use super::StepFailure;
 use super::flow::{Flow, Rates, multiply, retract};
+use super::residue::add_exactly;
 use super::standing::{Standing, add};
 use super::stepper::Span;
 use crate::dynamics::Recursive;
@@ -27,8 +33,12 @@ pub(super) struct Correction {
     lambda: f64,
     /// Whether λ has shaped the increments that come next.
     is_in_force: bool,
+    /// Whether λ needed no change when last looked at.
+    is_settled: bool,
     /// Energy at the state as it shall be: what it was at first, and the work done since, J; NaN before the first step.
     energy: f64,
+    /// What it is too coarse to hold.
+    residue: f64,
     /// Work of the step being tried, J.
     work: f64,
     /// Kinetic energy half-way, J.
@@ -36,12 +46,14 @@ pub(super) struct Correction {
     /// Δp̄, and M̄⁻¹ of it.
     change: Vec<f64>,
     faster: Vec<f64>,
+    /// `v̄ + λ M̄⁻¹Δp̄`.
+    speeds: Vec<f64>,
     /// Q half-way and at the end, ϕ and p̄ at the end.
     middle: Vec<f64>,
     end: Vec<f64>,
     phi: Vec<f64>,
     momenta: Vec<f64>,
-    /// T M̄⁻¹Δp̄ and J̄22 M̄⁻¹Δp̄.
+    /// `T M̄⁻¹Δp̄` and `J̄22 M̄⁻¹Δp̄ − p̄/h`.
     moved: Rates,
     composites: Vec<Vector6<f64>>,
     matrices: Matrices,
@@ -66,11 +78,14 @@ impl Correction {
             dynamics: Recursive::new(Arc::clone(mechanism)),
             lambda: 0.0,
             is_in_force: false,
+            is_settled: false,
             energy: f64::NAN,
+            residue: 0.0,
             work: 0.0,
             kinetic: 0.0,
             change: speeds.clone(),
             faster: speeds.clone(),
+            speeds: speeds.clone(),
             middle: configuration.clone(),
             end: configuration,
             phi: freedoms,
@@ -96,13 +111,18 @@ impl Correction {
         if self.energy.is_nan() {
             self.energy = flow.energy(&standing.configuration, &standing.y)?;
         }
-        self.is_in_force = false;
+        (self.is_in_force, self.is_settled) = (false, false);
         Ok(())
     }
 
+    /// Whether the energy at the end is what it shall be.
+    pub(super) const fn is_settled(&self) -> bool {
+        self.is_settled
+    }
+
     /// The step just tried is taken.
-    pub(super) const fn accept(&mut self) {
-        self.energy += self.work;
+    pub(super) fn accept(&mut self) {
+        (self.energy, self.residue) = add_exactly(self.energy, self.work + self.residue);
     }
 
     /// Corrects `rates` half-way, where `standing` has come to by `increment` (ϕ, then p̄).
@@ -119,8 +139,11 @@ impl Correction {
         self.change.fill(0.0);
         add(&mut self.change, 2.0, pushed);
         flow.speeds_of(&self.middle, &self.change, &mut self.faster)?;
-        let power = self.power(flow, &rates.speeds);
-        self.work = span.step * power;
+        self.speeds.copy_from_slice(&rates.speeds);
+        add(&mut self.speeds, self.lambda, &self.faster);
+        self.work = span.step * self.power(flow);
+        self.dynamics
+            .composite_momenta(&self.middle, &rates.speeds, &mut self.composites);
         let twice = standing
             .next_y
             .iter()
@@ -131,7 +154,7 @@ impl Correction {
             self.adjust(standing, flow, turned)?;
         }
         self.is_in_force = true;
-        self.move_by_structure(standing, flow);
+        self.move_by_structure(standing, flow, span.step);
         add(&mut rates.phi, self.lambda, &self.moved.phi);
         add(&mut rates.y, self.lambda, &self.moved.y);
         Ok(())
@@ -150,35 +173,37 @@ impl Correction {
         add(&mut self.momenta, 1.0, &self.change);
         retract(&flow.mechanism, &standing.base, &self.phi, &mut self.end);
         let found = flow.energy(&self.end, &self.momenta)?;
-        let carried: f64 = self
-            .change
-            .iter()
-            .zip(&self.faster)
-            .map(|(p, v)| p * v)
-            .sum();
-        let error = found - (self.energy + self.work);
+        let own = self.change.iter().zip(&self.faster);
+        let carried = 2.0 * self.kinetic + own.map(|(p, v)| p * v).sum::<f64>();
+        let error = (found - self.energy) - (self.work + self.residue);
         let rounding = ROUNDING * (found.abs() + self.kinetic);
-        if error.abs() > rounding && carried.abs() > rounding {
+        self.is_settled = error.abs() <= rounding || carried.abs() <= rounding;
+        if !self.is_settled {
             self.lambda += error / carried;
         }
         Ok(())
     }
 
     /// The power of inputs and elements half-way, W.
-    fn power(&mut self, flow: &Flow<'_>, speeds: &[f64]) -> f64 {
-        self.dynamics
-            .composite_momenta(&self.middle, speeds, &mut self.composites);
-        let elements = self.dynamics.element_power_here(&self.middle, speeds);
-        let bodies = flow.mechanism.bodies().iter();
-        let inputs = bodies.map(|body| {
-            self.matrices
-                .power(body, &self.middle, speeds, flow.last_efforts())
-        });
-        elements + inputs.sum::<f64>()
+    fn power(&mut self, flow: &Flow<'_>) -> f64 {
+        let mut power = 0.0;
+        if !flow.mechanism.elements().is_empty() {
+            // Elements see the bodies move as they do with the corrected speeds.
+            self.dynamics
+                .composite_momenta(&self.middle, &self.speeds, &mut self.composites);
+            power += self.dynamics.element_power_here(&self.middle, &self.speeds);
+        }
+        for body in flow.mechanism.bodies() {
+            let efforts = flow.last_efforts();
+            power += self
+                .matrices
+                .power(body, &self.middle, &self.speeds, efforts);
+        }
+        power
     }
 
-    /// `(T, J̄22) M̄⁻¹Δp̄`.
-    fn move_by_structure(&mut self, standing: &Standing, flow: &mut Flow<'_>) {
+    /// `(T, J̄22) M̄⁻¹Δp̄` and `−p̄/h`.
+    fn move_by_structure(&mut self, standing: &Standing, flow: &mut Flow<'_>, step: f64) {
         self.moved.speeds.copy_from_slice(&self.faster);
         flow.local_rates_of(&standing.base, &standing.phi, &mut self.moved);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
@@ -188,6 +213,7 @@ impl Correction {
             let structure = self.matrices.structure(body, &self.middle, momenta);
             multiply(structure, faster, out);
         }
+        add(&mut self.moved.y, -1.0 / step, &standing.next_y);
     }
 }
 

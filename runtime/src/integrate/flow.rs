@@ -266,14 +266,8 @@ impl<'a> Flow<'a> {
             ..
         } = self;
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
-            fill(
-                inputs,
-                held.as_deref(),
-                time,
-                configuration,
-                speeds,
-                efforts,
-            );
+            let held = held.as_deref();
+            fill(inputs, held, time, configuration, speeds, efforts);
             mechanism.set_driven_accelerations(time, efforts);
         };
         match self.form {
@@ -283,13 +277,14 @@ impl<'a> Flow<'a> {
                 fill(&rates.speeds, efforts);
                 dynamics.accelerations(configuration, &rates.speeds, efforts, &mut rates.y)
             }
-            Form::Hamiltonian => dynamics.momentum_rates(
-                configuration,
-                y,
-                &mut fill,
-                &mut rates.speeds,
-                &mut rates.y,
-            ),
+            Form::Hamiltonian => {
+                let mut fill = |speeds: &[f64], out: &mut [f64]| {
+                    fill(speeds, efforts);
+                    out.copy_from_slice(efforts);
+                };
+                let (speeds, y_rates) = (&mut rates.speeds, &mut rates.y);
+                dynamics.momentum_rates(configuration, y, &mut fill, speeds, y_rates)
+            }
         }
     }
 

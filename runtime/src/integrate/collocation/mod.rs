@@ -34,6 +34,10 @@ const SLOW_CONTROLLED: f64 = 1e-3;
 /// Changes below this that no longer shrink are rounding's: far above what any regular system makes of it, far below any error allowed.
 const STALLED: f64 = 1e-9;
 
+/// Iterations without shrinking after which an energy that is not yet what it shall be is left to rounding: λ and the increments take turns, so that
+/// changes shrink by tenths over several of them.
+const LINGERS: usize = 8;
+
 /// Changes that come to less than this part of the least one so far still shrink.
 const SHRINKS: f64 = 0.8;
 
@@ -163,7 +167,7 @@ impl Collocation {
                 true => (least, idle) = (size, 0),
                 false => idle += 1,
             }
-            let stalled = size < STALLED && idle >= 2;
+            let stalled = size < STALLED && idle >= if self.is_settled() { 2 } else { LINGERS };
             if self.stands(size, stalled) {
                 return Ok(());
             }
@@ -180,15 +184,25 @@ impl Collocation {
         let contraction = self.contraction;
         let left = size * contraction / (1.0 - contraction);
         match self.tolerance {
-            _ if size == 0.0 => true,
+            _ if size == 0.0 => self.is_settled() || stalled,
             Some(tolerance) => {
                 // RADAU5's: what is left over must not show in a result that is better than its estimate.
                 let allowed = tolerance * Float::sqrt(tolerance).min(0.03);
                 contraction < 1.0 && left <= allowed.max(10.0 * f64::EPSILON)
             }
             // The next change would be lost in rounding; or rounding has stopped them.
-            None => stalled || contraction < 0.5 && left < 0.05 * f64::EPSILON,
+            None if stalled => true,
+            None => match &self.correction {
+                None => contraction < 0.5 && left < 0.05 * f64::EPSILON,
+                // Work was reckoned before this change, and adds up.
+                Some(correction) => correction.is_settled() && size < 4.0 * f64::EPSILON,
+            },
         }
+    }
+
+    /// Whether nothing but the increments is left to iterate: λ changes by itself.
+    fn is_settled(&self) -> bool {
+        self.correction.as_ref().is_none_or(Correction::is_settled)
     }
 
     fn is_hopeless(&self, size: f64, before: f64) -> bool {
