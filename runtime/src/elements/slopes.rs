@@ -52,6 +52,8 @@ pub(crate) struct JointSlopes {
     /// The joint of each freedom and of each speed.
     of_freedom: Vec<usize>,
     of_speed: Vec<usize>,
+    /// Whether a joint's forces change with another's motion.
+    couples: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -82,10 +84,17 @@ impl JointSlopes {
             joints: joints.collect(),
             of_freedom,
             of_speed,
+            couples: false,
         }
     }
 
+    /// Whether anything was left out: forces of a joint that change with another's motion.
+    pub(crate) const fn leaves_out(&self) -> bool {
+        self.couples
+    }
+
     pub(crate) fn clear(&mut self) {
+        self.couples = false;
         for own in &mut self.joints {
             own.by_local.fill(0.0);
             own.by_speeds.fill(0.0);
@@ -108,7 +117,10 @@ impl JointSlopes {
             Column::Speed(speed) if self.of_speed[speed] == index => {
                 (&mut own.by_speeds, speed - own.speeds.start)
             }
-            _ => return,
+            _ => {
+                self.couples |= entry != 0.0;
+                return;
+            }
         };
         slopes[column * own.speeds.len() + row - own.speeds.start] += entry;
     }

@@ -19,6 +19,9 @@ const LARGE: usize = 16;
 /// The same in the port-Hamiltonian form, where the tree leaves out how v̄ changes with Q at the same p̄, and takes many more.
 const LARGE_HAMILTONIAN: usize = 96;
 
+/// The number of speeds up to which springs between bodies are worth dense blocks: 100 factorisations a second on one core.
+const LARGE_COUPLED: usize = 384;
+
 /// The number of times that a step is shortened on end before the tree is given up: by a factor of 4 each.
 const PATIENCE: usize = 6;
 
@@ -71,9 +74,14 @@ impl Newton {
         solves: &mut Solves,
     ) -> Result<(), StepFailure> {
         if self.stale {
-            match &mut self.system {
-                System::Tree(tree) => tree.evaluate(standing),
-                System::Dense(dense) => dense.evaluate(standing, flow, time)?,
+            if let System::Tree(tree) = &mut self.system {
+                tree.evaluate(standing);
+                if tree.leaves_out() && flow.mechanism.layout().speeds < LARGE_COUPLED {
+                    self.system = System::Dense(Box::new(Dense::new(self.method, flow)));
+                }
+            }
+            if let System::Dense(dense) = &mut self.system {
+                dense.evaluate(standing, flow, time)?;
             }
             solves.jacobians += 1;
             (self.stale, self.is_fresh, self.step) = (false, true, f64::NAN);

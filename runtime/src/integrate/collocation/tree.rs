@@ -121,6 +121,11 @@ impl Tree {
         }
     }
 
+    /// Whether elements make a joint's forces change with another's motion, which K and C know nothing of.
+    pub(super) const fn leaves_out(&self) -> bool {
+        self.slopes.leaves_out()
+    }
+
     /// Evaluates K, C, D and B at the state.
     pub(super) fn evaluate(&mut self, standing: &Standing) {
         let (q, speeds) = (&standing.configuration, &standing.rates.speeds);
