@@ -30,11 +30,12 @@ pub enum Scheme {
     Verner9,
     /// Any other explicit method.
     Explicit(&'static Tableau),
-    /// The implicit midpoint rule, of order 2: symmetric.
+    /// The implicit midpoint rule, of order 2; symmetric, as are the next two, as long as the base points of local coordinates stand. Joints whose
+    /// coordinates do not add up (a ball's, a free body's) get a new one every half radian or so, at which their energy may drift.
     Midpoint,
-    /// Gauss's method with two stages, of order 4: symmetric.
+    /// Gauss's method with two stages, of order 4.
     Gauss2,
-    /// Gauss's method with three stages, of order 6: symmetric.
+    /// Gauss's method with three stages, of order 6.
     Gauss3,
     /// Radau IIA with three stages, of order 5: implicit, damps what is stiff.
     Radau5,
@@ -90,8 +91,8 @@ impl Scheme {
             Self::Verner9 => "Verner 9(8), step control: for tolerances near rounding",
             Self::Explicit(_) => "an explicit method of the caller's",
             Self::Midpoint => "implicit midpoint rule, order 2, fixed step",
-            Self::Gauss2 => "Gauss with 2 stages, order 4, symmetric, fixed step",
-            Self::Gauss3 => "Gauss with 3 stages, order 6, symmetric, fixed step: for long runs",
+            Self::Gauss2 => "Gauss with 2 stages, implicit, order 4, fixed step",
+            Self::Gauss3 => "Gauss with 3 stages, implicit, order 6, fixed step: for long runs",
             Self::Radau5 => "Radau IIA of order 5, implicit, step control: for stiff damped scenes",
             Self::Exponential => {
                 "exponential Rosenbrock 4(3), step control: takes stiff springs exactly, undamped ones too"

@@ -1,4 +1,4 @@
-//! Discrete gradients keep the energy balance; symmetric methods let the energy swing without a drift.
+//! Discrete gradients keep the energy balance, at any speed and under inputs; the midpoint rule alone does not.
 
 use crate::common::joints;
 use crate::support::{mixed, options, start};
