@@ -190,6 +190,39 @@ fn mistakes_are_told_in_words() {
 }
 
 #[test]
+fn a_method_that_is_chosen_is_told_with_its_reason_and_what_steps_pass_over_is_told() {
+    let simulate = |options: &[&str]| -> Value {
+        let scene = [
+            "simulate",
+            "scenes/report/torsion_1e8.toml",
+            "--json",
+            "--at",
+            "1",
+        ];
+        let text = stdout(&[scene.as_slice(), options].concat());
+        serde_json::from_str(&text).expect("JSON")
+    };
+    let chosen = simulate(&["--method", "auto", "--tol", "1e-8"]);
+    assert_eq!(chosen["method"], "exponential");
+    let reason = chosen["reason"].as_str().expect("a reason");
+    assert!(
+        reason.starts_with("oscillation at joint `rotor`"),
+        "{reason}"
+    );
+    assert!(chosen["unresolved"].is_null());
+    // A hundred radians a step, and one tenth.
+    let long = simulate(&["--method", "gauss3", "--dt", "1e-2"]);
+    let told = long["unresolved"].as_str().expect("a warning");
+    assert!(
+        told.contains("joint `rotor`") && told.contains("6.28e-4 s"),
+        "{told}"
+    );
+    assert!(long["reason"].is_null());
+    let short = simulate(&["--method", "gauss3", "--dt", "1e-5"]);
+    assert!(short["unresolved"].is_null());
+}
+
+#[test]
 fn error_codes_are_explained() {
     let page = stdout(&["joints", "explain-error", "E0305"]);
     assert!(page.starts_with("E0305: "), "{page}");

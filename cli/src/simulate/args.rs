@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, ValueEnum};
 use hamel::integrate::Scheme;
+use hamel_scene::Settings;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -15,6 +16,8 @@ Examples:
       with fixed steps, trajectory to swing.csv
   hamel simulate scenes/heavy_top.toml --method verner9 --tol 2e-16
       as accurate as doubles allow: order 9, and sums that lose no rounding
+  hamel simulate scenes/report/ball_spring.toml --method auto --tol 1e-8
+      with the method that the scene's springs and dampers call for; the summary says why
   hamel simulate scenes/rolling_disk.toml --html disk.html
       one page to open in a browser, with no network: the motion in three dimensions, and plots along the time
   hamel simulate scenes/snake.toml --parquet snake.parquet
@@ -64,9 +67,9 @@ pub struct Args {
     #[arg(long, value_enum)]
     pub form: Option<FormName>,
 
-    /// Integration method; those with step control take --tol, all take --dt
-    #[arg(long, value_parser = schemes())]
-    pub method: Option<Scheme>,
+    /// Integration method; those with step control take --tol, all but auto take --dt
+    #[arg(long, value_parser = methods())]
+    pub method: Option<MethodName>,
 
     /// Tolerance of one step of a method with step control, between 1e-16 and 0.1: absolute in angle, relative in rates; implies dopri5 where the method
     /// has fixed steps
@@ -149,10 +152,27 @@ pub enum SamplingName {
 }
 
 /// Every method by its name.
-fn schemes() -> impl TypedValueParser<Value = Scheme> {
-    let values = Scheme::ALL
+/// What `--method` names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MethodName {
+    /// The choice is left to the program.
+    Auto,
+    /// One of all.
+    Scheme(Scheme),
+}
+
+fn methods() -> impl TypedValueParser<Value = MethodName> {
+    let auto = PossibleValue::new(Settings::AUTO)
+        .help("one of those with step control, by the rates of the scene; the summary says why");
+    let schemes = Scheme::ALL
         .iter()
         .map(|scheme| PossibleValue::new(scheme.name()).help(scheme.summary()));
-    PossibleValuesParser::new(values)
-        .try_map(|name| Scheme::named(&name).ok_or("no method has this name"))
+    PossibleValuesParser::new(schemes.chain([auto])).try_map(|name| {
+        if name == Settings::AUTO {
+            return Ok(MethodName::Auto);
+        }
+        Scheme::named(&name)
+            .map(MethodName::Scheme)
+            .ok_or("no method has this name")
+    })
 }

@@ -18,6 +18,12 @@ pub struct Report<'a> {
     pub form: &'a str,
     /// Name of the integration method.
     pub method: &'a str,
+    /// Why the method was chosen; absent where it was named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<&'a str>,
+    /// What the steps passed over; absent where they followed everything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unresolved: Option<String>,
     /// The states asked for.
     pub samples: &'a [Sample<'a>],
     /// What the scene's events came to, in the order of time; absent where there is none.
@@ -112,6 +118,8 @@ mod tests {
             scene: "a \"scene\"",
             form: "lagrangian",
             method: "rk4",
+            reason: None,
+            unresolved: None,
             samples: &samples,
             events: &[],
             control: None,

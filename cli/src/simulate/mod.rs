@@ -1,6 +1,7 @@
 //! `hamel simulate`: from a scene file to a trajectory.
 
 mod args;
+mod choose;
 mod control;
 mod csv;
 mod json;

@@ -1,7 +1,7 @@
 //! What one run of `hamel simulate` is to do: the scene, the settings, the times and the files.
 
 use super::args::Args;
-use super::{settings, times};
+use super::{choose, settings, times};
 use crate::input;
 use crate::output::{Failure, refuse_overwriting, tell};
 use hamel::integrate::{Method, Options, Sampling};
@@ -16,6 +16,8 @@ pub struct Plan {
     pub scene: Scene,
     /// Its settings under the options given; `t_end` is the end of the simulation.
     pub settings: Settings,
+    /// Why the method was chosen, where the choice was left open.
+    pub reason: Option<String>,
     /// What controls the mechanism, if anything does.
     pub control: Option<Control>,
     /// Sample times, s.
@@ -32,7 +34,7 @@ impl Plan {
     /// Loads the scene of `args` and lays the options over its settings.
     ///
     /// # Errors
-    /// Mistakes in the scene; options out of range.
+    /// Mistakes in the scene; options out of range; a first state to which no method can be chosen.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
         let scene = input::scene(&args.scene, args.floating_base, registry)?;
         let control = match &args.controller {
@@ -51,9 +53,15 @@ impl Plan {
             settings.t_end = t_end;
             times
         };
+        let mut reason = None;
+        if settings.chooses {
+            let (method, why) = choose::choose(&scene, control.as_ref(), &settings)?;
+            (settings.method, reason) = (method, Some(why));
+        }
         let plan = Self {
             scene,
             settings,
+            reason,
             control,
             times,
             csv: csv_path(args),

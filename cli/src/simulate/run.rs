@@ -1,6 +1,7 @@
 //! The run itself: integrate, write the trajectory on the way, tell the result.
 
 use super::args::Args;
+use super::choose;
 use super::control::{Loop, Outcome};
 use super::csv::Trajectory;
 use super::json::{self, Report, Statistics};
@@ -224,6 +225,8 @@ fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
         scene: &plan.scene.name,
         form: plan.settings.form_name(),
         method: plan.settings.method.scheme().name(),
+        reason: plan.reason.as_deref(),
+        unresolved: choose::unresolved(plan, run.statistics.steps)?,
         samples: &samples,
         events: &events,
         control: run.outcome.as_ref(),
@@ -244,8 +247,10 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         .map(kinetic)
         .try_fold(0.0, |most: f64, energy| energy.map(|e| most.max(e)));
     let most_kinetic_energy = most.map_err(|error| Failure::Simulation(error.to_string()))?;
+    let unresolved = choose::unresolved(plan, run.statistics.steps)?;
     let summary = Summary {
         plan,
+        unresolved: unresolved.as_deref(),
         first: &sample(mechanism, &first, &[])?,
         last: &sample(mechanism, last, &[])?,
         most_kinetic_energy,

@@ -1,6 +1,6 @@
 //! The settings of a scene with the options of the command line laid over them.
 
-use super::args::{Args, FormName, SamplingName};
+use super::args::{Args, FormName, MethodName, SamplingName};
 use crate::output::Failure;
 use hamel::integrate::{Control, Form, Method, Sampling, Scheme};
 use hamel_scene::Settings;
@@ -22,24 +22,37 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
         SamplingName::Landing => Sampling::Landing,
         SamplingName::Dense => Sampling::Dense,
     });
+    let (method, chooses) = method(settings, args)?;
     Ok(Settings {
         t_end: t_end.transpose()?.unwrap_or(settings.t_end),
-        method: method(settings.method, args)?,
+        method,
+        chooses,
         form: form.unwrap_or(settings.form),
         sample_step: sample_step.unwrap_or(settings.sample_step),
         sampling: sampling.unwrap_or(settings.sampling),
     })
 }
 
-/// The method named; or implied by an accuracy; or the scene's. The scene's accuracy stays where it fits.
-fn method(scene: Method, args: &Args) -> Result<Method, Failure> {
+/// The method named; or implied by an accuracy; or the scene's; and whether it is left open. The scene's accuracy stays where it fits.
+fn method(settings: &Settings, args: &Args) -> Result<(Method, bool), Failure> {
     let dt = positive("--dt", args.dt)?;
     let tol = args.tol.map(tolerance).transpose()?;
+    let scene = settings.method;
     let own = *scene.scheme();
     let (own_dt, own_tol) = accuracy(scene);
     let scheme = match (args.method, dt, tol) {
-        (None, None, None) => return Ok(scene),
-        (Some(named), ..) => named,
+        (None, None, None) => return Ok((scene, settings.chooses)),
+        (Some(MethodName::Auto), Some(_), _) => {
+            return refuse("--dt means nothing to auto, whose accuracy is --tol".to_owned());
+        }
+        (Some(MethodName::Auto), None, tol) => {
+            let tol = tol.or(own_tol).unwrap_or(Settings::DEFAULT_TOL);
+            return Ok((Method::dormand_prince(tol), true));
+        }
+        (Some(MethodName::Scheme(named)), ..) => named,
+        (None, None, Some(tol)) if settings.chooses => {
+            return Ok((Method::dormand_prince(tol), true));
+        }
         // An accuracy alone leaves the scene its method where the two go together.
         (None, Some(_), _) if own_dt.is_some() => own,
         (None, None, Some(_)) if own.has_estimate() => own,
@@ -59,7 +72,7 @@ fn method(scene: Method, args: &Args) -> Result<Method, Failure> {
                 "--tol means nothing to {name}, whose accuracy is --dt"
             ))
         },
-        Ok,
+        |method| Ok((method, false)),
     )
 }
 
@@ -175,6 +188,31 @@ mod tests {
     }
 
     #[test]
+    fn the_choice_is_left_open_until_a_method_or_a_step_is_named() {
+        let chooses = |chooses: bool, options: &str| {
+            let words = ["hamel", "scene.toml"]
+                .into_iter()
+                .chain(options.split_whitespace());
+            let args = Command::try_parse_from(words).ok()?.args;
+            let scene = Settings {
+                chooses,
+                method: Method::dormand_prince(1e-7),
+                ..Settings::default()
+            };
+            let found = overridden(&scene, &args).ok()?;
+            Some((found.chooses, found.method))
+        };
+        let open = |tol| Some((true, Method::dormand_prince(tol)));
+        assert_eq!(chooses(false, "--method auto"), open(1e-7));
+        assert_eq!(chooses(false, "--method auto --tol 1e-5"), open(1e-5));
+        assert_eq!(chooses(true, ""), open(1e-7));
+        assert_eq!(chooses(true, "--tol 1e-4"), open(1e-4));
+        let named = Some((false, Method::controlled(Scheme::Radau5, 1e-7)));
+        assert_eq!(chooses(true, "--method radau5"), named);
+        assert_eq!(chooses(true, "--dt 0.1"), Some((false, Method::rk4(0.1))));
+    }
+
+    #[test]
     fn sampling_is_that_of_the_scene_unless_named() {
         let sampling = |options: &str| {
             let settings = settings(Method::rk4(0.5), options);
@@ -191,6 +229,7 @@ mod tests {
         for options in [
             "--method rk4 --tol 1e-6",
             "--method gauss2 --tol 1e-6",
+            "--method auto --dt 0.1",
             "--dt 0.1 --tol 1e-6",
             "--dt 0",
             "--dt -1",

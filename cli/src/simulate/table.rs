@@ -31,6 +31,8 @@ pub struct Summary<'a> {
     pub outcome: Option<&'a Outcome>,
     /// What the simulation took.
     pub statistics: Statistics,
+    /// What the steps passed over.
+    pub unresolved: Option<&'a str>,
     /// What the scene's events came to.
     pub events: &'a [Crossing],
     /// How near joints came to singular sets.
@@ -56,6 +58,9 @@ impl fmt::Display for Summary<'_> {
             f,
             "work        {steps} steps, {rejected} rejected, {evaluations} evaluations, {run_time_s:.3} s"
         )?;
+        if let Some(unresolved) = self.unresolved {
+            writeln!(f, "unresolved  {unresolved}")?;
+        }
         for approach in self.approaches {
             writeln!(f, "singular    {approach}")?;
         }
@@ -87,6 +92,9 @@ impl Summary<'_> {
         let form = settings.form_name();
         let method = self.plan.method();
         writeln!(f, "{bodies}, {freedoms}, {speeds}; {form} form; {method}")?;
+        if let Some(reason) = &self.plan.reason {
+            writeln!(f, "method      {reason}")?;
+        }
         writeln!(f, "state at {} s:", self.last.t)
     }
 

@@ -27,11 +27,14 @@ use nalgebra::Vector6;
 /// always held against that of the beginning; to go after it would shake λ, by as much more as p̄ changes little.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// Changes of increments from which on λ is adjusted: the energy of a stiff spring in increments further off would throw λ about.
+const NEAR: f64 = 1e-3;
+
 /// The correction at work.
 pub(super) struct Correction {
     dynamics: Recursive,
     lambda: f64,
-    /// Whether λ has shaped the increments that come next.
+    /// Whether λ has shaped the increments that come next, and they are near enough to what they come to for an energy to tell of.
     is_in_force: bool,
     /// Whether λ needed no change when last looked at.
     is_settled: bool,
@@ -115,6 +118,11 @@ impl Correction {
         Ok(())
     }
 
+    /// The increments have last changed by `size`, in radians, metres and parts of speeds.
+    pub(super) const fn see(&mut self, size: f64) {
+        self.is_in_force = size < NEAR;
+    }
+
     /// Whether the energy at the end is what it shall be.
     pub(super) const fn is_settled(&self) -> bool {
         self.is_settled
@@ -153,7 +161,6 @@ impl Correction {
         if self.is_in_force {
             self.adjust(standing, flow, turned)?;
         }
-        self.is_in_force = true;
         self.move_by_structure(standing, flow, span.step);
         add(&mut rates.phi, self.lambda, &self.moved.phi);
         add(&mut rates.y, self.lambda, &self.moved.y);

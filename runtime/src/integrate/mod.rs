@@ -13,10 +13,12 @@
 //! | most | [`Scheme::DormandPrince`]; [`Scheme::DormandPrince8`] below 1e-8 or so, [`Scheme::Verner9`] near rounding |
 //! | stiff and damped | [`Scheme::Radau5`]: its steps do not depend on the stiffness |
 //! | stiff and undamped | [`Scheme::Exponential`], which follows the oscillation; [`Scheme::Gauss2`] and [`Scheme::Midpoint`] step over it |
+//! | any of these | [`Choice`] looks at the first state, and says why |
 //! | long runs | [`Scheme::Gauss3`], or [`Scheme::DiscreteGradient`] where the balance of energy shall hold to rounding |
 
 mod approach;
 mod between;
+mod choice;
 mod clock;
 mod collocation;
 mod commutator_free;
@@ -40,6 +42,7 @@ mod phi;
 mod residue;
 mod root;
 mod solution;
+mod spectrum;
 mod standing;
 mod stepper;
 mod tableau;
@@ -47,12 +50,14 @@ mod turns;
 mod verner;
 
 pub use approach::{Approach, Near};
+pub use choice::{Choice, Wanted};
 pub use error::{IntegrateError, StepFailure};
 pub use event::{Crossing, Direction, Event};
 pub use integration::{Integration, Sampling};
 pub use linear::LinearStep;
 pub use options::{Control, Form, Method, Options, Scheme};
 pub use solution::{Solution, State, Statistics, Step};
+pub use spectrum::{Mode, Spectrum};
 pub use tableau::{Estimate, Tableau};
 
 use crate::dynamics::Dynamics;

@@ -8,11 +8,11 @@ pub(crate) const FORM_NAMES: [&str; 2] = ["lagrangian", "hamiltonian"];
 /// Names of the places that samples come from, as scene files and the command line write them.
 pub(crate) const SAMPLING_NAMES: [&str; 2] = ["landing", "dense"];
 
-/// Names of the integration methods, as scene files and the command line write them.
-pub(crate) const METHOD_NAMES: [&str; Scheme::ALL.len()] = {
-    let mut names = [""; Scheme::ALL.len()];
+/// Names of the integration methods, as scene files write them; the last one leaves the choice to [`hamel::integrate::Choice`].
+pub(crate) const METHOD_NAMES: [&str; Scheme::ALL.len() + 1] = {
+    let mut names = [Settings::AUTO; Scheme::ALL.len() + 1];
     let mut i = 0;
-    while i < names.len() {
+    while i < Scheme::ALL.len() {
         names[i] = Scheme::ALL[i].name();
         i += 1;
     }
@@ -26,6 +26,8 @@ pub struct Settings {
     pub t_end: f64,
     /// Integration method.
     pub method: Method,
+    /// Whether the method is left to [`hamel::integrate::Choice`]; `method` then has the tolerance.
+    pub chooses: bool,
     /// Form of the equations of motion.
     pub form: Form,
     /// Time between two samples of the trajectory, s; above 0.
@@ -35,6 +37,8 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// What stands for a method where the choice is left open.
+    pub const AUTO: &str = "auto";
     /// End of the simulated time where a scene gives none, s.
     pub const DEFAULT_T_END: f64 = 1.0;
     /// Time between two samples where a scene gives none, s.
@@ -63,6 +67,14 @@ impl Settings {
         }
     }
 
+    /// Name of the method, as scene files and the command line write it.
+    pub const fn method_name(&self) -> &'static str {
+        match self.chooses {
+            true => Self::AUTO,
+            false => self.method.scheme().name(),
+        }
+    }
+
     /// Name of the form, as scene files and the command line write it.
     pub const fn form_name(&self) -> &'static str {
         match self.form {
@@ -85,6 +97,7 @@ impl Default for Settings {
         Self {
             t_end: Self::DEFAULT_T_END,
             method: Method::dormand_prince(Self::DEFAULT_TOL),
+            chooses: false,
             form: Form::Lagrangian,
             sample_step: Self::DEFAULT_SAMPLE_STEP,
             sampling: Sampling::Landing,

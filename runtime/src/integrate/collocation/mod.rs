@@ -157,6 +157,9 @@ impl Collocation {
                 newton.solve(&mut self.changes);
             }
             let size = self.largest_change(standing);
+            if let Some(correction) = &mut self.correction {
+                correction.see(size);
+            }
             for (increment, change) in self.increments.iter_mut().zip(&self.changes) {
                 add(increment, 1.0, change);
             }

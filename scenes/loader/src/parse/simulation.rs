@@ -16,9 +16,12 @@ pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
         return Settings::default();
     };
     let defaults = Settings::default();
+    let t_end = not_negative(&mut table, "t_end", sink).unwrap_or(defaults.t_end);
+    let (method, chooses) = method(&mut table, sink).unwrap_or((defaults.method, false));
     let settings = Settings {
-        t_end: not_negative(&mut table, "t_end", sink).unwrap_or(defaults.t_end),
-        method: method(&mut table, sink).unwrap_or(defaults.method),
+        t_end,
+        method,
+        chooses,
         form: table
             .optional("form")
             .and_then(|form| form.choice(&FORM_NAMES, sink))
@@ -35,8 +38,8 @@ pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
     settings
 }
 
-/// The method, named or implied by the accuracy given.
-fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<Method> {
+/// The method, named or implied by the accuracy given, and whether it is left open.
+fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<(Method, bool)> {
     let name = table
         .optional("method")
         .and_then(|method| method.choice(&METHOD_NAMES, sink));
@@ -44,13 +47,21 @@ fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<Method> {
     let tol = tolerance(table, sink);
     let scheme = name.and_then(Scheme::named);
     table.at_most_one(&["dt", "tol"], sink);
-    if let Some(method) = Settings::method_of(scheme, dt, tol) {
-        return Some(method);
+    let chooses = name == Some(Settings::AUTO);
+    match Settings::method_of(scheme, dt, tol) {
+        Some(method) if !(chooses && dt.is_some()) => return Some((method, chooses)),
+        _ => {}
     }
-    let value = table.optional("tol")?;
+    let (key, other) = if chooses {
+        ("dt", "tol")
+    } else {
+        ("tol", "dt")
+    };
+    let value = table.optional(key)?;
     let (path, name) = (value.path(), name.unwrap_or_default());
     let message = format!("{path} means nothing to the method `{name}`");
-    sink.push(Diagnostic::new(value.span(), message).label("its accuracy is `dt`"));
+    let label = format!("its accuracy is `{other}`");
+    sink.push(Diagnostic::new(value.span(), message).label(label));
     None
 }
 

@@ -55,10 +55,7 @@ fn settings(out: &mut String, settings: &Settings) {
         Method::Controlled { control, .. } => format!("tol = {}", number(control.tolerance)),
     };
     let (t_end, step) = (number(settings.t_end), number(settings.sample_step));
-    let (form, method) = (
-        text(settings.form_name()),
-        text(settings.method.scheme().name()),
-    );
+    let (form, method) = (text(settings.form_name()), text(settings.method_name()));
     out.push_str(&format!(
         "\n[simulation]\nt_end = {t_end}\nmethod = {method}\n{accuracy}\nform = {form}\nsample_step = {step}\n"
     ));

@@ -1,0 +1,76 @@
+//! The method where the scene or the command leaves it open, and the oscillations that the steps of a method pass over.
+
+use super::plan::Plan;
+use crate::output::Failure;
+use hamel::integrate::{Choice, IntegrateError, Method, Sampling, Scheme, Spectrum, State, Wanted};
+use hamel_scene::{Control, Scene, Settings};
+
+/// Steps that turn the phase of an oscillation by more than this do not follow it, rad: some six of them a period.
+const FOLLOWED: f64 = 1.0;
+
+/// The method for the first state of `scene`, with the tolerance of `settings`, and why.
+///
+/// # Errors
+/// A first state that the equations of motion cannot be evaluated at.
+pub fn choose(
+    scene: &Scene,
+    control: Option<&Control>,
+    settings: &Settings,
+) -> Result<(Method, String), Failure> {
+    let tolerance = match settings.method {
+        Method::Controlled { control, .. } => control.tolerance,
+        Method::Fixed { .. } => Settings::DEFAULT_TOL,
+    };
+    let mechanism = &scene.mechanism;
+    let is_bound = control.is_some()
+        || !mechanism.drives().is_empty()
+        || !mechanism.constraints().is_empty()
+        || !scene.events.is_empty()
+        || settings.sampling == Sampling::Dense;
+    let wanted = Wanted {
+        tolerance,
+        span: settings.t_end,
+        is_bound,
+    };
+    let choice = Choice::new(mechanism, &start(scene), wanted).map_err(failed)?;
+    Ok((Method::controlled(choice.scheme, tolerance), choice.reason))
+}
+
+/// What an implicit method has passed over in `steps` steps, by the oscillations about the first state.
+///
+/// # Errors
+/// As [`choose`].
+pub fn unresolved(plan: &Plan, steps: usize) -> Result<Option<String>, Failure> {
+    let does = match plan.settings.method.scheme() {
+        Scheme::Midpoint | Scheme::Gauss2 | Scheme::Gauss3 => "its energy stays bounded",
+        Scheme::DiscreteGradient => "its energy is kept",
+        Scheme::Radau5 => "it is damped away",
+        _ => return Ok(None),
+    };
+    if plan.scene.mechanism.elements().is_empty() || steps == 0 {
+        return Ok(None);
+    }
+    let step = plan.settings.t_end / steps as f64;
+    let spectrum = Spectrum::at(&plan.scene.mechanism, &start(&plan.scene)).map_err(failed)?;
+    Ok(spectrum.and_then(|spectrum| {
+        let mut modes = spectrum.modes().iter();
+        let mode = modes.find(|mode| !mode.is_damped() && mode.rate() * step > FOLLOWED)?;
+        let (rate, joint) = (mode.rate(), spectrum.joint(mode));
+        let period = std::f64::consts::TAU / rate;
+        Some(format!(
+            "an oscillation at joint `{joint}` has a period of {period:.2e} s, the mean step is {step:.2e} s: {does}, its phase is not followed"
+        ))
+    }))
+}
+
+fn start(scene: &Scene) -> State {
+    State {
+        time: 0.0,
+        configuration: scene.configuration.clone(),
+        speeds: scene.speeds.clone(),
+    }
+}
+
+fn failed(error: IntegrateError) -> Failure {
+    Failure::Simulation(error.to_string())
+}
