@@ -1,5 +1,6 @@
 //! A random chain, ready to be timed.
 
+use crate::Timed;
 use cpu_time::ThreadTime;
 use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, Recursive};
 use hamel_tests::random;
@@ -60,29 +61,17 @@ impl Chain {
             dynamics: Recursive::new(mechanism),
         }
     }
+}
 
-    /// How many bodies there are, or entries of one matrix of derivatives.
-    pub fn units(&self) -> usize {
+impl Timed for Chain {
+    fn units(&self) -> usize {
         match self.task {
             Task::Forward => self.dynamics.mechanism().bodies().len(),
             _ => self.rates.len() * self.rates.len(),
         }
     }
 
-    /// How many calls take about `time` ns, which warms up as well.
-    pub fn calls(&mut self, time: f64) -> usize {
-        let mut calls = 1;
-        loop {
-            let each = self.time(calls);
-            if each * calls as f64 > 0.2 * time {
-                return (time / each) as usize + 1;
-            }
-            calls *= 2;
-        }
-    }
-
-    /// Nanoseconds of one call, over `calls` of them.
-    pub fn time(&mut self, calls: usize) -> f64 {
+    fn time(&mut self, calls: usize) -> f64 {
         let start = ThreadTime::now();
         for call in 0..calls {
             let State { q, speeds, efforts } = &self.states[call % STATES];

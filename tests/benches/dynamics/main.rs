@@ -1,53 +1,93 @@
-//! How the time of forward dynamics, a body, and that of its derivatives and of those of inverse dynamics, an entry, grow with the number of
-//! bodies, on chains of revolute and of ball joints.
+//! How the time of forward dynamics and of implicit steps, a body, and that of the derivatives of forward and of inverse dynamics, an entry, grow with
+//! the number of bodies, on chains of revolute and of ball joints.
 //!
 //! `cargo bench --package hamel-tests --bench dynamics`. Time is CPU time of the thread. Every repetition visits all chains, so that a machine that
 //! changes speed changes it for all; ratios are taken within a repetition.
 
 mod chain;
+mod implicit;
 
 use chain::{Chain, Task};
+use hamel::integrate::Scheme;
+use implicit::Implicit;
 
 const LENGTHS: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
 
 /// The length that others are compared with, and what is asked of the longest.
 const UNIT: usize = 32;
 const LIMIT: f64 = 1.25;
+const LIMIT_IMPLICIT: f64 = 2.0;
 
 const REPETITIONS: usize = 21;
 
 /// Time of one measurement, ns.
 const BATCH: f64 = 20e6;
 
+/// Something whose time grows with its size.
+trait Timed {
+    /// How many bodies there are, or entries of one matrix.
+    fn units(&self) -> usize;
+
+    /// Nanoseconds of one call, over `calls` of them.
+    fn time(&mut self, calls: usize) -> f64;
+}
+
 fn main() {
-    for joint in ["revolute", "ball", "ball_child"] {
-        report(Task::Forward, joint, &LENGTHS);
+    let forward =
+        ["revolute", "ball", "ball_child"].map(|joint| (Task::Forward, joint, &LENGTHS[..]));
+    let (inverse_slopes, slopes) = (Task::InverseDerivatives, Task::ForwardDerivatives);
+    let derivatives = [inverse_slopes, slopes].map(|task| {
+        let balls = (task, "ball_child", &LENGTHS[..5]);
+        [(task, "revolute", &LENGTHS[..]), balls]
+    });
+    for (task, joint, lengths) in forward.into_iter().chain(derivatives.into_iter().flatten()) {
+        let (name, unit) = match task {
+            Task::Forward => ("forward dynamics", "body"),
+            Task::InverseDerivatives => ("derivatives of inverse dynamics", "entry"),
+            Task::ForwardDerivatives => ("derivatives of forward dynamics", "entry"),
+        };
+        let name = format!("{name} of chains of `{joint}`");
+        report(&name, unit, LIMIT, lengths, |n| Chain::new(task, joint, n));
     }
-    for task in [Task::InverseDerivatives, Task::ForwardDerivatives] {
-        report(task, "revolute", &LENGTHS);
-        report(task, "ball_child", &LENGTHS[..5]);
+    for scheme in [Scheme::Radau5, Scheme::Midpoint] {
+        let name = format!("steps of {} of stiff chains of `ball_child`", scheme.name());
+        report(&name, "body", LIMIT_IMPLICIT, &LENGTHS, |n| {
+            Implicit::new(scheme, n)
+        });
     }
 }
 
-/// Measures chains of these lengths and prints a table.
-fn report(task: Task, joint: &str, lengths: &[usize]) {
-    let chain = |&n: &usize| Chain::new(task, joint, n);
-    let mut chains: Vec<Chain> = lengths.iter().map(chain).collect();
-    let calls: Vec<usize> = chains.iter_mut().map(|chain| chain.calls(BATCH)).collect();
+/// How many calls take about `time` ns, which warms up as well.
+fn calls(timed: &mut impl Timed, time: f64) -> usize {
+    let mut calls = 1;
+    loop {
+        let each = timed.time(calls);
+        if each * calls as f64 > 0.2 * time {
+            return (time / each) as usize + 1;
+        }
+        calls *= 2;
+    }
+}
+
+/// Measures what is made of these lengths and prints a table.
+fn report<T: Timed>(
+    name: &str,
+    unit_name: &str,
+    limit: f64,
+    lengths: &[usize],
+    make: impl Fn(usize) -> T,
+) {
+    let mut all: Vec<T> = lengths.iter().map(|&n| make(n)).collect();
+    let counts: Vec<usize> = all.iter_mut().map(|timed| calls(timed, BATCH)).collect();
     let mut measure = || -> Vec<f64> {
-        let chains = chains.iter_mut().zip(&calls);
-        let per_unit = chains.map(|(chain, &calls)| chain.time(calls) / chain.units() as f64);
+        let all = all.iter_mut().zip(&counts);
+        let per_unit = all.map(|(timed, &calls)| timed.time(calls) / timed.units() as f64);
         per_unit.collect()
     };
     let times: Vec<Vec<f64>> = (0..REPETITIONS).map(|_| measure()).collect();
     let unit = lengths.iter().position(|&n| n == UNIT).unwrap_or(0);
 
-    let (name, unit_name) = match task {
-        Task::Forward => ("forward dynamics", "body"),
-        Task::InverseDerivatives => ("derivatives of inverse dynamics", "entry"),
-        Task::ForwardDerivatives => ("derivatives of forward dynamics", "entry"),
-    };
-    println!("\n{name} of chains of `{joint}`, {REPETITIONS} interleaved repetitions");
+    println!("\n{name}, {REPETITIONS} interleaved repetitions");
     println!(
         "| bodies | ns a {unit_name}, least | median | of the time at {UNIT} bodies, least | median |"
     );
@@ -71,9 +111,9 @@ fn report(task: Task, joint: &str, lengths: &[usize]) {
             .map(|times| times[last] / times[unit])
             .collect(),
     );
-    let verdict = if ratio <= LIMIT { "holds" } else { "fails" };
+    let verdict = if ratio <= limit { "holds" } else { "fails" };
     println!(
-        "{} bodies against {UNIT}: {ratio:.3}, at most {LIMIT}: {verdict}",
+        "{} bodies against {UNIT}: {ratio:.3}, at most {limit}: {verdict}",
         lengths[last]
     );
 }
