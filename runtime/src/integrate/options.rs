@@ -330,6 +330,12 @@ impl Options {
     /// Whether the scheme can take the mechanism in this form.
     pub(super) fn check_scheme(&self, mechanism: &Mechanism) -> Result<(), IntegrateError> {
         let scheme = self.method.scheme();
+        if let Scheme::Explicit(tableau) = scheme
+            && let Some(reason) = tableau.fault()
+        {
+            let scheme = scheme.name();
+            return Err(IntegrateError::Scheme { scheme, reason });
+        }
         if *scheme != Scheme::DiscreteGradient {
             return Ok(());
         }

@@ -2,6 +2,8 @@
 
 use super::dop853::DORMAND_PRINCE_8;
 use super::verner::VERNER_9;
+use alloc::format;
+use alloc::string::String;
 
 /// An explicit method; row i of `matrix` has i entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +31,53 @@ impl Tableau {
     pub const DORMAND_PRINCE_8: Self = DORMAND_PRINCE_8;
     /// Verner's of order 9(8).
     pub const VERNER_9: Self = VERNER_9;
+}
+
+/// What rounding may leave of conditions on coefficients: some roundings of each of up to sixteen that are written in decimals.
+const ROUNDING: f64 = 1e-13;
+
+impl Tableau {
+    /// What keeps it from being an explicit method, if anything does: sizes that do not fit, or rows that do not sum to their nodes, weights to 1 and
+    /// estimates to 0. Whether it has the order that it claims is not asked.
+    pub fn fault(&self) -> Option<String> {
+        let count = self.nodes.len();
+        if count == 0 || self.order == 0 {
+            return Some(format!("has {count} stages and order {}", self.order));
+        }
+        let fits = |name: &str, size: usize, wanted: usize| {
+            (size != wanted).then(|| format!("has {size} {name} where {wanted} are due"))
+        };
+        let estimates = match self.estimate {
+            Estimate::None => [None, None],
+            Estimate::One(weights) => [Some(weights), None],
+            Estimate::Pair { fifth, third } => [Some(fifth), Some(third)],
+        };
+        let estimates = || estimates.into_iter().flatten();
+        let mut rows = self.matrix.iter().enumerate();
+        let sums = |name: &str, entries: &[f64], wanted: f64| {
+            let sum: f64 = entries.iter().sum();
+            let size: f64 = entries.iter().map(|entry| entry.abs()).sum();
+            let off = (sum - wanted).abs() > ROUNDING * size.max(1.0);
+            (off || sum.is_nan())
+                .then(|| format!("has {name} that sum to {sum:?} instead of {wanted:?}"))
+        };
+        fits("rows", self.matrix.len(), count)
+            .or_else(|| fits("weights", self.weights.len(), count))
+            .or_else(|| {
+                estimates().find_map(|own| fits("weights of the estimate", own.len(), count))
+            })
+            .or_else(|| {
+                rows.find_map(|(i, row)| fits(&format!("entries in row {i}"), row.len(), i))
+            })
+            .or_else(|| sums("weights", self.weights, 1.0))
+            .or_else(|| estimates().find_map(|own| sums("weights of the estimate", own, 0.0)))
+            .or_else(|| {
+                let rows = self.matrix.iter().zip(self.nodes).enumerate();
+                let mut rows =
+                    rows.map(|(i, (row, node))| sums(&format!("entries in row {i}"), row, *node));
+                rows.find_map(|fault| fault)
+            })
+    }
 }
 
 /// What a method says about the error of its steps: weights b_i − b̂_i against embedded methods.

@@ -6,8 +6,8 @@ use crate::common::trees::{GRAVITY, body, tree};
 use crate::support::{distance, fixed_steps, options, run, start};
 use hamel::dynamics::{Dynamics, DynamicsError, Reference};
 use hamel::integrate::{
-    Control, Form, IntegrateError, Method, Options, Scheme, State, StepFailure, integrate,
-    no_inputs, no_observer,
+    Control, Estimate, Form, IntegrateError, Method, Options, Scheme, State, StepFailure, Tableau,
+    integrate, no_inputs, no_observer,
 };
 use hamel::mechanism::Mechanism;
 use hamel::spatial::{MassProperties, Pose};
@@ -310,4 +310,81 @@ fn singular_mass_is_an_error_of_the_initial_state() {
         assert!(expected, "{error}");
     }
     assert_eq!(dynamics.mechanism().bodies().len(), 1);
+}
+
+/// A tableau of the caller's is looked over before a step is taken.
+#[test]
+fn tableaus_that_are_none_are_refused() {
+    const HEUN: Tableau = Tableau {
+        order: 2,
+        nodes: &[0.0, 1.0],
+        matrix: &[&[], &[1.0]],
+        weights: &[0.5, 0.5],
+        estimate: Estimate::One(&[-0.5, 0.5]),
+        first_same_as_last: false,
+    };
+    const SHORT_ROW: Tableau = Tableau {
+        matrix: &[&[], &[]],
+        ..HEUN
+    };
+    const FEW_WEIGHTS: Tableau = Tableau {
+        weights: &[1.0],
+        ..HEUN
+    };
+    const LONG_ESTIMATE: Tableau = Tableau {
+        estimate: Estimate::One(&[0.5, 0.0, -0.5]),
+        ..HEUN
+    };
+    const WRONG_NODE: Tableau = Tableau {
+        nodes: &[0.0, 0.5],
+        ..HEUN
+    };
+    const WRONG_WEIGHTS: Tableau = Tableau {
+        weights: &[0.5, 0.6],
+        ..HEUN
+    };
+    const EMPTY: Tableau = Tableau {
+        nodes: &[],
+        matrix: &[],
+        weights: &[],
+        ..HEUN
+    };
+    for own in [
+        Tableau::RK4,
+        Tableau::DORMAND_PRINCE,
+        Tableau::DORMAND_PRINCE_8,
+        Tableau::VERNER_9,
+        HEUN,
+    ] {
+        assert_eq!(own.fault(), None);
+    }
+    let mechanism = tree(&mut Random::new(4), &[joints::revolute()]);
+    let initial = start(&mechanism, 8);
+    for (tableau, told) in [
+        (&SHORT_ROW, "has 0 entries in row 1 where 1 are due"),
+        (&FEW_WEIGHTS, "has 1 weights where 2 are due"),
+        (
+            &LONG_ESTIMATE,
+            "has 3 weights of the estimate where 2 are due",
+        ),
+        (
+            &WRONG_NODE,
+            "has entries in row 1 that sum to 1.0 instead of 0.5",
+        ),
+        (&WRONG_WEIGHTS, "has weights that sum to 1.1 instead of 1.0"),
+        (&EMPTY, "has 0 stages and order 2"),
+    ] {
+        let method = Method::fixed(Scheme::Explicit(tableau), 0.1);
+        let mut dynamics = Reference::new(Arc::clone(&mechanism));
+        let options = options(Form::Lagrangian, method, 1.0);
+        let refused = integrate(
+            &mut dynamics,
+            &initial,
+            &options,
+            &mut no_inputs,
+            &mut no_observer,
+        );
+        let error = refused.expect_err("no method").to_string();
+        assert!(error.contains(told), "{error}");
+    }
 }
