@@ -51,7 +51,7 @@ pub enum StepFailure {
     NoConvergence {
         /// The joint that changes most.
         joint: String,
-        /// Its last change, in its own units.
+        /// Its last change: rad or m, or a speed's as a part of max(1, |v̄|).
         change: f64,
         /// The last change over the one before.
         contraction: f64,

@@ -179,7 +179,7 @@ impl Collocation {
             }
             last = size;
         }
-        Err(self.no_convergence(flow))
+        Err(self.no_convergence(standing, flow))
     }
 
     /// Whether the change just made was the last one needed.
@@ -257,24 +257,33 @@ impl Collocation {
         }
     }
 
-    /// The largest change, in radians and metres, and as a part of max(1, |v̄|).
+    /// The sizes of a change: in radians and metres, then as parts of max(1, |v̄|).
+    fn sizes<'a>(
+        &'a self,
+        change: &'a [f64],
+        standing: &'a Standing,
+    ) -> impl Iterator<Item = f64> + 'a {
+        let (phi, y) = change.split_at(self.freedoms);
+        let units = self.units.iter().zip(&standing.rates.speeds);
+        let rates = y
+            .iter()
+            .zip(units)
+            .map(|(y, (unit, speed))| y / (unit * speed.abs().max(1.0)));
+        phi.iter().copied().chain(rates).map(f64::abs)
+    }
+
+    /// The largest size of a change; NaN where one is.
     fn largest_change(&self, standing: &Standing) -> f64 {
-        let mut largest = 0.0_f64;
-        for change in &self.changes {
-            let (phi, y) = change.split_at(self.freedoms);
-            let units = self.units.iter().zip(&standing.rates.speeds);
-            let rates = y
-                .iter()
-                .zip(units)
-                .map(|(y, (unit, speed))| y / (unit * speed.abs().max(1.0)));
-            for entry in phi.iter().copied().chain(rates) {
-                if entry.is_nan() {
-                    return f64::NAN;
-                }
-                largest = largest.max(entry.abs());
-            }
-        }
-        largest
+        let sizes = self
+            .changes
+            .iter()
+            .flat_map(|change| self.sizes(change, standing));
+        sizes.fold(0.0, |most: f64, size| match size.is_nan() {
+            true => f64::NAN,
+            // A NaN stays.
+            false if most >= size || most.is_nan() => most,
+            false => size,
+        })
     }
 
     /// Moves to the end of the step.
@@ -305,29 +314,18 @@ impl Collocation {
         })
     }
 
-    /// The stage that moved most in the last iteration.
-    fn no_convergence(&self, flow: &Flow<'_>) -> StepFailure {
-        let largest = |range: core::ops::Range<usize>| {
-            let entries = self
-                .changes
-                .iter()
-                .flat_map(|change| &change[range.clone()]);
-            entries.fold(0.0_f64, |most, entry| most.max(entry.abs()))
-        };
-        let bodies = flow.mechanism.bodies().iter();
-        let sizes = bodies.map(|body| {
-            let speeds = &body.ranges().speeds;
-            let own = self.freedoms + speeds.start..self.freedoms + speeds.end;
-            largest(body.ranges().freedoms.clone()).max(largest(own))
-        });
-        let worst = sizes
-            .enumerate()
-            .fold((0, 0.0), |worst, (index, size)| match size > worst.1 {
-                true => (index, size),
-                false => worst,
-            });
+    /// The joint that changed most in the last iteration.
+    fn no_convergence(&self, standing: &Standing, flow: &Flow<'_>) -> StepFailure {
+        let mut worst = (0, 0.0);
+        for change in &self.changes {
+            for (row, size) in self.sizes(change, standing).enumerate() {
+                if size > worst.1 {
+                    worst = (row, size);
+                }
+            }
+        }
         StepFailure::NoConvergence {
-            joint: flow.joint_name(worst.0),
+            joint: flow.row_name(worst.0),
             change: worst.1,
             contraction: self.contraction,
         }
