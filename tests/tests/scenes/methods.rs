@@ -358,7 +358,7 @@ fn discrete_gradients_keep_the_energy_over_ten_million_steps() {
     for (name, dt) in [
         ("double_ball_pendulum", 1e-3),
         ("heavy_top", 1e-4),
-        ("rolling_disk", 1e-3),
+        ("falling_disk", 1e-3),
     ] {
         let scene = scene(name);
         let kinematics = |q: &[f64], speeds: &[f64]| {
