@@ -49,6 +49,19 @@ fn a_report_measures_each_curve_once() {
     report(&folder, &[]);
     let again = fs::read_to_string(folder.join("work.csv")).expect("a file");
     assert_eq!(work, again);
+    // What another machine has measured is set aside, not lost.
+    let machine = rows[0]
+        .rsplit('"')
+        .nth(1)
+        .expect("the last column, in quotes");
+    let foreign = work.replace(machine, "elsewhere");
+    fs::write(folder.join("work.csv"), &foreign).expect("the file is there");
+    report(&folder, &[]);
+    let before = fs::read_to_string(folder.join("work.before.csv")).expect("a file");
+    assert_eq!(before, foreign);
+    let anew = fs::read_to_string(folder.join("work.csv")).expect("a file");
+    assert_eq!(anew.lines().count(), work.lines().count());
+    assert_eq!(anew.lines().next(), work.lines().next());
 }
 
 #[test]

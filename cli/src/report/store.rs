@@ -3,7 +3,7 @@
 use super::row::Row;
 use crate::output::Failure;
 use std::collections::HashSet;
-use std::fs::{File, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
@@ -17,34 +17,49 @@ pub struct Store<R> {
 }
 
 impl<R: Row> Store<R> {
-    /// Opens the file in a folder, or makes it. Rows of this machine and version count as measured, unless all is wanted anew.
+    /// Opens the file in a folder, or makes it. Rows of this machine and version count as measured, unless all is wanted anew; where others are
+    /// left out, the file as it was stays beside the new one, with `before` in its name.
     ///
     /// # Errors
     /// A file that cannot be written, or holds other than such rows.
     pub fn open(folder: &Path, machine: &str, fresh: bool) -> Result<Self, Failure> {
         let path = path::<R>(folder);
-        let kept = match fresh {
+        let all = match fresh {
             true => Vec::new(),
             false => read::<R>(folder)?,
         };
-        let kept: Vec<R> = kept
+        let count = all.len();
+        let kept: Vec<R> = all
             .into_iter()
             .filter(|row| row.machine() == machine)
             .collect();
-        let file = OpenOptions::new()
-            .create(true)
-            .write(true)
-            .truncate(true)
-            .open(&path)
-            .map_err(|error| failure(&path, error))?;
-        let mut store = Self {
-            writer: csv::Writer::from_writer(file),
+        let failed = |error| failure(&path, error);
+        if path.exists() && (fresh || kept.len() < count) {
+            fs::rename(&path, path.with_extension("before.csv")).map_err(failed)?;
+            // A run that stops between these two leaves nothing half written.
+            let whole = path.with_extension("new.csv");
+            let mut writer =
+                csv::Writer::from_path(&whole).map_err(|error| failed(error.into()))?;
+            for row in &kept {
+                writer
+                    .serialize(row)
+                    .map_err(|error| failed(error.into()))?;
+            }
+            writer.flush().map_err(failed)?;
+            fs::rename(&whole, &path).map_err(failed)?;
+        }
+        let file = OpenOptions::new().create(true).append(true).open(&path);
+        let file = file.map_err(failed)?;
+        let is_empty = file.metadata().map_err(failed)?.len() == 0;
+        let writer = csv::WriterBuilder::new()
+            .has_headers(is_empty)
+            .from_writer(file);
+        Ok(Self {
+            writer,
             measured: kept.iter().map(Row::key).collect(),
             path,
             kind: PhantomData,
-        };
-        store.add(&kept)?;
-        Ok(store)
+        })
     }
 
     /// Whether the file has rows of this key.
