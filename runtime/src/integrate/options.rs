@@ -39,7 +39,8 @@ pub enum Scheme {
     Gauss3,
     /// Radau IIA with three stages, of order 5: implicit, damps what is stiff.
     Radau5,
-    /// An exponential Rosenbrock method of order 4(3): solves the linearised equations exactly, undamped stiff springs among them.
+    /// An exponential Rosenbrock method of order 4(3): solves the linearised equations exactly, undamped stiff springs among them. Inputs that follow
+    /// the state are no part of them, so that the order is 2 there; dense output and events do not see what oscillates faster than its steps.
     Exponential,
     /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding.
     DiscreteGradient,
