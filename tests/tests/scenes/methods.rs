@@ -370,7 +370,7 @@ fn discrete_gradients_keep_the_energy_over_ten_million_steps() {
         // Energies over parts of the run, to look for a trend.
         let (mut worst, mut sums) = (0.0_f64, [0.0; 10]);
         let mut watch = |step: &Step<'_>| {
-            if step.number % 100 == 0 && step.number < MANY {
+            if step.number.is_multiple_of(100) && step.number < MANY {
                 let change = kinematics(step.configuration, step.speeds).energy() - first.energy();
                 worst = worst.max((change / unit).abs());
                 sums[step.number / (MANY / 10)] += change / unit / (MANY as f64 / 1e3);
