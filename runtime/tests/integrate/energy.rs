@@ -1,12 +1,10 @@
 //! Discrete gradients keep the energy balance, at any speed and under inputs; the midpoint rule alone does not.
 
-use crate::common::joints;
-use crate::support::{mixed, options, start};
+use crate::support::{mixed, on_axis, options, start};
 use hamel::dynamics::Recursive;
 use hamel::elements::JointSpring;
 use hamel::integrate::{Form, Method, Scheme, State, Step, integrate};
-use hamel::mechanism::{BodySpec, Mechanism};
-use hamel::spatial::{MassProperties, Pose};
+use hamel::mechanism::Mechanism;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -69,19 +67,7 @@ fn discrete_gradients_keep_the_energy() {
 
 /// A pendulum about a level axis on a spring, whose rest and whose lowest point are apart: its swings are not symmetric.
 fn pendulum() -> Arc<Mechanism> {
-    let body = BodySpec {
-        name: "bob".into(),
-        joint_name: "axis".into(),
-        parent: None,
-        joint: joints::revolute(),
-        placement: Pose::identity(),
-        child_placement: Pose::identity(),
-        mass: MassProperties {
-            mass: 1.0,
-            com: Vector3::new(0.0, -0.5, 0.0),
-            inertia_com: Matrix3::identity() * 0.1,
-        },
-    };
+    let body = on_axis(Vector3::new(0.0, -0.5, 0.0), Matrix3::identity() * 0.1);
     let gravity = Vector3::new(0.0, -9.81, 0.0);
     let mechanism = Mechanism::new(gravity, vec![body]).expect("one body");
     let spring = JointSpring {

@@ -1,7 +1,7 @@
 //! Stiff springs and dampers: implicit methods take steps as long as the motion allows, whatever the stiffness.
 
 use crate::common::joints;
-use crate::support::{distance, options, run};
+use crate::support::{distance, on_axis, options, run};
 use hamel::dynamics::Reference;
 use hamel::elements::{BodySpring, Element, JointDamper, JointSpring};
 use hamel::integrate::{
@@ -14,19 +14,7 @@ use std::sync::Arc;
 
 /// A wheel of 1 kg m² on an axis through its centre, on a spring and a damper.
 fn wheel(stiffness: f64, damping: f64) -> Arc<Mechanism> {
-    let body = BodySpec {
-        name: "wheel".into(),
-        joint_name: "axis".into(),
-        parent: None,
-        joint: joints::revolute(),
-        placement: Pose::identity(),
-        child_placement: Pose::identity(),
-        mass: MassProperties {
-            mass: 1.0,
-            com: Vector3::zeros(),
-            inertia_com: Matrix3::identity(),
-        },
-    };
+    let body = on_axis(Vector3::zeros(), Matrix3::identity());
     let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).expect("one body");
     let elements: Vec<Arc<dyn Element>> = vec![
         Arc::new(JointSpring {

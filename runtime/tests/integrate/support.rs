@@ -7,7 +7,9 @@ use hamel::dynamics::Reference;
 use hamel::integrate::{
     Form, Method, Options, Scheme, Solution, State, integrate, no_inputs, no_observer,
 };
-use hamel::mechanism::Mechanism;
+use hamel::mechanism::{BodySpec, Mechanism};
+use hamel::spatial::{MassProperties, Pose};
+use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 pub fn options(form: Form, method: Method, t_end: f64) -> Options {
@@ -30,6 +32,23 @@ pub fn start(mechanism: &Mechanism, seed: u64) -> State {
         time: 0.0,
         configuration: configuration(&mut random, mechanism),
         speeds: random.vec(mechanism.layout().speeds),
+    }
+}
+
+/// A body of 1 kg that turns about the z axis of the world.
+pub fn on_axis(com: Vector3<f64>, inertia_com: Matrix3<f64>) -> BodySpec {
+    BodySpec {
+        name: "body".into(),
+        joint_name: "axis".into(),
+        parent: None,
+        joint: joints::revolute(),
+        placement: Pose::identity(),
+        child_placement: Pose::identity(),
+        mass: MassProperties {
+            mass: 1.0,
+            com,
+            inertia_com,
+        },
     }
 }
 

@@ -278,11 +278,10 @@ impl Collocation {
             .changes
             .iter()
             .flat_map(|change| self.sizes(change, standing));
-        sizes.fold(0.0, |most: f64, size| match size.is_nan() {
-            true => f64::NAN,
-            // A NaN stays.
-            false if most >= size || most.is_nan() => most,
-            false => size,
+        // A NaN stays.
+        sizes.fold(0.0, |most, size| match size > most || size.is_nan() {
+            true => size,
+            false => most,
         })
     }
 
