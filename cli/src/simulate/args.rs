@@ -151,7 +151,6 @@ pub enum SamplingName {
     Dense,
 }
 
-/// Every method by its name.
 /// What `--method` names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MethodName {
@@ -161,6 +160,7 @@ pub enum MethodName {
     Scheme(Scheme),
 }
 
+/// Every method by its name, and the choice among them.
 fn methods() -> impl TypedValueParser<Value = MethodName> {
     let auto = PossibleValue::new(Settings::AUTO)
         .help("one of those with step control, by the rates of the scene; the summary says why");
