@@ -49,19 +49,28 @@ fn a_report_measures_each_curve_once() {
     report(&folder, &[]);
     let again = fs::read_to_string(folder.join("work.csv")).expect("a file");
     assert_eq!(work, again);
-    // What another machine has measured is set aside, not lost.
+    // What another machine has measured stays, and is measured here anew; the page shows it where there is nothing else.
     let machine = rows[0]
         .rsplit('"')
         .nth(1)
         .expect("the last column, in quotes");
-    let foreign = work.replace(machine, "elsewhere");
+    let foreign = work.replace(&format!("\"{machine}\""), "elsewhere");
     fs::write(folder.join("work.csv"), &foreign).expect("the file is there");
-    report(&folder, &[]);
-    let before = fs::read_to_string(folder.join("work.before.csv")).expect("a file");
-    assert_eq!(before, foreign);
-    let anew = fs::read_to_string(folder.join("work.csv")).expect("a file");
-    assert_eq!(anew.lines().count(), work.lines().count());
-    assert_eq!(anew.lines().next(), work.lines().next());
+    let page = || fs::read_to_string(folder.join("index.html")).expect("a page");
+    let place = folder.display().to_string();
+    stdout(&["report", "--page-only", "-o", &place]);
+    assert!(page().contains("<dd>elsewhere</dd>"));
+    let told = report(&folder, &[]);
+    assert!(told.contains("1 other machine"), "{told}");
+    let both = fs::read_to_string(folder.join("work.csv")).expect("a file");
+    assert!(both.starts_with(&foreign));
+    assert_eq!(both.lines().count(), 2 * rows.len() + 1);
+    assert!(page().contains("figures of elsewhere") && !page().contains("<dd>elsewhere</dd>"));
+    // Measured once more, figures of this machine take the place of those before, and of no others.
+    report(&folder, &["--fresh"]);
+    let fresh = fs::read_to_string(folder.join("work.csv")).expect("a file");
+    assert!(fresh.starts_with(&foreign));
+    assert_eq!(fresh.lines().count(), both.lines().count());
 }
 
 #[test]

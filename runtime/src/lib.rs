@@ -22,6 +22,8 @@ pub mod control;
 #[cfg(feature = "alloc")]
 pub mod dynamics;
 #[cfg(feature = "alloc")]
+mod eigen;
+#[cfg(feature = "alloc")]
 pub mod elements;
 #[cfg(feature = "alloc")]
 pub mod erased;

@@ -61,11 +61,7 @@ pub fn run(
     method: Method,
     samples: &[f64],
 ) -> Result<Solution, IntegrateError> {
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let t_end = samples.last().copied().unwrap_or(0.0);
     let options = Options {
         form,

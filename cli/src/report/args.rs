@@ -12,7 +12,7 @@ Examples:
   hamel report --scenes heavy_top,torsion_1e8 --methods verner9,exponential,radau5 -o stiff
       these scenes and methods alone, to the folder `stiff`
   hamel report --page-only
-      the page anew from the CSV files
+      the page anew from the CSV files: of this machine's figures, or where they have none, of those measured last
 
 How to read the page: an error is the largest over bodies of attitude (rad) and of position, velocity and angular velocity relative to
 max(1, size), against references of 24 digits and more. `final` is at the last sample, `worst` over all of them. The floor of a scene is what
@@ -45,7 +45,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub methods: Vec<String>,
 
-    /// Measure anew what the CSV files have
+    /// Measure anew what the CSV files have of this machine
     #[arg(long)]
     pub fresh: bool,
 

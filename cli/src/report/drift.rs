@@ -1,7 +1,6 @@
 //! Energy over long runs at a fixed step.
 
 use super::case::Case;
-use super::measure::initial;
 use super::plan::Plan;
 use super::row::{self, Row, form_name};
 use super::store::Store;
@@ -92,15 +91,18 @@ fn follow(
     let limit = Duration::from_secs_f64(plan.drift.seconds);
     let clock = Instant::now();
     let mut rows: Vec<row::Drift> = Vec::new();
-    let mut next = 1.0;
+    let (mut next, mut worst) = (1.0, 0.0_f64);
     let mut observer = |step: &Step<'_>| {
+        let found = energies(mechanism, step.configuration, step.speeds);
+        let drift = found.map(|(found, _)| (found - energy).abs() / unit);
+        let drift = drift.filter(|drift| drift.is_finite());
+        worst = worst.max(drift.unwrap_or(f64::INFINITY));
         if step.number as f64 >= next {
             next = (next * 10.0_f64.powf(1.0 / DENSITY)).max(next + 1.0);
-            let found = energies(mechanism, step.configuration, step.speeds);
             rows.push(row::Drift {
                 steps: step.number,
                 time_s: step.time,
-                drift: found.map_or(f64::INFINITY, |(found, _)| (found - energy).abs() / unit),
+                drift: std::mem::take(&mut worst),
                 ..empty.clone()
             });
         }
@@ -118,7 +120,7 @@ fn follow(
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
     let result = integrate(
         &mut dynamics,
-        &initial(scene),
+        &scene.start(),
         &options,
         &mut no_inputs,
         &mut observer,

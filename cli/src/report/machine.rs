@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// The machine, the compiler and its flags, and the version of this program.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Machine {
     /// Name of the processor, and how many of it the system shows.
     pub processor: String,
@@ -34,6 +34,19 @@ impl Machine {
         }
     }
 
+    /// The machine that a line of a file tells of; parts that it lacks are empty.
+    pub fn of(line: &str) -> Self {
+        let mut parts = line.splitn(5, "; ").map(str::to_owned);
+        let mut next = || parts.next().unwrap_or_default();
+        Self {
+            processor: next(),
+            system: next(),
+            compiler: next(),
+            flags: next(),
+            version: next().trim_start_matches("hamel ").to_owned(),
+        }
+    }
+
     /// In one line, as files tell it.
     pub fn line(&self) -> String {
         let Self {
@@ -58,4 +71,16 @@ fn processor() -> String {
         || format!("unknown {}", std::env::consts::ARCH),
         |(_, name)| name.trim().to_owned(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Machine;
+
+    #[test]
+    fn lines_are_read_as_written() {
+        let this = Machine::this();
+        assert_eq!(Machine::of(&this.line()), this);
+        assert_eq!(Machine::of("elsewhere").processor, "elsewhere");
+    }
 }

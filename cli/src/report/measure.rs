@@ -3,9 +3,7 @@
 use super::case::Reference;
 use super::score::{Errors, errors};
 use hamel::dynamics::Recursive;
-use hamel::integrate::{
-    Form, Method, Options, Solution, State, Statistics, Step, integrate, no_inputs,
-};
+use hamel::integrate::{Form, Method, Options, Solution, Statistics, Step, integrate, no_inputs};
 use hamel_scene::Scene;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -109,15 +107,6 @@ fn times(mut seconds: Vec<f64>) -> Times {
     }
 }
 
-/// The state at the beginning of a scene.
-pub fn initial(scene: &Scene) -> State {
-    State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    }
-}
-
 /// One run to the last of the sample times, and its run time, s: integration alone, without construction.
 pub fn run(
     scene: &Scene,
@@ -132,7 +121,7 @@ pub fn run(
         t_end: samples.last().copied().unwrap_or(0.0),
         samples: samples.to_vec(),
     };
-    let initial = initial(scene);
+    let initial = scene.start();
     let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
     let start = Instant::now();
     let mut observer = |_: &Step<'_>| match start.elapsed() < limit {

@@ -4,6 +4,7 @@ mod args;
 mod build_cost;
 mod case;
 mod drift;
+mod figures;
 mod machine;
 mod measure;
 mod page;

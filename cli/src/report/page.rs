@@ -1,10 +1,9 @@
 //! The page: figures, and tables of what they show.
 
-use super::build_cost::Cost;
 use super::case::Case;
-use super::machine::Machine;
+use super::figures::Figures;
 use super::plots;
-use super::row::{Drift, Stability, Work};
+use super::row::Work;
 use crate::output::Failure;
 use serde::Serialize;
 use tera::{Context, Tera};
@@ -15,16 +14,6 @@ const TEMPLATE: &str = include_str!("page.html");
 const COMPARED: [&str; 2] = ["dopri5", "verner9"];
 /// Accuracies that run times are told for.
 const ASKED: [f64; 2] = [1e-6, 1e-9];
-
-/// All that the page is made of.
-#[derive(Debug)]
-pub struct Figures {
-    pub work: Vec<Work>,
-    pub drift: Vec<Drift>,
-    pub stability: Vec<Stability>,
-    pub costs: Vec<Cost>,
-    pub machine: Machine,
-}
 
 /// One scene's part of the page.
 #[derive(Serialize)]
@@ -91,6 +80,7 @@ pub fn render(figures: &Figures) -> Result<String, Failure> {
     let sections = sections(&figures.work)?;
     let methods = distinct(figures.work.iter().map(|row| row.method.as_str()));
     context.insert("machine", &figures.machine);
+    context.insert("others", &figures.others);
     context.insert("lines", &overview(&figures.work, &methods));
     context.insert("methods", &methods);
     context.insert("sections", &sections);

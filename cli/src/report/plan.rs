@@ -60,7 +60,7 @@ impl Drift {
             true => (&["chain_2", "falling_disk"], 100_000, 0.3),
             false => {
                 let scenes = &["chain_2", "top_slow", "falling_disk", "free_generic"];
-                (scenes, 10_000_000, 60.0)
+                (scenes, 10_000_000, 30.0)
             }
         };
         let scenes = scenes.iter().copied();

@@ -1,12 +1,12 @@
 //! The command itself: measure what is missing, then make the page.
 
 use super::args::Args;
+use super::figures::Figures;
 use super::machine::Machine;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::row::{Drift, Stability, Work};
-use super::store::{Store, read};
-use super::{build_cost, drift, page, stability, work};
+use super::store::Store;
+use super::{drift, page, stability, work};
 use crate::output::{self, Failure};
 use hamel::registry::JointRegistry;
 
@@ -16,22 +16,15 @@ use hamel::registry::JointRegistry;
 /// Options that name what is not there; files that cannot be read or written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let plan = Plan::new(args)?;
-    let machine = Machine::this();
     let write = |error| Failure::Write {
         target: args.output.display().to_string(),
         error,
     };
     std::fs::create_dir_all(&args.output).map_err(write)?;
     if !args.page_only {
-        measure(args, &plan, registry, &machine.line())?;
+        measure(args, &plan, registry, &Machine::this().line())?;
     }
-    let figures = page::Figures {
-        work: read::<Work>(&args.output)?,
-        drift: read::<Drift>(&args.output)?,
-        stability: read::<Stability>(&args.output)?,
-        costs: build_cost::costs()?,
-        machine,
-    };
+    let figures = Figures::read(&args.output)?;
     let page = args.output.join("index.html");
     std::fs::write(&page, page::render(&figures)?).map_err(|error| Failure::Write {
         target: page.display().to_string(),
@@ -40,8 +33,15 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     if args.quiet {
         return Ok(());
     }
+    let others = match figures.others.len() {
+        0 => String::new(),
+        count => format!(
+            "machine   {}; figures of {count} other machines or versions are not on the page\n",
+            figures.machine.processor
+        ),
+    };
     output::print(&format!(
-        "{} points of work and precision, {} of them failures\npage      {}\nfigures   {}\n",
+        "{others}{} points of work and precision, {} of them failures\npage      {}\nfigures   {}\n",
         figures.work.len(),
         figures
             .work

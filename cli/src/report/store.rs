@@ -4,83 +4,78 @@ use super::row::Row;
 use crate::output::Failure;
 use std::collections::HashSet;
 use std::fs::{self, File, OpenOptions};
-use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-/// The file of one kind of rows.
+/// The file of one kind of rows: those of all machines that it was measured on.
 #[derive(Debug)]
 pub struct Store<R> {
     path: PathBuf,
-    writer: csv::Writer<File>,
+    rows: Vec<R>,
+    /// Keys of what this machine has measured and is not to measure anew.
     measured: HashSet<String>,
-    kind: PhantomData<R>,
+    machine: String,
 }
 
 impl<R: Row> Store<R> {
-    /// Opens the file in a folder, or makes it. Rows of this machine and version count as measured, unless all is wanted anew; where others are
-    /// left out, the file as it was stays beside the new one, with `before` in its name.
+    /// Opens the file in a folder; where there is none, the first rows make it. Rows of this machine and version count as measured, unless all is wanted
+    /// anew; those of others stay as they are.
     ///
     /// # Errors
-    /// A file that cannot be written, or holds other than such rows.
+    /// A file that holds other than such rows.
     pub fn open(folder: &Path, machine: &str, fresh: bool) -> Result<Self, Failure> {
-        let path = path::<R>(folder);
-        let all = match fresh {
-            true => Vec::new(),
-            false => read::<R>(folder)?,
-        };
-        let count = all.len();
-        let kept: Vec<R> = all
-            .into_iter()
-            .filter(|row| row.machine() == machine)
-            .collect();
-        let failed = |error| failure(&path, error);
-        if path.exists() && (fresh || kept.len() < count) {
-            fs::rename(&path, path.with_extension("before.csv")).map_err(failed)?;
-            // A run that stops between these two leaves nothing half written.
-            let whole = path.with_extension("new.csv");
-            let mut writer =
-                csv::Writer::from_path(&whole).map_err(|error| failed(error.into()))?;
-            for row in &kept {
-                writer
-                    .serialize(row)
-                    .map_err(|error| failed(error.into()))?;
-            }
-            writer.flush().map_err(failed)?;
-            fs::rename(&whole, &path).map_err(failed)?;
-        }
-        let file = OpenOptions::new().create(true).append(true).open(&path);
-        let file = file.map_err(failed)?;
-        let is_empty = file.metadata().map_err(failed)?.len() == 0;
-        let writer = csv::WriterBuilder::new()
-            .has_headers(is_empty)
-            .from_writer(file);
+        let rows = read::<R>(folder)?;
+        let own = rows.iter().filter(|row| row.machine() == machine && !fresh);
         Ok(Self {
-            writer,
-            measured: kept.iter().map(Row::key).collect(),
-            path,
-            kind: PhantomData,
+            measured: own.map(Row::key).collect(),
+            path: path::<R>(folder),
+            machine: machine.into(),
+            rows,
         })
     }
 
-    /// Whether the file has rows of this key.
+    /// Whether this machine has rows of this key.
     pub fn has(&self, key: &str) -> bool {
         self.measured.contains(key)
     }
 
-    /// Adds rows, which are in the file when this returns.
+    /// Adds rows, which are in the file when this returns, in place of those of this machine that have their keys.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn add(&mut self, rows: &[R]) -> Result<(), Failure> {
-        for row in rows {
-            let written = self.writer.serialize(row);
-            written.map_err(|error| failure(&self.path, error.into()))?;
-            self.measured.insert(row.key());
-        }
-        self.writer
-            .flush()
-            .map_err(|error| failure(&self.path, error))
+        let keys: HashSet<String> = rows.iter().map(Row::key).collect();
+        let count = self.rows.len();
+        let machine = &self.machine;
+        self.rows
+            .retain(|row| row.machine() != machine || !keys.contains(&row.key()));
+        let replaces = self.rows.len() < count;
+        self.rows.extend_from_slice(rows);
+        self.measured.extend(keys);
+        let written = match replaces {
+            true => self.rewrite(),
+            false => append(&self.path, rows),
+        };
+        written.map_err(|error| failure(&self.path, error.into()))
     }
+
+    /// All rows to a new file, which then takes the place of the old one: a run that is stopped loses neither.
+    fn rewrite(&self) -> csv::Result<()> {
+        let whole = self.path.with_extension("new.csv");
+        write(csv::Writer::from_path(&whole)?, &self.rows)?;
+        Ok(fs::rename(&whole, &self.path)?)
+    }
+}
+
+fn append<R: Row>(path: &Path, rows: &[R]) -> csv::Result<()> {
+    let file = OpenOptions::new().create(true).append(true).open(path)?;
+    let is_empty = file.metadata()?.len() == 0;
+    let mut builder = csv::WriterBuilder::new();
+    write(builder.has_headers(is_empty).from_writer(file), rows)
+}
+
+fn write<R: Row>(mut writer: csv::Writer<File>, rows: &[R]) -> csv::Result<()> {
+    rows.iter().try_for_each(|row| writer.serialize(row))?;
+    Ok(writer.flush()?)
 }
 
 /// All rows of a file; none where it is not there.
@@ -96,7 +91,7 @@ pub fn read<R: Row>(folder: &Path) -> Result<Vec<R>, Failure> {
     let rows = reader.and_then(|mut reader| reader.deserialize().collect());
     rows.map_err(|error| {
         Failure::Page(format!(
-            "{}: {error}; `--fresh` measures everything anew",
+            "{}: {error}; move the file away, or name another folder",
             path.display()
         ))
     })

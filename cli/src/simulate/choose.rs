@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use crate::output::Failure;
-use hamel::integrate::{Choice, IntegrateError, Method, Sampling, Scheme, Spectrum, State, Wanted};
+use hamel::integrate::{Choice, IntegrateError, Method, Sampling, Scheme, Spectrum, Wanted};
 use hamel_scene::{Control, Scene, Settings};
 
 /// Steps that turn the phase of an oscillation by more than this do not follow it, rad: some six of them a period.
@@ -32,7 +32,7 @@ pub fn choose(
         span: settings.t_end,
         is_bound,
     };
-    let choice = Choice::new(mechanism, &start(scene), wanted).map_err(failed)?;
+    let choice = Choice::new(mechanism, &scene.start(), wanted).map_err(failed)?;
     Ok((Method::controlled(choice.scheme, tolerance), choice.reason))
 }
 
@@ -51,7 +51,7 @@ pub fn unresolved(plan: &Plan, steps: usize) -> Result<Option<String>, Failure> 
         return Ok(None);
     }
     let step = plan.settings.t_end / steps as f64;
-    let spectrum = Spectrum::at(&plan.scene.mechanism, &start(&plan.scene)).map_err(failed)?;
+    let spectrum = Spectrum::at(&plan.scene.mechanism, &plan.scene.start()).map_err(failed)?;
     Ok(spectrum.and_then(|spectrum| {
         let mut modes = spectrum.modes().iter();
         let mode = modes.find(|mode| !mode.is_damped() && mode.rate() * step > FOLLOWED)?;
@@ -61,14 +61,6 @@ pub fn unresolved(plan: &Plan, steps: usize) -> Result<Option<String>, Failure> 
             "an oscillation at joint `{joint}` has a period of {period:.2e} s, the mean step is {step:.2e} s: {does}, its phase is not followed"
         ))
     }))
-}
-
-fn start(scene: &Scene) -> State {
-    State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    }
 }
 
 fn failed(error: IntegrateError) -> Failure {

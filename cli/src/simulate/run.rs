@@ -91,7 +91,7 @@ fn move_on(
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
     let mut dynamics = Recursive::new(Arc::clone(&plan.scene.mechanism));
-    let (initial, options) = (initial(plan), plan.options());
+    let (initial, options) = (plan.scene.start(), plan.options());
     let mut integration = Integration::new(&mut dynamics, &initial, &options)
         .sampling(plan.settings.sampling)
         .observer(observer);
@@ -121,14 +121,6 @@ fn stopped(plan: &Plan, error: &dyn std::fmt::Display) -> Failure {
             files.join(", ")
         ),
     })
-}
-
-fn initial(plan: &Plan) -> State {
-    State {
-        time: 0.0,
-        configuration: plan.scene.configuration.clone(),
-        speeds: plan.scene.speeds.clone(),
-    }
 }
 
 fn sample<'a>(
@@ -237,7 +229,7 @@ fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
 fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
     let solution = &run.solution;
     let mechanism = &plan.scene.mechanism;
-    let (first, last) = (initial(plan), &solution.state);
+    let (first, last) = (plan.scene.start(), &solution.state);
     let kinetic = |state: &State| {
         let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
         kinematics.map(|kinematics| kinematics.kinetic_energy())

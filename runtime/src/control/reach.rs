@@ -4,8 +4,8 @@
 //! rank at every eigenvalue λ of A whose motion does not fade. Asked before a Riccati equation is solved, since rounding makes such a motion fade
 //! or grow by 1e-16 to 1e-8 of the rates of A, and the solver would find a huge cost for it instead of none.
 
-use alloc::vec::Vec;
-use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
+use crate::eigen::eigenvalues;
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Rates of fading that pass for none, as parts of the largest rate: two equal eigenvalues of a Jordan block move by √eps = 1.5e-8, three by 6e-6
@@ -17,9 +17,6 @@ const FAINT: f64 = 1e-10;
 
 /// Entries that pass for the rounding of zeros, as parts of the largest, where scales are chosen: balanced against them, states would differ by 1e8.
 const ROUNDING: f64 = 1e-13;
-
-/// Sweeps of the eigenvalue iteration at most, many times what it takes.
-const MOST_SWEEPS: usize = 100_000;
 
 /// How a motion of `ẋ = A x` or `x′ = A x` that does not fade goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,19 +71,12 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
             column *= size / norm;
         }
     }
-    let schur = Schur::try_new(balanced.clone(), f64::EPSILON, MOST_SWEEPS)?;
     let lasts = |value: &Complex<f64>| match time {
         Time::Continuous => value.re >= -SLOW * size,
         Time::Discrete => value.norm_sqr() >= 1.0 - 2.0 * SLOW,
     };
-    let eigenvalues = schur.complex_eigenvalues();
-    let lasting: Vec<_> = eigenvalues
-        .iter()
-        .copied()
-        // Of a pair one is enough.
-        .filter(|value| value.im >= 0.0 && lasts(value))
-        .collect();
-    lasting.into_iter().find_map(|eigenvalue| {
+    let mut lasting = eigenvalues(balanced.clone())?.into_iter().filter(lasts);
+    lasting.find_map(|eigenvalue| {
         let state = unreached(&balanced, &reach, eigenvalue, FAINT * size)?;
         Some(Motion {
             state,

@@ -5,16 +5,14 @@ use super::jacobian::Jacobian;
 use super::standing::Standing;
 use super::{Form, IntegrateError, State, StepFailure, no_inputs};
 use crate::dynamics::Recursive;
+use crate::eigen::eigenvalues;
 use crate::integrate::approach::Near;
 use crate::mechanism::Mechanism;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
-
-/// Sweeps of the eigenvalue iteration at most, many times what it takes.
-const MOST_SWEEPS: usize = 100_000;
 
 /// One motion `e^{λt}` of the linearised equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,12 +64,9 @@ impl Spectrum {
         })?;
         let mut balanced = matrix.clone();
         balance_parlett_reinsch(&mut balanced);
-        let finite = balanced.iter().all(|entry| entry.is_finite());
-        let schur = finite.then(|| Schur::try_new(balanced, f64::EPSILON, MOST_SWEEPS));
-        Ok(schur.flatten().map(|schur| {
-            let values = schur.complex_eigenvalues();
-            let modes = values.iter().filter(|value| value.im >= 0.0);
-            let mut modes: Vec<Mode> = modes
+        Ok(eigenvalues(balanced).map(|values| {
+            let mut modes: Vec<Mode> = values
+                .into_iter()
                 .map(|value| Mode {
                     growth: value.re,
                     frequency: value.im,

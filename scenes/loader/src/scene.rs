@@ -1,6 +1,6 @@
 //! A scene ready to simulate, and the ways to one.
 
-use crate::build::{self, State};
+use crate::build;
 use crate::control::Control;
 use crate::description::{BodyDescription, SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};
@@ -10,6 +10,7 @@ use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
 use crate::settings::Settings;
 use crate::shape::ShapeDescription;
+use hamel::integrate::State;
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::path::Path;
@@ -61,6 +62,15 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The state at time 0, where an integration begins.
+    pub fn start(&self) -> State {
+        State {
+            time: 0.0,
+            configuration: self.configuration.clone(),
+            speeds: self.speeds.clone(),
+        }
+    }
+
     /// What the text of a scene file says by itself, joints not yet looked up. Messages call the text `source_name`; a scene
     /// without a name takes that of the file.
     ///
@@ -118,7 +128,7 @@ impl SceneDescription {
     /// at once.
     pub fn build(&self, registry: &JointRegistry) -> Result<Scene, Diagnostics> {
         let mut sink = Sink::default();
-        let states: Vec<Option<State>> = self
+        let states: Vec<Option<build::State>> = self
             .bodies
             .iter()
             .map(|body| {
@@ -131,7 +141,7 @@ impl SceneDescription {
                 )
             })
             .collect();
-        let states: Option<Vec<State>> = states.into_iter().collect();
+        let states: Option<Vec<build::State>> = states.into_iter().collect();
         let scene = states.and_then(|states| build::scene(self, states, &mut sink));
         scene.ok_or_else(|| self.refuse(sink))
     }

@@ -4,7 +4,7 @@ use crate::Timed;
 use cpu_time::ThreadTime;
 use hamel::dynamics::Recursive;
 use hamel::elements::{Element, JointDamper, JointSpring};
-use hamel::integrate::{Form, Method, Options, Scheme, State, integrate, no_inputs, no_observer};
+use hamel::integrate::{Form, Integration, Method, Options, Scheme, State};
 use hamel::mechanism::Mechanism;
 use hamel_tests::random;
 use rand::SeedableRng;
@@ -70,13 +70,7 @@ impl Implicit {
             samples: Vec::new(),
         };
         let mut dynamics = Recursive::new(Arc::clone(mechanism));
-        let solution = integrate(
-            &mut dynamics,
-            &initial,
-            &options,
-            &mut no_inputs,
-            &mut no_observer,
-        );
+        let solution = Integration::new(&mut dynamics, &initial, &options).run();
         assert_eq!(solution.expect("steps converge").statistics.steps, STEPS);
     }
 }

@@ -6,7 +6,7 @@ use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, Catenary, CatenaryLength, DirectionSensor, ENTRIES, PlanarTurns,
     PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SpherePoint,
 };
-use hamel_tests::derivatives::{self, Equipment, Equipped, Kernels, behind, of};
+use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::STEP;
 use hamel_tests::linear_step;
 use hamel_tests::random::{self, cases};
@@ -49,10 +49,8 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
 /// Bare, and with elements of all kinds and rotors at every joint.
 fn all() -> Vec<Equipped> {
     let kinds = kinds();
-    let bare = cases(&kinds, 8, TREES);
-    let bare = bare.map(|case| Equipped::new(case, Equipment::default()));
-    let equipped = cases(&kinds, 8, TREES).map(Equipped::fully);
-    let all = bare.chain(equipped);
+    let trees = || cases(&kinds, 8, TREES);
+    let all = bare_and_equipped(trees(), trees()).into_iter();
     all.map(|equipped| equipped.on(kernels)).collect()
 }
 

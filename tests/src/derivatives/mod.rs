@@ -62,6 +62,15 @@ impl Equipped {
     }
 }
 
+/// Cases as they are, and cases with elements of all kinds and rotors at every joint.
+pub fn bare_and_equipped(
+    bare: impl Iterator<Item = Case>,
+    equipped: impl Iterator<Item = Case>,
+) -> Vec<Equipped> {
+    let bare = bare.map(|case| Equipped::new(case, Equipment::default()));
+    bare.chain(equipped.map(Equipped::fully)).collect()
+}
+
 /// The infinitesimal parts.
 pub fn derivatives(values: &[Dual<f64>]) -> Vec<f64> {
     values.iter().map(|value| value.derivative).collect()

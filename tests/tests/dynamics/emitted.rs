@@ -3,7 +3,7 @@
 
 use hamel::compiled::{Compiled, CompiledError, Equations};
 use hamel::dynamics::{Dynamics, Recursive};
-use hamel::integrate::{Form, Integration, Method, Options, State};
+use hamel::integrate::{Form, Integration, Method, Options};
 use hamel::scalar::F64x4;
 use hamel_codegen::scene::functions::Kind;
 use hamel_codegen::scene::{Build, scene};
@@ -140,11 +140,7 @@ fn integrators_take_compiled_equations() {
 }
 
 fn moves_as_the_tree(scene: &Scene, equations: &'static Equations, form: Form) {
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form,
         method: Method::dormand_prince(1e-10),

@@ -36,11 +36,7 @@ fn run(
 ) -> Result<Option<Run>, IntegrateError> {
     let samples = list(&reference["samples"]);
     let times: Vec<f64> = samples.iter().map(|sample| number(&sample["t"])).collect();
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form,
         method,
@@ -283,11 +279,7 @@ fn undamped_stiff_springs_are_taken_exactly() {
 /// The method chosen for a scene at a tolerance, and the reason.
 fn chosen(name: &str, tolerance: f64, is_bound: bool) -> (Scheme, String) {
     let scene = scene(name);
-    let state = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let state = scene.start();
     let wanted = Wanted {
         tolerance,
         span: scene.settings.t_end,
@@ -383,11 +375,7 @@ fn discrete_gradients_keep_the_energy_over_ten_million_steps() {
             t_end: MANY as f64 * dt,
             samples: Vec::new(),
         };
-        let initial = State {
-            time: 0.0,
-            configuration: scene.configuration.clone(),
-            speeds: scene.speeds.clone(),
-        };
+        let initial = scene.start();
         let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
         let solution = integrate(
             &mut dynamics,

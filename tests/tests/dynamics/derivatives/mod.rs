@@ -8,7 +8,7 @@ mod driven;
 mod refusals;
 
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Recursive};
-use hamel_tests::derivatives::{self, Equipment, Equipped};
+use hamel_tests::derivatives::{self, Equipped, bare_and_equipped};
 use hamel_tests::peers::{Reference, convert, numbers};
 use hamel_tests::random::{self, Case, cases, library, slender_cases};
 use rand::SeedableRng;
@@ -56,18 +56,14 @@ fn robots() -> impl Iterator<Item = Case> {
 fn all() -> Vec<Equipped> {
     let kinds = library();
     let bare = cases(&kinds, LARGEST, TREES).chain(robots());
-    let bare = bare.map(|case| Equipped::new(case, Equipment::default()));
-    let equipped = cases(&kinds, 10, TREES).chain(robots());
-    bare.chain(equipped.map(Equipped::fully)).collect()
+    bare_and_equipped(bare, cases(&kinds, 10, TREES).chain(robots()))
 }
 
 /// Trees of needles, bare and equipped.
 fn slender() -> Vec<Equipped> {
     let kinds = library();
-    let bare = slender_cases(&kinds, 10, TREES);
-    let bare = bare.map(|case| Equipped::new(case, Equipment::default()));
-    let equipped = slender_cases(&kinds, 10, TREES);
-    bare.chain(equipped.map(Equipped::fully)).collect()
+    let slender = || slender_cases(&kinds, 10, TREES);
+    bare_and_equipped(slender(), slender())
 }
 
 #[test]

@@ -1,0 +1,80 @@
+//! What the page shows of what the files hold: figures of one machine, and of each scene those that were measured longest.
+
+use super::build_cost::{self, Cost};
+use super::machine::Machine;
+use super::row::{Drift, Row, Stability, Work};
+use super::store::read;
+use crate::output::Failure;
+use std::path::Path;
+
+/// All that the page is made of.
+#[derive(Debug)]
+pub struct Figures {
+    pub work: Vec<Work>,
+    pub drift: Vec<Drift>,
+    pub stability: Vec<Stability>,
+    pub costs: Vec<Cost>,
+    pub machine: Machine,
+    /// Machines and versions whose rows are left out.
+    pub others: Vec<String>,
+}
+
+impl Figures {
+    /// Those of this machine; where the files have none of it, those of the machine that measured last.
+    ///
+    /// # Errors
+    /// Files that cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, Failure> {
+        let mut work = read::<Work>(folder)?;
+        let mut drift = read::<Drift>(folder)?;
+        let mut stability = read::<Stability>(folder)?;
+        let this = Machine::this().line();
+        let mut machines = machines(&work);
+        machines.extend(self::machines(&drift));
+        machines.extend(self::machines(&stability));
+        let shown = match machines.contains(&this) {
+            true => this,
+            false => machines.first().cloned().unwrap_or(this),
+        };
+        machines.sort();
+        machines.dedup();
+        machines.retain(|machine| *machine != shown);
+        work.retain(|row| row.machine == shown);
+        drift.retain(|row| row.machine == shown);
+        stability.retain(|row| row.machine == shown);
+        Ok(Self {
+            work: longest(work, |row| (&row.scene, &row.budget)),
+            drift: longest(drift, |row| (&row.scene, &row.budget)),
+            stability,
+            costs: build_cost::costs()?,
+            machine: Machine::of(&shown),
+            others: machines,
+        })
+    }
+}
+
+/// The machines of some rows, the last one first.
+fn machines<R: Row>(rows: &[R]) -> Vec<String> {
+    let mut machines: Vec<String> = Vec::new();
+    for row in rows.iter().rev() {
+        if !machines.iter().any(|known| known == row.machine()) {
+            machines.push(row.machine().to_owned());
+        }
+    }
+    machines
+}
+
+/// Without the rows of a short look at scenes that have been measured in full.
+fn longest<R: Clone>(rows: Vec<R>, scene_and_budget: impl Fn(&R) -> (&String, &String)) -> Vec<R> {
+    let in_full: Vec<String> = rows
+        .iter()
+        .map(&scene_and_budget)
+        .filter(|(_, budget)| *budget == "full")
+        .map(|(scene, _)| scene.clone())
+        .collect();
+    let stays = |row: &&R| {
+        let (scene, budget) = scene_and_budget(row);
+        budget == "full" || !in_full.contains(scene)
+    };
+    rows.iter().filter(stays).cloned().collect()
+}
