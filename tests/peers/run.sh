@@ -16,15 +16,7 @@ if [ -z "${OURS:-}" ]; then
   OURS="$W/target/release/examples/peer_bench"
 fi
 export OURS
-if [ -z "${SKIP_INSTALL:-}" ]; then
-  need=""; for p in clang-19 libeigen3-dev g++; do dpkg -s $p >/dev/null 2>&1 || need="$need $p"; done
-  [ -n "$need" ] && { log "apt-get install$need"; apt-get update -q >"$W/apt.log" 2>&1; apt-get install -y -q $need >>"$W/apt.log" 2>&1 || log "apt failed, see $W/apt.log"; }
-  [ -x "$W/venv/bin/python" ] || python3 -m venv "$W/venv"
-  for p in pin==4.1.0 example-robot-data==6.0.0 casadi==3.8.2 mujoco==4.0.0 numpy scipy; do
-    "$W/venv/bin/pip" show -q "${p%%==*}" >/dev/null 2>&1 || { log "pip install $p"; "$W/venv/bin/pip" install -q "$p" >>"$W/pip.log" 2>&1 || log "pip failed for $p, see $W/pip.log"; }
-  done
-  if [ ! -d "$W/venv_cppad" ]; then log "cppad"; python3 -m venv "$W/venv_cppad" && "$W/venv_cppad/bin/pip" install -q cmeel-cppad==20230000.0 cmeel-cppadcodegen==2.4.3 >>"$W/pip.log" 2>&1; fi
-fi
+[ -z "${SKIP_INSTALL:-}" ] && "$HERE/install.sh" base cppad
 CPP=$(echo "$W"/venv_cppad/lib/python3*/site-packages/cmeel.prefix)
 SP=$(echo "$W"/venv/lib/python3*/site-packages); PFX=$SP/cmeel.prefix
 export CLANG_C=$(command -v clang-19 || command -v clang || echo gcc); CLANGXX=$(command -v clang++-19 || command -v clang++ || echo g++)

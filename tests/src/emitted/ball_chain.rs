@@ -51,7 +51,7 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
 
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
-/// Operations: 5059 additions, 6619 multiplications, 57 divisions.
+/// Operations: 5059 additions, 6615 multiplications, 57 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> [T; 60] {
@@ -413,63 +413,58 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             link_20_bias_14,
             q[176].mul_add(link_20_bias_13, q[173] * link_20_bias_12),
         );
-    // link_20: articulated inertia (13 additions, 13 multiplications)
+    // link_20: articulated inertia (13 additions, 9 multiplications)
     let link_20_articulated_inertia = link_20_bias_6 - tau[57];
-    let link_20_articulated_inertia_2 = link_20_articulated_inertia
+    let link_20_articulated_inertia_2 = link_20_bias_7 - tau[58];
+    let link_20_articulated_inertia_3 = link_20_articulated_inertia
+        * n(0.07454545454545454);
+    let link_20_articulated_inertia_4 = link_20_bias_8 - tau[59]
+        - link_20_articulated_inertia_3;
+    let link_20_articulated_inertia_5 = link_20_articulated_inertia
         * n(181.81818181818178);
-    let link_20_articulated_inertia_3 = (-link_20_articulated_inertia_2)
+    let link_20_articulated_inertia_6 = (-link_20_articulated_inertia)
         .mul_add(
-            n(0.04000000000000001),
+            n(7.2727272727272725),
             (rows_of_6[18][4] * rows_of_6[18][5])
                 .mul_add(
                     n(-0.04000000000000001),
                     (rows_of_6[18][3] * rows_of_6[18][4]) * n(0.004),
                 ),
         );
-    let link_20_articulated_inertia_4 = (link_20_bias_7 - tau[58])
+    let link_20_articulated_inertia_7 = link_20_articulated_inertia_2
         * n(183.82352941176467);
-    let link_20_articulated_inertia_5 = (-link_20_articulated_inertia_4)
-        .mul_add(n(0.005440000000000001), link_20_bias_7);
-    let link_20_articulated_inertia_6 = (-link_20_bias)
+    let link_20_articulated_inertia_8 = link_20_bias_7 - link_20_articulated_inertia_2;
+    let link_20_articulated_inertia_9 = (-link_20_bias)
         .mul_add(
             n(-0.04000000000000001),
-            link_20_articulated_inertia_4
+            link_20_articulated_inertia_2
                 .mul_add(
-                    n(-0.04000000000000001),
+                    n(-7.352941176470588),
                     (rows_of_6[18][5].mul_add(rows_of_6[18][5], link_20_bias_2))
                         * n(0.004),
                 ),
         );
-    let link_20_articulated_inertia_7 = (-link_20_articulated_inertia_4)
+    let link_20_articulated_inertia_10 = (-link_20_articulated_inertia_2)
         .mul_add(
-            n(-0.004),
+            n(-0.7352941176470587),
             (-(rows_of_6[18][3].mul_add(rows_of_6[18][3], link_20_bias_2)))
                 .mul_add(n(-0.04000000000000001), link_20_bias * n(0.004)),
         );
-    let link_20_articulated_inertia_8 = ((-link_20_articulated_inertia)
-        .mul_add(n(0.07454545454545454), link_20_bias_8 - tau[59]))
+    let link_20_articulated_inertia_11 = link_20_articulated_inertia_4
         * n(4774.720027780195);
-    let link_20_articulated_inertia_9 = (-link_20_articulated_inertia_8)
-        .mul_add(
-            n(0.0002094363636363634),
-            (-link_20_articulated_inertia_2)
-                .mul_add(n(0.00041000000000000005), link_20_bias_8),
-        );
+    let link_20_articulated_inertia_12 = link_20_articulated_inertia_4
+        + link_20_articulated_inertia_3 - link_20_bias_8;
     // link_20: seen by parent (54 additions, 96 multiplications)
-    let link_20_seen_by_parent = (-link_20_articulated_inertia_8)
+    let link_20_seen_by_parent = (-link_20_articulated_inertia_4)
         .mul_add(
-            n(-0.00000000000000000005421010862427522),
-            (-link_20_articulated_inertia_2)
+            n(-0.00000000000000025883809135646677),
+            link_20_bias_16
                 .mul_add(
-                    n(0.005500000000000001),
-                    link_20_bias_16
+                    n(0.0000000000000000002635442384720388),
+                    link_20_bias_9
                         .mul_add(
-                            n(0.0000000000000000002635442384720388),
-                            link_20_bias_9
-                                .mul_add(
-                                    n(-0.000000000000000000000000000000000014031641048534137),
-                                    link_20_bias_6,
-                                ),
+                            n(-0.000000000000000000000000000000000014031641048534137),
+                            link_20_bias_6 - link_20_articulated_inertia,
                         ),
                 ),
         );
@@ -477,18 +472,18 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         .mul_add(
             n(-0.029411764705882353),
             (-link_20_bias_15)
-                .mul_add(n(-0.2941176470588236), link_20_articulated_inertia_6),
+                .mul_add(n(-0.2941176470588236), link_20_articulated_inertia_9),
         );
-    let link_20_seen_by_parent_3 = (-link_20_articulated_inertia_8)
+    let link_20_seen_by_parent_3 = (-link_20_articulated_inertia_4)
         .mul_add(
-            n(0.0010181818181818178),
+            n(4.8615331191943785),
             link_20_bias_16
                 .mul_add(
                     n(-0.2958590155395434),
                     link_20_bias_9
                         .mul_add(
                             n(0.0000000000000000002635442384720388),
-                            link_20_articulated_inertia_3,
+                            link_20_articulated_inertia_6,
                         ),
                 ),
         );
@@ -496,7 +491,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         .mul_add(
             n(-0.002941176470588235),
             link_20_bias_15
-                .mul_add(n(-0.029411764705882353), link_20_articulated_inertia_7),
+                .mul_add(n(-0.029411764705882353), link_20_articulated_inertia_10),
         );
     let link_20_seen_by_parent_5 = q[171]
         * n(-0.000000000000000000000000000000000014031641048534137);
@@ -591,11 +586,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         );
     let link_20_seen_by_parent_40 = link_20_seen_by_parent_13
         .mul_add(n(-0.2), q[177] * link_20_seen_by_parent_6);
-    let link_20_seen_by_parent_41 = q[179]
+    let link_20_seen_by_parent_41 = (-q[179])
         .mul_add(
-            link_20_articulated_inertia_9,
+            link_20_articulated_inertia_12,
             q[178]
-                .mul_add(link_20_articulated_inertia_5, q[177] * link_20_seen_by_parent),
+                .mul_add(link_20_articulated_inertia_8, q[177] * link_20_seen_by_parent),
         );
     let link_20_seen_by_parent_42 = (-q[173])
         .mul_add(
@@ -609,15 +604,15 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             (-q[175])
                 .mul_add(link_20_seen_by_parent_3, q[174] * link_20_seen_by_parent_2),
         );
-    let link_20_seen_by_parent_44 = link_20_seen_by_parent_43
+    let link_20_seen_by_parent_44 = (-q[173])
         .mul_add(
-            n(-0.2),
-            q[173]
+            link_20_articulated_inertia_12,
+            link_20_seen_by_parent_43
                 .mul_add(
-                    link_20_articulated_inertia_9,
+                    n(-0.2),
                     q[172]
                         .mul_add(
-                            link_20_articulated_inertia_5,
+                            link_20_articulated_inertia_8,
                             q[171] * link_20_seen_by_parent,
                         ),
                 ),
@@ -625,12 +620,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     let link_20_seen_by_parent_45 = (-link_20_seen_by_parent_42)
         .mul_add(
             n(-0.2),
-            q[176]
+            (-q[176])
                 .mul_add(
-                    link_20_articulated_inertia_9,
+                    link_20_articulated_inertia_12,
                     q[175]
                         .mul_add(
-                            link_20_articulated_inertia_5,
+                            link_20_articulated_inertia_8,
                             q[174] * link_20_seen_by_parent,
                         ),
                 ),
@@ -5080,7 +5075,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             link_20_acceleration_3
                 .mul_add(
                     n(-0.00000000000000025883809135646677),
-                    link_20_articulated_inertia_8 + link_20_acceleration_4,
+                    link_20_articulated_inertia_11 + link_20_acceleration_4,
                 ),
         );
     let link_20_acceleration_7 = (q[177]
@@ -5124,12 +5119,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                     link_20_acceleration_6
                         .mul_add(
                             n(0.07454545454545454),
-                            -link_20_articulated_inertia_2 - link_20_acceleration_3,
+                            -link_20_articulated_inertia_5 - link_20_acceleration_3,
                         ),
                 ),
         );
     results[57] = link_20_acceleration_10;
-    results[58] = -link_20_articulated_inertia_4 - link_20_acceleration_9;
+    results[58] = -link_20_articulated_inertia_7 - link_20_acceleration_9;
     results[59] = -link_20_acceleration_6;
     results
 }
@@ -5408,17 +5403,13 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_20_rate_x = v[57] + link_20_angular_velocity;
     let link_20_rate_y = v[58] + link_20_angular_velocity_2;
     let link_20_rate_z = v[59] + link_20_angular_velocity_3;
-    // link_1: acceleration (3 additions, 7 multiplications)
-    let link_1_acceleration = q[6] * n(9.81);
-    let link_1_acceleration_2 = q[7] * n(9.81);
-    let link_1_acceleration_3 = q[8] * n(9.81);
     // link_2: acceleration (30 additions, 33 multiplications)
     let link_2_acceleration = (-(v[0].mul_add(v[2], a[1])))
-        .mul_add(n(0.2), link_1_acceleration);
+        .mul_add(n(0.2), q[6] * n(9.81));
     let link_2_acceleration_2 = ((-v[1]).mul_add(v[2], a[0]))
-        .mul_add(n(0.2), link_1_acceleration_2);
+        .mul_add(n(0.2), q[7] * n(9.81));
     let link_2_acceleration_3 = (v[1].mul_add(v[1], v[0] * v[0]))
-        .mul_add(n(0.2), link_1_acceleration_3);
+        .mul_add(n(0.2), q[8] * n(9.81));
     let link_2_acceleration_4 = q[15]
         .mul_add(
             link_2_acceleration_3,
@@ -6923,9 +6914,9 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_1_force_4 = (-v[2])
         .mul_add(
             link_1_force_2,
-            link_1_acceleration_2
+            q[7]
                 .mul_add(
-                    n(1.5600000000000005),
+                    n(15.303600000000007),
                     a[2]
                         .mul_add(
                             n(0.00041000000000000005),
@@ -6933,12 +6924,12 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_1_force_5 = (-link_1_acceleration_3)
+    let link_1_force_5 = (-q[8])
         .mul_add(
-            n(0.004),
-            (-link_1_acceleration)
+            n(0.039240000000000004),
+            (-q[6])
                 .mul_add(
-                    n(1.5600000000000005),
+                    n(15.303600000000007),
                     (-v[0])
                         .mul_add(
                             link_1_force_3,
@@ -6949,9 +6940,9 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_1_force_6 = (-v[1])
         .mul_add(
             link_1_force,
-            link_1_acceleration_2
+            q[7]
                 .mul_add(
-                    n(0.004),
+                    n(0.039240000000000004),
                     a[2]
                         .mul_add(
                             n(0.00023999999999999976),

@@ -55,7 +55,7 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
 
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
-/// Operations: 276 additions, 392 multiplications, 6 divisions, 4 function calls.
+/// Operations: 276 additions, 389 multiplications, 6 divisions, 4 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T; 6] {
@@ -71,68 +71,70 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
     let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = (lower_joint_3 + lower_joint_4) * n(2.0);
-    let lower_joint_12 = (lower_joint_5 - lower_joint_6) * n(2.0);
-    let lower_joint_13 = (lower_joint_3 - lower_joint_4) * n(2.0);
-    let lower_joint_14 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_15 = (lower_joint_8 + lower_joint_9) * n(2.0);
-    let lower_joint_16 = (lower_joint_5 + lower_joint_6) * n(2.0);
-    let lower_joint_17 = (lower_joint_8 - lower_joint_9) * n(2.0);
-    let lower_joint_18 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_19 = (-v[4])
-        .mul_add(lower_joint_11, v[5].mul_add(lower_joint_12, v[3] * lower_joint_10));
-    let lower_joint_20 = (-v[5])
-        .mul_add(lower_joint_15, v[4].mul_add(lower_joint_14, v[3] * lower_joint_13));
-    let lower_joint_21 = (-v[5])
-        .mul_add(lower_joint_18, (-v[4]).mul_add(lower_joint_17, v[3] * lower_joint_16));
+    let lower_joint_11 = lower_joint_3 + lower_joint_4;
+    let lower_joint_12 = lower_joint_11 * n(2.0);
+    let lower_joint_13 = lower_joint_5 - lower_joint_6;
+    let lower_joint_14 = lower_joint_13 * n(2.0);
+    let lower_joint_15 = lower_joint_3 - lower_joint_4;
+    let lower_joint_16 = lower_joint_15 * n(2.0);
+    let lower_joint_17 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_18 = lower_joint_8 + lower_joint_9;
+    let lower_joint_19 = lower_joint_18 * n(2.0);
+    let lower_joint_20 = lower_joint_5 + lower_joint_6;
+    let lower_joint_21 = lower_joint_20 * n(2.0);
+    let lower_joint_22 = lower_joint_8 - lower_joint_9;
+    let lower_joint_23 = lower_joint_22 * n(2.0);
+    let lower_joint_24 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_25 = (-v[4])
+        .mul_add(lower_joint_12, v[5].mul_add(lower_joint_14, v[3] * lower_joint_10));
+    let lower_joint_26 = (-v[5])
+        .mul_add(lower_joint_19, v[4].mul_add(lower_joint_17, v[3] * lower_joint_16));
+    let lower_joint_27 = (-v[5])
+        .mul_add(lower_joint_24, (-v[4]).mul_add(lower_joint_23, v[3] * lower_joint_21));
     // lower: angular velocity (9 additions, 9 multiplications)
     let lower_angular_velocity = (-v[1])
-        .mul_add(lower_joint_11, v[2].mul_add(lower_joint_12, v[0] * lower_joint_10));
+        .mul_add(lower_joint_12, v[2].mul_add(lower_joint_14, v[0] * lower_joint_10));
     let lower_angular_velocity_2 = (-v[2])
-        .mul_add(lower_joint_15, v[1].mul_add(lower_joint_14, v[0] * lower_joint_13));
+        .mul_add(lower_joint_19, v[1].mul_add(lower_joint_17, v[0] * lower_joint_16));
     let lower_angular_velocity_3 = (-v[2])
-        .mul_add(lower_joint_18, (-v[1]).mul_add(lower_joint_17, v[0] * lower_joint_16));
-    let lower_rate_x = lower_joint_19 + lower_angular_velocity;
-    let lower_rate_y = lower_joint_20 + lower_angular_velocity_2;
-    let lower_rate_z = lower_joint_21 + lower_angular_velocity_3;
-    // upper: acceleration (1 addition, 7 multiplications)
-    let upper_acceleration = q[6] * n(9.81);
-    let upper_acceleration_2 = q[7] * n(9.81);
-    let upper_acceleration_3 = q[8] * n(9.81);
+        .mul_add(lower_joint_24, (-v[1]).mul_add(lower_joint_23, v[0] * lower_joint_21));
+    let lower_rate_x = lower_joint_25 + lower_angular_velocity;
+    let lower_rate_y = lower_joint_26 + lower_angular_velocity_2;
+    let lower_rate_z = lower_joint_27 + lower_angular_velocity_3;
     // lower: acceleration (13 additions, 19 multiplications)
-    let lower_acceleration = (-lower_joint_20)
-        .mul_add(lower_angular_velocity_3, lower_joint_21 * lower_angular_velocity_2);
-    let lower_acceleration_2 = (-lower_joint_21)
-        .mul_add(lower_angular_velocity, lower_joint_19 * lower_angular_velocity_3);
-    let lower_acceleration_3 = (-(v[0] * v[2])).mul_add(n(0.6), upper_acceleration);
-    let lower_acceleration_4 = (-(v[1] * v[2])).mul_add(n(0.6), upper_acceleration_2);
+    let lower_acceleration = (-lower_joint_26)
+        .mul_add(lower_angular_velocity_3, lower_joint_27 * lower_angular_velocity_2);
+    let lower_acceleration_2 = (-lower_joint_27)
+        .mul_add(lower_angular_velocity, lower_joint_25 * lower_angular_velocity_3);
+    let lower_acceleration_3 = (-(v[0] * v[2])).mul_add(n(0.6), q[6] * n(9.81));
+    let lower_acceleration_4 = (-(v[1] * v[2])).mul_add(n(0.6), q[7] * n(9.81));
     let lower_acceleration_5 = (v[1].mul_add(v[1], v[0] * v[0]))
-        .mul_add(n(0.6), upper_acceleration_3);
+        .mul_add(n(0.6), q[8] * n(9.81));
     // upper: force (9 additions, 15 multiplications)
     let upper_force = v[2].mul_add(n(0.06), v[0] * n(0.59));
     let upper_force_2 = v[1] * n(0.62);
     let upper_force_3 = v[2].mul_add(n(0.04000000000000001), v[0] * n(0.06));
-    let upper_force_4 = (-upper_acceleration_3)
+    let upper_force_4 = (-q[8])
         .mul_add(
-            n(0.2),
-            (-upper_acceleration)
-                .mul_add(n(1.2), (-v[0]).mul_add(upper_force_3, v[2] * upper_force)),
+            n(1.9620000000000002),
+            (-q[6])
+                .mul_add(n(11.772), (-v[0]).mul_add(upper_force_3, v[2] * upper_force)),
         );
     // lower: force (8 additions, 17 multiplications)
     let lower_force = lower_rate_x * n(0.0825);
     let lower_force_2 = lower_rate_y * n(0.0825);
     let lower_force_3 = lower_rate_z * n(0.009999999999999995);
-    let lower_force_4 = ((-lower_joint_15)
+    let lower_force_4 = ((-lower_joint_19)
         .mul_add(
             lower_acceleration_5,
-            lower_joint_14
-                .mul_add(lower_acceleration_4, lower_joint_13 * lower_acceleration_3),
+            lower_joint_17
+                .mul_add(lower_acceleration_4, lower_joint_16 * lower_acceleration_3),
         ))
         .mul_add(n(0.25), lower_acceleration * n(0.0825));
-    let lower_force_5 = (-((-lower_joint_11)
+    let lower_force_5 = (-((-lower_joint_12)
         .mul_add(
             lower_acceleration_4,
-            lower_joint_12
+            lower_joint_14
                 .mul_add(lower_acceleration_5, lower_joint_10 * lower_acceleration_3),
         )))
         .mul_add(n(0.25), lower_acceleration_2 * n(0.0825));
@@ -143,10 +145,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_force_8 = (-lower_rate_y)
         .mul_add(
             lower_force,
-            ((-lower_joint_19)
+            ((-lower_joint_25)
                 .mul_add(
                     lower_angular_velocity_2,
-                    lower_joint_20 * lower_angular_velocity,
+                    lower_joint_26 * lower_angular_velocity,
                 ))
                 .mul_add(n(0.009999999999999995), lower_rate_x * lower_force_2),
         );
@@ -157,155 +159,155 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_force_11 = (lower_rate_y
         .mul_add(lower_rate_y, lower_rate_x * lower_rate_x)) * n(0.25);
     // lower: effort (12 additions, 17 multiplications)
-    let lower_effort = lower_joint_16
+    let lower_effort = lower_joint_21
         .mul_add(
             lower_force_8,
-            lower_joint_13.mul_add(lower_force_7, lower_joint_10 * lower_force_6),
+            lower_joint_16.mul_add(lower_force_7, lower_joint_10 * lower_force_6),
         );
-    let lower_effort_2 = (-lower_joint_14)
+    let lower_effort_2 = (-lower_joint_17)
         .mul_add(
             lower_force_7,
-            lower_joint_17.mul_add(lower_force_8, lower_joint_11 * lower_force_6),
+            lower_joint_23.mul_add(lower_force_8, lower_joint_12 * lower_force_6),
         );
-    let lower_effort_3 = (-lower_joint_18)
+    let lower_effort_3 = (-lower_joint_24)
         .mul_add(
             lower_force_8,
-            (-lower_joint_15).mul_add(lower_force_7, lower_joint_12 * lower_force_6),
+            (-lower_joint_19).mul_add(lower_force_7, lower_joint_14 * lower_force_6),
         );
-    let lower_effort_4 = ((-lower_joint_17)
+    let lower_effort_4 = ((-lower_joint_23)
         .mul_add(
             lower_force_11,
-            lower_joint_14.mul_add(lower_force_10, lower_joint_11 * lower_force_9),
+            lower_joint_17.mul_add(lower_force_10, lower_joint_12 * lower_force_9),
         ))
         .mul_add(n(0.6), lower_effort);
-    let lower_effort_5 = (-((-lower_joint_16)
+    let lower_effort_5 = (-((-lower_joint_21)
         .mul_add(
             lower_force_11,
-            (-lower_joint_13).mul_add(lower_force_10, lower_joint_10 * lower_force_9),
+            (-lower_joint_16).mul_add(lower_force_10, lower_joint_10 * lower_force_9),
         )))
         .mul_add(n(0.6), lower_effort_2);
-    // lower: composite inertia (34 additions, 66 multiplications)
+    // lower: composite inertia (34 additions, 63 multiplications)
     let lower_composite_inertia = lower_joint_10 * n(0.0825);
-    let lower_composite_inertia_2 = lower_joint_13 * n(0.0825);
-    let lower_composite_inertia_3 = lower_joint_16 * n(0.009999999999999995);
-    let lower_composite_inertia_4 = lower_joint_13 * n(0.25);
+    let lower_composite_inertia_2 = lower_joint_15 * n(0.165);
+    let lower_composite_inertia_3 = lower_joint_20 * n(0.01999999999999999);
+    let lower_composite_inertia_4 = lower_joint_15 * n(0.5);
     let lower_composite_inertia_5 = lower_joint_10 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_16
+    let lower_composite_inertia_6 = lower_joint_21
         .mul_add(
             lower_composite_inertia_3,
-            lower_joint_13
+            lower_joint_16
                 .mul_add(
                     lower_composite_inertia_2,
                     lower_joint_10 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_7 = (-lower_joint_14)
+    let lower_composite_inertia_7 = (-lower_joint_17)
         .mul_add(
             lower_composite_inertia_2,
-            lower_joint_17
+            lower_joint_23
                 .mul_add(
                     lower_composite_inertia_3,
-                    lower_joint_11 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_18)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_15)
-                .mul_add(
-                    lower_composite_inertia_2,
                     lower_joint_12 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_9 = lower_joint_11 * n(0.0825);
-    let lower_composite_inertia_10 = lower_joint_14 * n(0.0825);
-    let lower_composite_inertia_11 = lower_joint_17 * n(0.009999999999999995);
-    let lower_composite_inertia_12 = lower_joint_14 * n(0.25);
-    let lower_composite_inertia_13 = lower_joint_11 * n(0.25);
-    let lower_composite_inertia_14 = lower_joint_17
+    let lower_composite_inertia_8 = (-lower_joint_24)
         .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_14
+            lower_composite_inertia_3,
+            (-lower_joint_19)
                 .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_11 * lower_composite_inertia_9,
+                    lower_composite_inertia_2,
+                    lower_joint_14 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_18)
+    let lower_composite_inertia_9 = lower_joint_11 * n(0.165);
+    let lower_composite_inertia_10 = lower_joint_17 * n(0.0825);
+    let lower_composite_inertia_11 = lower_joint_22 * n(0.01999999999999999);
+    let lower_composite_inertia_12 = lower_joint_17 * n(0.25);
+    let lower_composite_inertia_13 = lower_joint_11 * n(0.5);
+    let lower_composite_inertia_14 = lower_joint_23
         .mul_add(
             lower_composite_inertia_11,
-            lower_joint_15
+            lower_joint_17
                 .mul_add(
                     lower_composite_inertia_10,
                     lower_joint_12 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = (-((-lower_joint_14)
+    let lower_composite_inertia_15 = (-lower_joint_24)
+        .mul_add(
+            lower_composite_inertia_11,
+            lower_joint_19
+                .mul_add(
+                    lower_composite_inertia_10,
+                    lower_joint_14 * lower_composite_inertia_9,
+                ),
+        );
+    let lower_composite_inertia_16 = (-((-lower_joint_17)
         .mul_add(
             lower_composite_inertia_13,
-            lower_joint_11 * lower_composite_inertia_12,
+            lower_joint_12 * lower_composite_inertia_12,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_13)
+            (-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_16
+                    lower_joint_21
                         .mul_add(
                             lower_composite_inertia_11,
                             lower_joint_10 * lower_composite_inertia_9,
                         ),
                 ),
         );
-    let lower_composite_inertia_17 = lower_joint_12 * n(0.0825);
-    let lower_composite_inertia_18 = lower_joint_15 * n(0.0825);
-    let lower_composite_inertia_19 = lower_joint_18 * n(0.009999999999999995);
-    let lower_composite_inertia_20 = lower_joint_15 * n(0.25);
-    let lower_composite_inertia_21 = lower_joint_12 * n(0.25);
-    let lower_composite_inertia_22 = lower_joint_18
+    let lower_composite_inertia_17 = lower_joint_13 * n(0.165);
+    let lower_composite_inertia_18 = lower_joint_18 * n(0.165);
+    let lower_composite_inertia_19 = lower_joint_24 * n(0.009999999999999995);
+    let lower_composite_inertia_20 = lower_joint_18 * n(0.5);
+    let lower_composite_inertia_21 = lower_joint_13 * n(0.5);
+    let lower_composite_inertia_22 = lower_joint_24
         .mul_add(
             lower_composite_inertia_19,
-            lower_joint_15
+            lower_joint_19
                 .mul_add(
                     lower_composite_inertia_18,
-                    lower_joint_12 * lower_composite_inertia_17,
+                    lower_joint_14 * lower_composite_inertia_17,
                 ),
         );
-    let lower_composite_inertia_23 = (-((-lower_joint_14)
+    let lower_composite_inertia_23 = (-((-lower_joint_17)
         .mul_add(
             lower_composite_inertia_21,
-            lower_joint_11 * lower_composite_inertia_20,
+            lower_joint_12 * lower_composite_inertia_20,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_16)
+            (-lower_joint_21)
                 .mul_add(
                     lower_composite_inertia_19,
-                    (-lower_joint_13)
+                    (-lower_joint_16)
                         .mul_add(
                             lower_composite_inertia_18,
                             lower_joint_10 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_17)
+    let lower_composite_inertia_24 = (-lower_joint_23)
         .mul_add(
             lower_composite_inertia_19,
-            (lower_joint_13
+            (lower_joint_16
                 .mul_add(
                     lower_composite_inertia_21,
                     lower_joint_10 * lower_composite_inertia_20,
                 ))
                 .mul_add(
                     n(0.6),
-                    lower_joint_14
+                    lower_joint_17
                         .mul_add(
                             lower_composite_inertia_18,
-                            lower_joint_11 * lower_composite_inertia_17,
+                            lower_joint_12 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_25 = (lower_joint_18 * n(0.25)) * n(1.2);
+    let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
@@ -397,9 +399,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-v[2])
                 .mul_add(
                     upper_force_2,
-                    upper_acceleration_2
+                    q[7]
                         .mul_add(
-                            n(1.2),
+                            n(11.772),
                             v[1]
                                 .mul_add(
                                     upper_force_3,
@@ -411,9 +413,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let upper_effort_2 = (-v[1])
         .mul_add(
             upper_force,
-            upper_acceleration_2
+            q[7]
                 .mul_add(
-                    n(0.2),
+                    n(1.9620000000000002),
                     v[0]
                         .mul_add(
                             upper_force_2,
@@ -429,12 +431,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_spring_5 = q[9] * q[9];
     let lower_spring_6 = (lower_joint_7 + lower_spring_5).mul_add(n(2.0), -n(1.0));
     let lower_spring_7 = (lower_joint + lower_spring_5).mul_add(n(2.0), -n(1.0));
-    let lower_spring_8 = lower_joint_13
-        .mul_add(lower_spring[2], lower_joint_16 * lower_spring[1]);
-    let lower_spring_9 = (-lower_joint_16)
+    let lower_spring_8 = lower_joint_16
+        .mul_add(lower_spring[2], lower_joint_21 * lower_spring[1]);
+    let lower_spring_9 = (-lower_joint_21)
         .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
     let lower_spring_10 = lower_spring[1]
-        .mul_add(lower_spring_6, lower_joint_13 * lower_spring[0]);
+        .mul_add(lower_spring_6, lower_joint_16 * lower_spring[0]);
     let lower_spring_11 = (lower_spring[2]
         .mul_add(
             lower_spring[2],
@@ -449,7 +451,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_spring_13 = (-lower_spring_11)
         .mul_add(
             lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
-            (-lower_spring_9).mul_add(n(0.5), lower_joint_13),
+            (-lower_spring_9).mul_add(n(0.5), lower_joint_16),
         );
     let lower_spring_14 = (-lower_spring_10)
         .mul_add(
@@ -458,14 +460,14 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 .mul_add(
                     (-lower_spring[1])
                         .mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
-                    lower_joint_16,
+                    lower_joint_21,
                 ),
         );
     let lower_spring_15 = lower_spring[2]
-        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[1]);
-    let lower_spring_16 = lower_joint_17
-        .mul_add(lower_spring[0], lower_joint_11 * lower_spring[2]);
-    let lower_spring_17 = (-lower_joint_11)
+        .mul_add(lower_spring_7, lower_joint_23 * lower_spring[1]);
+    let lower_spring_16 = lower_joint_23
+        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
+    let lower_spring_17 = (-lower_joint_12)
         .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
     let lower_spring_18 = (-lower_spring_15)
         .mul_add(
@@ -474,7 +476,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 .mul_add(
                     (-lower_spring[2])
                         .mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
-                    lower_joint_11,
+                    lower_joint_12,
                 ),
         );
     let lower_spring_19 = (-lower_spring_11)
@@ -485,23 +487,23 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_spring_20 = (-lower_spring_11)
         .mul_add(
             lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
-            (-lower_spring_17).mul_add(n(0.5), lower_joint_17),
+            (-lower_spring_17).mul_add(n(0.5), lower_joint_23),
         );
-    let lower_spring_21 = lower_joint_15
-        .mul_add(lower_spring[2], lower_joint_18 * lower_spring[1]);
-    let lower_spring_22 = (-lower_joint_18)
-        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
-    let lower_spring_23 = lower_joint_12
-        .mul_add(lower_spring[1], lower_joint_15 * lower_spring[0]);
+    let lower_spring_21 = lower_joint_19
+        .mul_add(lower_spring[2], lower_joint_24 * lower_spring[1]);
+    let lower_spring_22 = (-lower_joint_24)
+        .mul_add(lower_spring[0], lower_joint_14 * lower_spring[2]);
+    let lower_spring_23 = lower_joint_14
+        .mul_add(lower_spring[1], lower_joint_19 * lower_spring[0]);
     let lower_spring_24 = (-lower_spring_11)
         .mul_add(
             lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
-            lower_spring_21.mul_add(n(0.5), lower_joint_12),
+            lower_spring_21.mul_add(n(0.5), lower_joint_14),
         );
     let lower_spring_25 = (-lower_spring_11)
         .mul_add(
             lower_spring[0].mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
-            (-lower_spring_22).mul_add(n(0.5), lower_joint_15),
+            (-lower_spring_22).mul_add(n(0.5), lower_joint_19),
         );
     let lower_spring_26 = (-lower_spring_23)
         .mul_add(
@@ -510,7 +512,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 .mul_add(
                     (-lower_spring[1])
                         .mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
-                    lower_joint_18,
+                    lower_joint_24,
                 ),
         );
     // lower: effort (9 additions, 3 multiplications)
@@ -564,7 +566,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (lower_joint_13
+            (lower_joint_16
                 .mul_add(
                     lower_composite_inertia_13,
                     lower_joint_10 * lower_composite_inertia_12,
@@ -579,7 +581,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_9 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_8,
-            (-((-lower_joint_13)
+            (-((-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_5,
                     lower_joint_10 * lower_composite_inertia_4,
@@ -589,10 +591,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_10 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_8,
-            (lower_joint_14
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_11 * lower_composite_inertia_4,
+                    lower_joint_12 * lower_composite_inertia_4,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
@@ -626,39 +628,29 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-lower_effort_9).mul_add(lower_factor_8, lower_effort + lower_effort_6),
         );
     let lower_factor_21 = lower_factor_4 * lower_factor_15;
-    let lower_factor_22 = (-lower_factor_5)
-        .mul_add(
-            lower_factor_21,
-            (-lower_composite_inertia_24)
-                .mul_add(
-                    lower_factor_11,
-                    (-(lower_joint_17 * n(0.25)))
-                        .mul_add(n(0.6), lower_composite_inertia_15),
-                ),
-        );
-    let lower_factor_23 = (-lower_factor_6)
+    let lower_factor_22 = (-lower_factor_6)
         .mul_add(
             lower_factor_21,
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_11,
-                    (-(lower_joint_16 * n(0.25)))
-                        .mul_add(n(0.6), lower_composite_inertia_8 + n(0.06)),
+                    (-lower_joint_20)
+                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
-    let lower_factor_24 = lower_factor_5 * lower_factor_15;
-    let lower_factor_25 = lower_factor_6 * lower_factor_15;
-    let lower_factor_26 = n(1.0)
+    let lower_factor_23 = lower_factor_5 * lower_factor_15;
+    let lower_factor_24 = lower_factor_6 * lower_factor_15;
+    let lower_factor_25 = n(1.0)
         / ((-lower_factor_3)
             .mul_add(
                 lower_factor_16,
                 (-lower_composite_inertia_8)
                     .mul_add(lower_factor_8, lower_composite_inertia_6),
             ));
-    let lower_factor_27 = lower_factor_17 * lower_factor_26;
-    let lower_factor_28 = (-lower_factor_17)
+    let lower_factor_26 = lower_factor_17 * lower_factor_25;
+    let lower_factor_27 = (-lower_factor_17)
         .mul_add(
-            lower_factor_27,
+            lower_factor_26,
             (-lower_factor_4)
                 .mul_add(
                     lower_factor_21,
@@ -669,24 +661,36 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                         ),
                 ),
         );
-    let lower_factor_29 = (-lower_factor_18).mul_add(lower_factor_27, lower_factor_22);
-    let lower_factor_30 = (-lower_factor_19).mul_add(lower_factor_27, lower_factor_23);
-    let lower_factor_31 = (-lower_factor_20)
+    let lower_factor_28 = (-lower_factor_18)
         .mul_add(
-            lower_factor_27,
+            lower_factor_26,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_21,
+                    (-lower_composite_inertia_24)
+                        .mul_add(
+                            lower_factor_11,
+                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                        ),
+                ),
+        );
+    let lower_factor_29 = (-lower_factor_19).mul_add(lower_factor_26, lower_factor_22);
+    let lower_factor_30 = (-lower_factor_20)
+        .mul_add(
+            lower_factor_26,
             (-lower_factor_7)
                 .mul_add(
                     lower_factor_21,
                     (-lower_effort_9).mul_add(lower_factor_11, upper_effort_2),
                 ),
         );
-    let lower_factor_32 = lower_factor_18 * lower_factor_26;
-    let lower_factor_33 = (-lower_factor_18)
+    let lower_factor_31 = lower_factor_18 * lower_factor_25;
+    let lower_factor_32 = (-lower_factor_18)
         .mul_add(
-            lower_factor_32,
+            lower_factor_31,
             (-lower_factor_5)
                 .mul_add(
-                    lower_factor_24,
+                    lower_factor_23,
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_12,
@@ -695,13 +699,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                         ),
                 ),
         );
-    let lower_factor_34 = lower_factor_19 * lower_factor_26;
-    let lower_factor_35 = (-lower_factor_19)
+    let lower_factor_33 = lower_factor_19 * lower_factor_25;
+    let lower_factor_34 = (-lower_factor_19)
         .mul_add(
-            lower_factor_34,
+            lower_factor_33,
             (-lower_factor_6)
                 .mul_add(
-                    lower_factor_25,
+                    lower_factor_24,
                     (-lower_composite_inertia_23)
                         .mul_add(
                             lower_factor_14,
@@ -711,84 +715,84 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ),
         );
     // upper: factor (7 additions, 10 multiplications, 3 divisions)
-    let upper_factor = n(1.0) / lower_factor_28;
-    let upper_factor_2 = lower_factor_29 * upper_factor;
-    let upper_factor_3 = (-lower_factor_30)
+    let upper_factor = n(1.0) / lower_factor_27;
+    let upper_factor_2 = lower_factor_28 * upper_factor;
+    let upper_factor_3 = (-lower_factor_29)
         .mul_add(
             upper_factor_2,
             (-lower_factor_19)
                 .mul_add(
-                    lower_factor_32,
+                    lower_factor_31,
                     (-lower_factor_6)
                         .mul_add(
-                            lower_factor_24,
+                            lower_factor_23,
                             (-lower_composite_inertia_23)
                                 .mul_add(lower_factor_12, lower_composite_inertia_7),
                         ),
                 ),
         );
-    let upper_factor_4 = lower_factor_31
+    let upper_factor_4 = lower_factor_30
         .mul_add(
             upper_factor_2,
             lower_factor_20
                 .mul_add(
-                    lower_factor_32,
-                    lower_factor_7.mul_add(lower_factor_24, lower_factor_13),
+                    lower_factor_31,
+                    lower_factor_7.mul_add(lower_factor_23, lower_factor_13),
                 ),
         );
-    let upper_factor_5 = lower_factor_30 * upper_factor;
-    let upper_factor_6 = (-lower_factor_31)
+    let upper_factor_5 = lower_factor_29 * upper_factor;
+    let upper_factor_6 = (-lower_factor_30)
         .mul_add(
             upper_factor_5,
             (-lower_factor_20)
                 .mul_add(
-                    lower_factor_34,
+                    lower_factor_33,
                     (-lower_factor_7)
                         .mul_add(
-                            lower_factor_25,
+                            lower_factor_24,
                             (-lower_effort_9).mul_add(lower_factor_14, upper_effort),
                         ),
                 ),
         );
     let upper_factor_7 = n(1.0)
-        / ((-lower_factor_29).mul_add(upper_factor_2, lower_factor_33));
+        / ((-lower_factor_28).mul_add(upper_factor_2, lower_factor_32));
     let upper_factor_8 = upper_factor_3 * upper_factor_7;
     // upper: acceleration (3 additions, 6 multiplications)
-    let upper_acceleration_4 = (upper_factor_4.mul_add(upper_factor_8, upper_factor_6))
+    let upper_acceleration = (upper_factor_4.mul_add(upper_factor_8, upper_factor_6))
         * (n(1.0)
             / ((-upper_factor_3)
                 .mul_add(
                     upper_factor_8,
-                    (-lower_factor_30).mul_add(upper_factor_5, lower_factor_35),
+                    (-lower_factor_29).mul_add(upper_factor_5, lower_factor_34),
                 )));
-    let upper_acceleration_5 = upper_factor_7
-        * (upper_factor_3.mul_add(upper_acceleration_4, upper_factor_4));
-    let upper_acceleration_6 = upper_factor
-        * ((-lower_factor_30)
+    let upper_acceleration_2 = upper_factor_7
+        * (upper_factor_3.mul_add(upper_acceleration, upper_factor_4));
+    let upper_acceleration_3 = upper_factor
+        * ((-lower_factor_29)
             .mul_add(
-                upper_acceleration_4,
-                lower_factor_29.mul_add(upper_acceleration_5, lower_factor_31),
+                upper_acceleration,
+                lower_factor_28.mul_add(upper_acceleration_2, lower_factor_30),
             ));
     // lower: acceleration (12 additions, 15 multiplications)
-    let lower_acceleration_6 = lower_factor_26
+    let lower_acceleration_6 = lower_factor_25
         * ((-lower_factor_19)
             .mul_add(
-                upper_acceleration_4,
+                upper_acceleration,
                 (-lower_factor_17)
                     .mul_add(
-                        upper_acceleration_6,
-                        lower_factor_18.mul_add(upper_acceleration_5, lower_factor_20),
+                        upper_acceleration_3,
+                        lower_factor_18.mul_add(upper_acceleration_2, lower_factor_20),
                     ),
             ));
     let lower_acceleration_7 = (-lower_factor_5)
         .mul_add(
-            upper_acceleration_5,
+            upper_acceleration_2,
             lower_factor_6
                 .mul_add(
-                    upper_acceleration_4,
+                    upper_acceleration,
                     lower_factor_4
                         .mul_add(
-                            upper_acceleration_6,
+                            upper_acceleration_3,
                             lower_factor_3 * lower_acceleration_6,
                         ),
                 ),
@@ -796,10 +800,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_acceleration_8 = lower_factor_15 * (lower_factor_7 - lower_acceleration_7);
     let lower_acceleration_9 = (-lower_composite_inertia_24)
         .mul_add(
-            upper_acceleration_5,
+            upper_acceleration_2,
             lower_composite_inertia_22
                 .mul_add(
-                    upper_acceleration_6,
+                    upper_acceleration_3,
                     lower_composite_inertia_8
                         .mul_add(
                             lower_acceleration_6,
@@ -808,20 +812,20 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ),
         );
     [
-        -upper_acceleration_4,
-        -upper_acceleration_5,
-        -upper_acceleration_6,
+        -upper_acceleration,
+        -upper_acceleration_2,
+        -upper_acceleration_3,
         -lower_acceleration_6,
         lower_acceleration_8,
         -(lower_factor
             * ((-lower_composite_inertia_23)
-                .mul_add(upper_acceleration_4, lower_effort_9 - lower_acceleration_9))),
+                .mul_add(upper_acceleration, lower_effort_9 - lower_acceleration_9))),
     ]
 }
 
 /// v̄ and p̄̇ from Q, p̄ and τ, (27), (35).
 ///
-/// Operations: 300 additions, 422 multiplications, 6 divisions, 4 function calls.
+/// Operations: 300 additions, 419 multiplications, 6 divisions, 4 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 6]; 2] {
@@ -837,136 +841,142 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
     let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = (lower_joint_3 + lower_joint_4) * n(2.0);
-    let lower_joint_12 = (lower_joint_5 - lower_joint_6) * n(2.0);
-    let lower_joint_13 = (lower_joint_3 - lower_joint_4) * n(2.0);
-    let lower_joint_14 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_15 = (lower_joint_8 + lower_joint_9) * n(2.0);
-    let lower_joint_16 = (lower_joint_5 + lower_joint_6) * n(2.0);
-    let lower_joint_17 = (lower_joint_8 - lower_joint_9) * n(2.0);
-    let lower_joint_18 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    // lower: composite inertia (34 additions, 66 multiplications)
+    let lower_joint_11 = lower_joint_3 + lower_joint_4;
+    let lower_joint_12 = lower_joint_11 * n(2.0);
+    let lower_joint_13 = lower_joint_5 - lower_joint_6;
+    let lower_joint_14 = lower_joint_13 * n(2.0);
+    let lower_joint_15 = lower_joint_3 - lower_joint_4;
+    let lower_joint_16 = lower_joint_15 * n(2.0);
+    let lower_joint_17 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_18 = lower_joint_8 + lower_joint_9;
+    let lower_joint_19 = lower_joint_18 * n(2.0);
+    let lower_joint_20 = lower_joint_5 + lower_joint_6;
+    let lower_joint_21 = lower_joint_20 * n(2.0);
+    let lower_joint_22 = lower_joint_8 - lower_joint_9;
+    let lower_joint_23 = lower_joint_22 * n(2.0);
+    let lower_joint_24 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    // lower: composite inertia (34 additions, 63 multiplications)
     let lower_composite_inertia = lower_joint_10 * n(0.0825);
-    let lower_composite_inertia_2 = lower_joint_13 * n(0.0825);
-    let lower_composite_inertia_3 = lower_joint_16 * n(0.009999999999999995);
-    let lower_composite_inertia_4 = lower_joint_13 * n(0.25);
+    let lower_composite_inertia_2 = lower_joint_15 * n(0.165);
+    let lower_composite_inertia_3 = lower_joint_20 * n(0.01999999999999999);
+    let lower_composite_inertia_4 = lower_joint_15 * n(0.5);
     let lower_composite_inertia_5 = lower_joint_10 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_16
+    let lower_composite_inertia_6 = lower_joint_21
         .mul_add(
             lower_composite_inertia_3,
-            lower_joint_13
+            lower_joint_16
                 .mul_add(
                     lower_composite_inertia_2,
                     lower_joint_10 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_7 = (-lower_joint_14)
+    let lower_composite_inertia_7 = (-lower_joint_17)
         .mul_add(
             lower_composite_inertia_2,
-            lower_joint_17
+            lower_joint_23
                 .mul_add(
                     lower_composite_inertia_3,
-                    lower_joint_11 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_18)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_15)
-                .mul_add(
-                    lower_composite_inertia_2,
                     lower_joint_12 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_9 = lower_joint_11 * n(0.0825);
-    let lower_composite_inertia_10 = lower_joint_14 * n(0.0825);
-    let lower_composite_inertia_11 = lower_joint_17 * n(0.009999999999999995);
-    let lower_composite_inertia_12 = lower_joint_14 * n(0.25);
-    let lower_composite_inertia_13 = lower_joint_11 * n(0.25);
-    let lower_composite_inertia_14 = lower_joint_17
+    let lower_composite_inertia_8 = (-lower_joint_24)
         .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_14
+            lower_composite_inertia_3,
+            (-lower_joint_19)
                 .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_11 * lower_composite_inertia_9,
+                    lower_composite_inertia_2,
+                    lower_joint_14 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_18)
+    let lower_composite_inertia_9 = lower_joint_11 * n(0.165);
+    let lower_composite_inertia_10 = lower_joint_17 * n(0.0825);
+    let lower_composite_inertia_11 = lower_joint_22 * n(0.01999999999999999);
+    let lower_composite_inertia_12 = lower_joint_17 * n(0.25);
+    let lower_composite_inertia_13 = lower_joint_11 * n(0.5);
+    let lower_composite_inertia_14 = lower_joint_23
         .mul_add(
             lower_composite_inertia_11,
-            lower_joint_15
+            lower_joint_17
                 .mul_add(
                     lower_composite_inertia_10,
                     lower_joint_12 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = (-((-lower_joint_14)
+    let lower_composite_inertia_15 = (-lower_joint_24)
+        .mul_add(
+            lower_composite_inertia_11,
+            lower_joint_19
+                .mul_add(
+                    lower_composite_inertia_10,
+                    lower_joint_14 * lower_composite_inertia_9,
+                ),
+        );
+    let lower_composite_inertia_16 = (-((-lower_joint_17)
         .mul_add(
             lower_composite_inertia_13,
-            lower_joint_11 * lower_composite_inertia_12,
+            lower_joint_12 * lower_composite_inertia_12,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_13)
+            (-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_16
+                    lower_joint_21
                         .mul_add(
                             lower_composite_inertia_11,
                             lower_joint_10 * lower_composite_inertia_9,
                         ),
                 ),
         );
-    let lower_composite_inertia_17 = lower_joint_12 * n(0.0825);
-    let lower_composite_inertia_18 = lower_joint_15 * n(0.0825);
-    let lower_composite_inertia_19 = lower_joint_18 * n(0.009999999999999995);
-    let lower_composite_inertia_20 = lower_joint_15 * n(0.25);
-    let lower_composite_inertia_21 = lower_joint_12 * n(0.25);
-    let lower_composite_inertia_22 = lower_joint_18
+    let lower_composite_inertia_17 = lower_joint_13 * n(0.165);
+    let lower_composite_inertia_18 = lower_joint_18 * n(0.165);
+    let lower_composite_inertia_19 = lower_joint_24 * n(0.009999999999999995);
+    let lower_composite_inertia_20 = lower_joint_18 * n(0.5);
+    let lower_composite_inertia_21 = lower_joint_13 * n(0.5);
+    let lower_composite_inertia_22 = lower_joint_24
         .mul_add(
             lower_composite_inertia_19,
-            lower_joint_15
+            lower_joint_19
                 .mul_add(
                     lower_composite_inertia_18,
-                    lower_joint_12 * lower_composite_inertia_17,
+                    lower_joint_14 * lower_composite_inertia_17,
                 ),
         );
-    let lower_composite_inertia_23 = (-((-lower_joint_14)
+    let lower_composite_inertia_23 = (-((-lower_joint_17)
         .mul_add(
             lower_composite_inertia_21,
-            lower_joint_11 * lower_composite_inertia_20,
+            lower_joint_12 * lower_composite_inertia_20,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_16)
+            (-lower_joint_21)
                 .mul_add(
                     lower_composite_inertia_19,
-                    (-lower_joint_13)
+                    (-lower_joint_16)
                         .mul_add(
                             lower_composite_inertia_18,
                             lower_joint_10 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_17)
+    let lower_composite_inertia_24 = (-lower_joint_23)
         .mul_add(
             lower_composite_inertia_19,
-            (lower_joint_13
+            (lower_joint_16
                 .mul_add(
                     lower_composite_inertia_21,
                     lower_joint_10 * lower_composite_inertia_20,
                 ))
                 .mul_add(
                     n(0.6),
-                    lower_joint_14
+                    lower_joint_17
                         .mul_add(
                             lower_composite_inertia_18,
-                            lower_joint_11 * lower_composite_inertia_17,
+                            lower_joint_12 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_25 = (lower_joint_18 * n(0.25)) * n(1.2);
+    let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
     // lower: factor (43 additions, 55 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
@@ -977,7 +987,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (lower_joint_13
+            (lower_joint_16
                 .mul_add(
                     lower_composite_inertia_13,
                     lower_joint_10 * lower_composite_inertia_12,
@@ -991,7 +1001,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_9 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_8,
-            (-((-lower_joint_13)
+            (-((-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_5,
                     lower_joint_10 * lower_composite_inertia_4,
@@ -1001,10 +1011,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_10 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_8,
-            (lower_joint_14
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_11 * lower_composite_inertia_4,
+                    lower_joint_12 * lower_composite_inertia_4,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
@@ -1026,39 +1036,29 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_19 = (-p[5])
         .mul_add(lower_factor_8, lower_factor_7.mul_add(lower_factor_15, p[3]));
     let lower_factor_20 = lower_factor_4 * lower_factor_14;
-    let lower_factor_21 = (-lower_factor_5)
-        .mul_add(
-            lower_factor_20,
-            (-lower_composite_inertia_24)
-                .mul_add(
-                    lower_factor_11,
-                    (-(lower_joint_17 * n(0.25)))
-                        .mul_add(n(0.6), lower_composite_inertia_15),
-                ),
-        );
-    let lower_factor_22 = (-lower_factor_6)
+    let lower_factor_21 = (-lower_factor_6)
         .mul_add(
             lower_factor_20,
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_11,
-                    (-(lower_joint_16 * n(0.25)))
-                        .mul_add(n(0.6), lower_composite_inertia_8 + n(0.06)),
+                    (-lower_joint_20)
+                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
-    let lower_factor_23 = lower_factor_5 * lower_factor_14;
-    let lower_factor_24 = lower_factor_6 * lower_factor_14;
-    let lower_factor_25 = n(1.0)
+    let lower_factor_22 = lower_factor_5 * lower_factor_14;
+    let lower_factor_23 = lower_factor_6 * lower_factor_14;
+    let lower_factor_24 = n(1.0)
         / ((-lower_factor_3)
             .mul_add(
                 lower_factor_15,
                 (-lower_composite_inertia_8)
                     .mul_add(lower_factor_8, lower_composite_inertia_6),
             ));
-    let lower_factor_26 = lower_factor_16 * lower_factor_25;
-    let lower_factor_27 = (-lower_factor_16)
+    let lower_factor_25 = lower_factor_16 * lower_factor_24;
+    let lower_factor_26 = (-lower_factor_16)
         .mul_add(
-            lower_factor_26,
+            lower_factor_25,
             (-lower_factor_4)
                 .mul_add(
                     lower_factor_20,
@@ -1069,21 +1069,33 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_factor_28 = (-lower_factor_17).mul_add(lower_factor_26, lower_factor_21);
-    let lower_factor_29 = (-lower_factor_18).mul_add(lower_factor_26, lower_factor_22);
-    let lower_factor_30 = (-lower_factor_19)
+    let lower_factor_27 = (-lower_factor_17)
         .mul_add(
-            lower_factor_26,
+            lower_factor_25,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_20,
+                    (-lower_composite_inertia_24)
+                        .mul_add(
+                            lower_factor_11,
+                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                        ),
+                ),
+        );
+    let lower_factor_28 = (-lower_factor_18).mul_add(lower_factor_25, lower_factor_21);
+    let lower_factor_29 = (-lower_factor_19)
+        .mul_add(
+            lower_factor_25,
             (-p[5])
                 .mul_add(lower_factor_11, lower_factor_7.mul_add(lower_factor_20, p[2])),
         );
-    let lower_factor_31 = lower_factor_17 * lower_factor_25;
-    let lower_factor_32 = (-lower_factor_17)
+    let lower_factor_30 = lower_factor_17 * lower_factor_24;
+    let lower_factor_31 = (-lower_factor_17)
         .mul_add(
-            lower_factor_31,
+            lower_factor_30,
             (-lower_factor_5)
                 .mul_add(
-                    lower_factor_23,
+                    lower_factor_22,
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_12,
@@ -1092,13 +1104,13 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_factor_33 = lower_factor_18 * lower_factor_25;
-    let lower_factor_34 = (-lower_factor_18)
+    let lower_factor_32 = lower_factor_18 * lower_factor_24;
+    let lower_factor_33 = (-lower_factor_18)
         .mul_add(
-            lower_factor_33,
+            lower_factor_32,
             (-lower_factor_6)
                 .mul_add(
-                    lower_factor_24,
+                    lower_factor_23,
                     (-lower_composite_inertia_23)
                         .mul_add(
                             lower_factor_13,
@@ -1108,17 +1120,17 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ),
         );
     // upper: factor (7 additions, 10 multiplications, 3 divisions)
-    let upper_factor = n(1.0) / lower_factor_27;
-    let upper_factor_2 = lower_factor_28 * upper_factor;
-    let upper_factor_3 = (-lower_factor_29)
+    let upper_factor = n(1.0) / lower_factor_26;
+    let upper_factor_2 = lower_factor_27 * upper_factor;
+    let upper_factor_3 = (-lower_factor_28)
         .mul_add(
             upper_factor_2,
             (-lower_factor_18)
                 .mul_add(
-                    lower_factor_31,
+                    lower_factor_30,
                     (-lower_factor_6)
                         .mul_add(
-                            lower_factor_23,
+                            lower_factor_22,
                             (-lower_composite_inertia_23)
                                 .mul_add(lower_factor_12, lower_composite_inertia_7),
                         ),
@@ -1126,30 +1138,30 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         );
     let upper_factor_4 = (-lower_factor_7)
         .mul_add(
-            lower_factor_23,
-            lower_factor_30
+            lower_factor_22,
+            lower_factor_29
                 .mul_add(
                     upper_factor_2,
                     lower_factor_19
-                        .mul_add(lower_factor_31, p[5].mul_add(lower_factor_12, p[1])),
+                        .mul_add(lower_factor_30, p[5].mul_add(lower_factor_12, p[1])),
                 ),
         );
-    let upper_factor_5 = lower_factor_29 * upper_factor;
-    let upper_factor_6 = (-lower_factor_30)
+    let upper_factor_5 = lower_factor_28 * upper_factor;
+    let upper_factor_6 = (-lower_factor_29)
         .mul_add(
             upper_factor_5,
             (-lower_factor_19)
                 .mul_add(
-                    lower_factor_33,
+                    lower_factor_32,
                     (-p[5])
                         .mul_add(
                             lower_factor_13,
-                            lower_factor_7.mul_add(lower_factor_24, p[0]),
+                            lower_factor_7.mul_add(lower_factor_23, p[0]),
                         ),
                 ),
         );
     let upper_factor_7 = n(1.0)
-        / ((-lower_factor_28).mul_add(upper_factor_2, lower_factor_32));
+        / ((-lower_factor_27).mul_add(upper_factor_2, lower_factor_31));
     let upper_factor_8 = upper_factor_3 * upper_factor_7;
     // upper: speed (3 additions, 6 multiplications)
     let upper_speed = (upper_factor_4.mul_add(upper_factor_8, upper_factor_6))
@@ -1157,18 +1169,18 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             / ((-upper_factor_3)
                 .mul_add(
                     upper_factor_8,
-                    (-lower_factor_29).mul_add(upper_factor_5, lower_factor_34),
+                    (-lower_factor_28).mul_add(upper_factor_5, lower_factor_33),
                 )));
     let upper_speed_2 = upper_factor_7
         * (upper_factor_3.mul_add(upper_speed, upper_factor_4));
     let upper_speed_3 = upper_factor
-        * ((-lower_factor_29)
+        * ((-lower_factor_28)
             .mul_add(
                 upper_speed,
-                lower_factor_28.mul_add(upper_speed_2, lower_factor_30),
+                lower_factor_27.mul_add(upper_speed_2, lower_factor_29),
             ));
     // lower: speed (12 additions, 15 multiplications)
-    let lower_speed = lower_factor_25
+    let lower_speed = lower_factor_24
         * ((-lower_factor_18)
             .mul_add(
                 upper_speed,
@@ -1206,62 +1218,62 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     // lower: momentum (14 additions, 24 multiplications)
     let lower_momentum = upper_speed_2 * n(0.6);
     let lower_momentum_2 = upper_speed * n(0.6);
-    let lower_momentum_3 = lower_joint_11
+    let lower_momentum_3 = lower_joint_12
         .mul_add(lower_momentum_2, lower_joint_10 * lower_momentum);
-    let lower_momentum_4 = (-lower_joint_14)
-        .mul_add(lower_momentum_2, lower_joint_13 * lower_momentum);
-    let lower_momentum_5 = lower_joint_17
+    let lower_momentum_4 = (-lower_joint_17)
         .mul_add(lower_momentum_2, lower_joint_16 * lower_momentum);
-    let lower_momentum_6 = (-lower_joint_11)
+    let lower_momentum_5 = lower_joint_23
+        .mul_add(lower_momentum_2, lower_joint_21 * lower_momentum);
+    let lower_momentum_6 = (-lower_joint_12)
         .mul_add(
             upper_speed_2,
-            (-lower_joint_11)
+            (-lower_joint_12)
                 .mul_add(
                     lower_speed_3,
-                    lower_joint_12
+                    lower_joint_14
                         .mul_add(
                             upper_speed_3,
                             lower_joint_10
                                 .mul_add(
                                     upper_speed,
-                                    lower_joint_12
+                                    lower_joint_14
                                         .mul_add(lower_speed_5, lower_joint_10 * lower_speed),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_7 = (-lower_joint_15)
+    let lower_momentum_7 = (-lower_joint_19)
         .mul_add(
             upper_speed_3,
-            (-lower_joint_15)
+            (-lower_joint_19)
                 .mul_add(
                     lower_speed_5,
-                    lower_joint_14
+                    lower_joint_17
                         .mul_add(
                             upper_speed_2,
-                            lower_joint_13
+                            lower_joint_16
                                 .mul_add(
                                     upper_speed,
-                                    lower_joint_14
-                                        .mul_add(lower_speed_3, lower_joint_13 * lower_speed),
+                                    lower_joint_17
+                                        .mul_add(lower_speed_3, lower_joint_16 * lower_speed),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_8 = (-lower_joint_18)
+    let lower_momentum_8 = (-lower_joint_24)
         .mul_add(
             upper_speed_3,
-            (-lower_joint_17)
+            (-lower_joint_23)
                 .mul_add(
                     upper_speed_2,
-                    (-lower_joint_18)
+                    (-lower_joint_24)
                         .mul_add(
                             lower_speed_5,
-                            (-lower_joint_17)
+                            (-lower_joint_23)
                                 .mul_add(
                                     lower_speed_3,
-                                    lower_joint_16
-                                        .mul_add(upper_speed, lower_joint_16 * lower_speed),
+                                    lower_joint_21
+                                        .mul_add(upper_speed, lower_joint_21 * lower_speed),
                                 ),
                         ),
                 ),
@@ -1278,15 +1290,15 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let upper_weight_2 = q[7] * n(9.81);
     let upper_weight_3 = q[8] * n(9.81);
     // lower: weight (4 additions, 8 multiplications)
-    let lower_weight = ((-lower_joint_15)
+    let lower_weight = ((-lower_joint_19)
         .mul_add(
             upper_weight_3,
-            lower_joint_14.mul_add(upper_weight_2, lower_joint_13 * upper_weight),
+            lower_joint_17.mul_add(upper_weight_2, lower_joint_16 * upper_weight),
         )) * n(0.25);
-    let lower_weight_2 = ((-lower_joint_11)
+    let lower_weight_2 = ((-lower_joint_12)
         .mul_add(
             upper_weight_2,
-            lower_joint_12.mul_add(upper_weight_3, lower_joint_10 * upper_weight),
+            lower_joint_14.mul_add(upper_weight_3, lower_joint_10 * upper_weight),
         )) * n(0.25);
     // lower: spring (48 additions, 72 multiplications, 2 function calls)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
@@ -1296,12 +1308,12 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_spring_5 = q[9] * q[9];
     let lower_spring_6 = (lower_joint_7 + lower_spring_5).mul_add(n(2.0), -n(1.0));
     let lower_spring_7 = (lower_joint + lower_spring_5).mul_add(n(2.0), -n(1.0));
-    let lower_spring_8 = lower_joint_13
-        .mul_add(lower_spring[2], lower_joint_16 * lower_spring[1]);
-    let lower_spring_9 = (-lower_joint_16)
+    let lower_spring_8 = lower_joint_16
+        .mul_add(lower_spring[2], lower_joint_21 * lower_spring[1]);
+    let lower_spring_9 = (-lower_joint_21)
         .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
     let lower_spring_10 = lower_spring[1]
-        .mul_add(lower_spring_6, lower_joint_13 * lower_spring[0]);
+        .mul_add(lower_spring_6, lower_joint_16 * lower_spring[0]);
     let lower_spring_11 = (lower_spring[2]
         .mul_add(
             lower_spring[2],
@@ -1316,7 +1328,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_spring_13 = (-lower_spring_11)
         .mul_add(
             lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
-            (-lower_spring_9).mul_add(n(0.5), lower_joint_13),
+            (-lower_spring_9).mul_add(n(0.5), lower_joint_16),
         );
     let lower_spring_14 = (-lower_spring_10)
         .mul_add(
@@ -1325,14 +1337,14 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 .mul_add(
                     (-lower_spring[1])
                         .mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
-                    lower_joint_16,
+                    lower_joint_21,
                 ),
         );
     let lower_spring_15 = lower_spring[2]
-        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[1]);
-    let lower_spring_16 = lower_joint_17
-        .mul_add(lower_spring[0], lower_joint_11 * lower_spring[2]);
-    let lower_spring_17 = (-lower_joint_11)
+        .mul_add(lower_spring_7, lower_joint_23 * lower_spring[1]);
+    let lower_spring_16 = lower_joint_23
+        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
+    let lower_spring_17 = (-lower_joint_12)
         .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
     let lower_spring_18 = (-lower_spring_15)
         .mul_add(
@@ -1341,7 +1353,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 .mul_add(
                     (-lower_spring[2])
                         .mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
-                    lower_joint_11,
+                    lower_joint_12,
                 ),
         );
     let lower_spring_19 = (-lower_spring_11)
@@ -1352,23 +1364,23 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_spring_20 = (-lower_spring_11)
         .mul_add(
             lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
-            (-lower_spring_17).mul_add(n(0.5), lower_joint_17),
+            (-lower_spring_17).mul_add(n(0.5), lower_joint_23),
         );
-    let lower_spring_21 = lower_joint_15
-        .mul_add(lower_spring[2], lower_joint_18 * lower_spring[1]);
-    let lower_spring_22 = (-lower_joint_18)
-        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
-    let lower_spring_23 = lower_joint_12
-        .mul_add(lower_spring[1], lower_joint_15 * lower_spring[0]);
+    let lower_spring_21 = lower_joint_19
+        .mul_add(lower_spring[2], lower_joint_24 * lower_spring[1]);
+    let lower_spring_22 = (-lower_joint_24)
+        .mul_add(lower_spring[0], lower_joint_14 * lower_spring[2]);
+    let lower_spring_23 = lower_joint_14
+        .mul_add(lower_spring[1], lower_joint_19 * lower_spring[0]);
     let lower_spring_24 = (-lower_spring_11)
         .mul_add(
             lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
-            lower_spring_21.mul_add(n(0.5), lower_joint_12),
+            lower_spring_21.mul_add(n(0.5), lower_joint_14),
         );
     let lower_spring_25 = (-lower_spring_11)
         .mul_add(
             lower_spring[0].mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
-            (-lower_spring_22).mul_add(n(0.5), lower_joint_15),
+            (-lower_spring_22).mul_add(n(0.5), lower_joint_19),
         );
     let lower_spring_26 = (-lower_spring_23)
         .mul_add(
@@ -1377,7 +1389,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 .mul_add(
                     (-lower_spring[1])
                         .mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
-                    lower_joint_18,
+                    lower_joint_24,
                 ),
         );
     // lower: effort (6 additions, 3 multiplications)
@@ -1473,7 +1485,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             q[10].mul_add(lower_momentum_rate_6, q[9] * lower_momentum_rate_5),
         )))
         .mul_add(n(2.0), lower_momentum_10);
-    let lower_momentum_rate_10 = (-lower_joint_16)
+    let lower_momentum_rate_10 = (-lower_joint_21)
         .mul_add(
             lower_momentum_rate,
             (-lower_joint_10)
@@ -1482,7 +1494,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     (-lower_speed_5)
                         .mul_add(
                             lower_momentum_rate_8,
-                            lower_joint_13
+                            lower_joint_16
                                 .mul_add(
                                     lower_momentum_rate_3,
                                     lower_speed_3.mul_add(lower_momentum_rate_7, -lower_effort),
@@ -1490,13 +1502,13 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_momentum_rate_11 = (-lower_joint_17)
+    let lower_momentum_rate_11 = (-lower_joint_23)
         .mul_add(
             lower_momentum_rate,
-            (-lower_joint_14)
+            (-lower_joint_17)
                 .mul_add(
                     lower_momentum_rate_3,
-                    (-lower_joint_11)
+                    (-lower_joint_12)
                         .mul_add(
                             lower_momentum_rate_2,
                             (-lower_speed_5)
@@ -1507,16 +1519,16 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_momentum_rate_12 = (-lower_joint_18)
+    let lower_momentum_rate_12 = (-lower_joint_24)
         .mul_add(
             lower_momentum_rate,
             (-lower_speed)
                 .mul_add(
                     lower_momentum_rate_8,
-                    lower_joint_15
+                    lower_joint_19
                         .mul_add(
                             lower_momentum_rate_3,
-                            lower_joint_12
+                            lower_joint_14
                                 .mul_add(
                                     lower_momentum_rate_2,
                                     lower_speed_3
@@ -1525,38 +1537,38 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_momentum_rate_13 = (lower_joint_14
-        .mul_add(lower_momentum_13, lower_joint_11 * lower_momentum_12))
+    let lower_momentum_rate_13 = (lower_joint_17
+        .mul_add(lower_momentum_13, lower_joint_12 * lower_momentum_12))
         .mul_add(
             n(0.6),
-            lower_joint_16
+            lower_joint_21
                 .mul_add(
                     lower_momentum_9,
-                    lower_joint_13
+                    lower_joint_16
                         .mul_add(lower_momentum_11, lower_joint_10 * lower_momentum_10),
                 ),
         );
-    let lower_momentum_rate_14 = (-((-lower_joint_13)
+    let lower_momentum_rate_14 = (-((-lower_joint_16)
         .mul_add(lower_momentum_13, lower_joint_10 * lower_momentum_12)))
         .mul_add(
             n(0.6),
-            (-lower_joint_14)
+            (-lower_joint_17)
                 .mul_add(
                     lower_momentum_11,
-                    lower_joint_17
-                        .mul_add(lower_momentum_9, lower_joint_11 * lower_momentum_10),
+                    lower_joint_23
+                        .mul_add(lower_momentum_9, lower_joint_12 * lower_momentum_10),
                 ),
         );
     let lower_momentum_rate_15 = upper_speed_3
         .mul_add(n(0.06), upper_speed.mul_add(n(0.59), lower_momentum_rate_13));
     let lower_momentum_rate_16 = upper_speed_2.mul_add(n(0.62), -lower_momentum_rate_14);
-    let lower_momentum_rate_17 = (-lower_joint_18)
+    let lower_momentum_rate_17 = (-lower_joint_24)
         .mul_add(
             lower_momentum_9,
-            (-lower_joint_15)
+            (-lower_joint_19)
                 .mul_add(
                     lower_momentum_11,
-                    lower_joint_12
+                    lower_joint_14
                         .mul_add(
                             lower_momentum_10,
                             upper_speed_3
@@ -1564,13 +1576,13 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_momentum_rate_18 = lower_joint_14
+    let lower_momentum_rate_18 = lower_joint_17
         .mul_add(
             lower_weight_2,
-            lower_joint_11
+            lower_joint_12
                 .mul_add(
                     lower_weight,
-                    upper_weight_3.mul_add(n(0.2), upper_weight * n(1.2)),
+                    q[8].mul_add(n(1.9620000000000002), q[6] * n(11.772)),
                 ),
         );
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
@@ -1661,13 +1673,13 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let upper_momentum_rate = (-upper_speed_3)
         .mul_add(
             lower_momentum_rate_16,
-            (-lower_joint_13)
+            (-lower_joint_16)
                 .mul_add(
                     lower_weight_2,
                     upper_speed_2
                         .mul_add(
                             lower_momentum_rate_17,
-                            lower_joint_10.mul_add(lower_weight, upper_weight_2 * n(1.2)),
+                            lower_joint_10.mul_add(lower_weight, q[7] * n(11.772)),
                         ),
                 ),
         );
@@ -1677,10 +1689,11 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             upper_speed
                 .mul_add(
                     lower_momentum_rate_16,
-                    lower_joint_15
+                    lower_joint_19
                         .mul_add(
                             lower_weight_2,
-                            lower_joint_12.mul_add(lower_weight, upper_weight_2 * n(0.2)),
+                            lower_joint_14
+                                .mul_add(lower_weight, q[7] * n(1.9620000000000002)),
                         ),
                 ),
         );
@@ -1739,139 +1752,142 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
     let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = (lower_joint_3 + lower_joint_4) * n(2.0);
-    let lower_joint_12 = (lower_joint_5 - lower_joint_6) * n(2.0);
-    let lower_joint_13 = (lower_joint_3 - lower_joint_4) * n(2.0);
-    let lower_joint_14 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_15 = (lower_joint_8 + lower_joint_9) * n(2.0);
-    let lower_joint_16 = (lower_joint_5 + lower_joint_6) * n(2.0);
-    let lower_joint_17 = (lower_joint_8 - lower_joint_9) * n(2.0);
-    let lower_joint_18 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_11 = lower_joint_3 + lower_joint_4;
+    let lower_joint_12 = lower_joint_11 * n(2.0);
+    let lower_joint_13 = lower_joint_5 - lower_joint_6;
+    let lower_joint_14 = lower_joint_13 * n(2.0);
+    let lower_joint_15 = lower_joint_3 - lower_joint_4;
+    let lower_joint_16 = lower_joint_15 * n(2.0);
+    let lower_joint_17 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
+    let lower_joint_18 = lower_joint_8 + lower_joint_9;
+    let lower_joint_19 = lower_joint_18 * n(2.0);
+    let lower_joint_20 = lower_joint_5 + lower_joint_6;
+    let lower_joint_21 = lower_joint_20 * n(2.0);
+    let lower_joint_22 = lower_joint_8 - lower_joint_9;
+    let lower_joint_23 = lower_joint_22 * n(2.0);
+    let lower_joint_24 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
     // lower: composite inertia (34 additions, 66 multiplications)
     let lower_composite_inertia = lower_joint_10 * n(0.0825);
-    let lower_composite_inertia_2 = lower_joint_13 * n(0.0825);
-    let lower_composite_inertia_3 = lower_joint_16 * n(0.009999999999999995);
-    let lower_composite_inertia_4 = lower_joint_13 * n(0.25);
+    let lower_composite_inertia_2 = lower_joint_15 * n(0.165);
+    let lower_composite_inertia_3 = lower_joint_20 * n(0.01999999999999999);
+    let lower_composite_inertia_4 = lower_joint_15 * n(0.5);
     let lower_composite_inertia_5 = lower_joint_10 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_16
+    let lower_composite_inertia_6 = lower_joint_21
         .mul_add(
             lower_composite_inertia_3,
-            lower_joint_13
+            lower_joint_16
                 .mul_add(
                     lower_composite_inertia_2,
                     lower_joint_10 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_7 = (-lower_joint_14)
+    let lower_composite_inertia_7 = (-lower_joint_17)
         .mul_add(
             lower_composite_inertia_2,
-            lower_joint_17
+            lower_joint_23
                 .mul_add(
                     lower_composite_inertia_3,
-                    lower_joint_11 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_18)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_15)
-                .mul_add(
-                    lower_composite_inertia_2,
                     lower_joint_12 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_9 = lower_joint_11 * n(0.0825);
-    let lower_composite_inertia_10 = lower_joint_14 * n(0.0825);
-    let lower_composite_inertia_11 = lower_joint_17 * n(0.009999999999999995);
-    let lower_composite_inertia_12 = lower_joint_14 * n(0.25);
-    let lower_composite_inertia_13 = lower_joint_11 * n(0.25);
-    let lower_composite_inertia_14 = lower_joint_17
+    let lower_composite_inertia_8 = (-lower_joint_24)
         .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_14
+            lower_composite_inertia_3,
+            (-lower_joint_19)
                 .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_11 * lower_composite_inertia_9,
+                    lower_composite_inertia_2,
+                    lower_joint_14 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_18)
+    let lower_composite_inertia_9 = lower_joint_11 * n(0.165);
+    let lower_composite_inertia_10 = lower_joint_17 * n(0.0825);
+    let lower_composite_inertia_11 = lower_joint_22 * n(0.01999999999999999);
+    let lower_composite_inertia_12 = lower_joint_17 * n(0.25);
+    let lower_composite_inertia_13 = lower_joint_11 * n(0.5);
+    let lower_composite_inertia_14 = lower_joint_23
         .mul_add(
             lower_composite_inertia_11,
-            lower_joint_15
+            lower_joint_17
                 .mul_add(
                     lower_composite_inertia_10,
                     lower_joint_12 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = (-((-lower_joint_14)
+    let lower_composite_inertia_15 = (-lower_joint_24)
+        .mul_add(
+            lower_composite_inertia_11,
+            lower_joint_19
+                .mul_add(
+                    lower_composite_inertia_10,
+                    lower_joint_14 * lower_composite_inertia_9,
+                ),
+        );
+    let lower_composite_inertia_16 = (-((-lower_joint_17)
         .mul_add(
             lower_composite_inertia_13,
-            lower_joint_11 * lower_composite_inertia_12,
+            lower_joint_12 * lower_composite_inertia_12,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_13)
+            (-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_16
+                    lower_joint_21
                         .mul_add(
                             lower_composite_inertia_11,
                             lower_joint_10 * lower_composite_inertia_9,
                         ),
                 ),
         );
-    let lower_composite_inertia_17 = lower_joint_12 * n(0.0825);
-    let lower_composite_inertia_18 = lower_joint_15 * n(0.0825);
-    let lower_composite_inertia_19 = lower_joint_18 * n(0.009999999999999995);
-    let lower_composite_inertia_20 = lower_joint_15 * n(0.25);
-    let lower_composite_inertia_21 = lower_joint_12 * n(0.25);
-    let lower_composite_inertia_22 = lower_joint_18
+    let lower_composite_inertia_17 = lower_joint_13 * n(0.165);
+    let lower_composite_inertia_18 = lower_joint_18 * n(0.165);
+    let lower_composite_inertia_19 = lower_joint_24 * n(0.009999999999999995);
+    let lower_composite_inertia_20 = lower_joint_18 * n(0.5);
+    let lower_composite_inertia_21 = lower_joint_13 * n(0.5);
+    let lower_composite_inertia_22 = lower_joint_24
         .mul_add(
             lower_composite_inertia_19,
-            lower_joint_15
+            lower_joint_19
                 .mul_add(
                     lower_composite_inertia_18,
-                    lower_joint_12 * lower_composite_inertia_17,
+                    lower_joint_14 * lower_composite_inertia_17,
                 ),
         );
-    let lower_composite_inertia_23 = (-((-lower_joint_14)
+    let lower_composite_inertia_23 = (-((-lower_joint_17)
         .mul_add(
             lower_composite_inertia_21,
-            lower_joint_11 * lower_composite_inertia_20,
+            lower_joint_12 * lower_composite_inertia_20,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_16)
+            (-lower_joint_21)
                 .mul_add(
                     lower_composite_inertia_19,
-                    (-lower_joint_13)
+                    (-lower_joint_16)
                         .mul_add(
                             lower_composite_inertia_18,
                             lower_joint_10 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_17)
+    let lower_composite_inertia_24 = (-lower_joint_23)
         .mul_add(
             lower_composite_inertia_19,
-            (lower_joint_13
+            (lower_joint_16
                 .mul_add(
                     lower_composite_inertia_21,
                     lower_joint_10 * lower_composite_inertia_20,
                 ))
                 .mul_add(
                     n(0.6),
-                    lower_joint_14
+                    lower_joint_17
                         .mul_add(
                             lower_composite_inertia_18,
-                            lower_joint_11 * lower_composite_inertia_17,
+                            lower_joint_12 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_25 = lower_joint_16 * n(0.25);
-    let lower_composite_inertia_26 = lower_joint_17 * n(0.25);
-    let lower_composite_inertia_27 = lower_joint_18 * n(0.25);
-    let lower_composite_inertia_28 = lower_composite_inertia_27 * n(1.2);
+    let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
     // lower: factor (43 additions, 55 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
@@ -1882,7 +1898,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (lower_joint_13
+            (lower_joint_16
                 .mul_add(
                     lower_composite_inertia_13,
                     lower_joint_10 * lower_composite_inertia_12,
@@ -1896,7 +1912,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_9 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_8,
-            (-((-lower_joint_13)
+            (-((-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_5,
                     lower_joint_10 * lower_composite_inertia_4,
@@ -1906,10 +1922,10 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_10 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_8,
-            (lower_joint_14
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_11 * lower_composite_inertia_4,
+                    lower_joint_12 * lower_composite_inertia_4,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
@@ -1937,8 +1953,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_11,
-                    (-lower_composite_inertia_25)
-                        .mul_add(n(0.6), lower_composite_inertia_8 + n(0.06)),
+                    (-lower_joint_20)
+                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
     let lower_factor_22 = lower_factor_5 * lower_factor_14;
@@ -1973,8 +1989,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_11,
-                            (-lower_composite_inertia_26)
-                                .mul_add(n(0.6), lower_composite_inertia_15),
+                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
                         ),
                 ),
         );
@@ -1996,7 +2011,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                         .mul_add(
                             lower_factor_12,
                             lower_composite_inertia_14 + n(0.62)
-                                - lower_composite_inertia_28,
+                                - lower_composite_inertia_25,
                         ),
                 ),
         );
@@ -2011,7 +2026,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                         .mul_add(
                             lower_factor_13,
                             lower_composite_inertia_6 + n(0.59)
-                                - lower_composite_inertia_28,
+                                - lower_composite_inertia_25,
                         ),
                 ),
         );
@@ -2194,11 +2209,11 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     // upper: first moment (4 additions, 4 multiplications)
     let upper_first_moment = (-q[8])
         .mul_add(
-            lower_composite_inertia_27 - n(1.2),
+            lower_joint_24.mul_add(n(0.25), -n(1.2)),
             (-q[7])
                 .mul_add(
-                    lower_composite_inertia_26,
-                    q[6] * (lower_composite_inertia_25 - n(0.2)),
+                    lower_joint_22 * n(0.5),
+                    q[6] * (lower_joint_20.mul_add(n(0.5), -n(0.2))),
                 ),
         );
     let upper_first_moment_2 = (-upper_first_moment)

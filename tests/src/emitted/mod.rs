@@ -6,6 +6,9 @@ pub mod ball_chain;
 /// Both forms of `data/scenes/geodesic_springs.toml`: logarithms of rotations.
 #[rustfmt::skip]
 pub mod geodesic_springs;
+/// `tests/data/scenes/pendulum.toml`: one joint in general position.
+#[rustfmt::skip]
+pub mod pendulum;
 /// `scenes/plate_cart_arm.toml`.
 #[rustfmt::skip]
 pub mod plate_cart_arm;

@@ -1741,7 +1741,7 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
 
 /// v̄ and p̄̇ from Q, p̄ and τ, (27), (35).
 ///
-/// Operations: 240 additions, 327 multiplications, 6 divisions.
+/// Operations: 240 additions, 324 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 6]; 2] {
@@ -2327,16 +2327,13 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
         .mul_add(n(0.51), end_effector_momentum_8 * n(0.085));
     let end_effector_momentum_14 = end_effector_momentum_7
         .mul_add(n(0.085), end_effector_momentum_6 * n(0.136));
-    // end_effector: weight (3 additions, 9 multiplications)
-    let end_effector_weight = q[13] * n(9.81);
-    let end_effector_weight_2 = q[14] * n(9.81);
-    let end_effector_weight_3 = q[15] * n(9.81);
-    let end_effector_weight_4 = end_effector_weight_2
-        .mul_add(n(0.51), end_effector_weight_3 * n(0.136));
-    let end_effector_weight_5 = (-end_effector_weight_3)
-        .mul_add(n(0.085), end_effector_weight * n(0.51));
-    let end_effector_weight_6 = end_effector_weight
-        .mul_add(n(0.136), end_effector_weight_2 * n(0.085));
+    // end_effector: weight (3 additions, 6 multiplications)
+    let end_effector_weight = q[14]
+        .mul_add(n(5.003100000000001), q[15] * n(1.3341600000000002));
+    let end_effector_weight_2 = (-q[15])
+        .mul_add(n(0.8338500000000001), q[13] * n(5.003100000000001));
+    let end_effector_weight_3 = q[13]
+        .mul_add(n(1.3341600000000002), q[14] * n(0.8338500000000001));
     // end_effector: momentum rate (41 additions, 45 multiplications)
     let end_effector_momentum_rate = (-end_effector_momentum_5)
         .mul_add(
@@ -2377,11 +2374,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                         ),
                 ),
         );
-    let end_effector_momentum_rate_4 = end_effector_weight_4
-        + end_effector_momentum_rate;
-    let end_effector_momentum_rate_5 = end_effector_weight_5
+    let end_effector_momentum_rate_4 = end_effector_weight + end_effector_momentum_rate;
+    let end_effector_momentum_rate_5 = end_effector_weight_2
         + end_effector_momentum_rate_2;
-    let end_effector_momentum_rate_6 = end_effector_weight_6
+    let end_effector_momentum_rate_6 = end_effector_weight_3
         + end_effector_momentum_rate_3;
     let end_effector_momentum_rate_7 = (-q[12])
         .mul_add(
@@ -2454,8 +2450,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
         );
     let end_effector_momentum_rate_13 = (-q[15])
         .mul_add(
-            end_effector_weight_6,
-            (-q[14]).mul_add(end_effector_weight_5, q[13] * end_effector_weight_4),
+            end_effector_weight_3,
+            (-q[14]).mul_add(end_effector_weight_2, q[13] * end_effector_weight),
         );
     let end_effector_momentum_rate_14 = (-q[8])
         .mul_add(

@@ -17,6 +17,8 @@ use std::sync::Arc;
 
 /// Like links.
 const CHAIN: &str = "data/scenes/ball_chain.toml";
+/// One joint in general position.
+const PENDULUM: &str = "data/scenes/pendulum.toml";
 /// Springs by logarithms of rotations.
 const SPRINGS: &str = "data/scenes/geodesic_springs.toml";
 
@@ -35,8 +37,9 @@ fn the_committed_modules_are_what_is_written() {
     ];
     let springs = module_of(SPRINGS).functions(forms.clone());
     is_written(springs, "geodesic_springs");
-    let dynamics = [Kind::ForwardDynamics, Kind::InverseDynamics];
-    is_written(module_of(CHAIN).functions(dynamics), "ball_chain");
+    let dynamics = vec![Kind::ForwardDynamics, Kind::InverseDynamics];
+    is_written(module_of(CHAIN).functions(dynamics.clone()), "ball_chain");
+    is_written(module_of(PENDULUM).functions(dynamics), "pendulum");
     let snakeboard = module_of("../scenes/snakeboard.toml").functions(forms);
     is_written(snakeboard, "snakeboard");
 }

@@ -9,6 +9,7 @@ mod emitted;
 mod errata;
 mod euler_lagrange;
 mod frames;
+mod instructions;
 mod linear_step;
 mod random_trees;
 mod reference_form;

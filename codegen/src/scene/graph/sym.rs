@@ -227,10 +227,33 @@ fn multiply_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
         true => (a.node, b.node),
         false => (b.node, a.node),
     };
+    let negative = a.negative != b.negative;
+    let (first, second) = match scaled(graph, first, second) {
+        Some((node, 1.0)) => return Sym::Node(Value { node, negative }),
+        Some((node, factor)) => {
+            let factor = graph.node(Operation::Constant(factor.to_bits()));
+            (node, factor)
+        }
+        None => (first, second),
+    };
     Sym::Node(Value {
         node: graph.node(Operation::Product(first, second)),
-        negative: a.negative != b.negative,
+        negative,
     })
+}
+
+/// A node and the number that it is multiplied by, where `first` is such a product already and `second` a number: one product instead of two.
+fn scaled(graph: &Graph, first: u32, second: u32) -> Option<(u32, f64)> {
+    let number = |node: u32| match graph.nodes[node as usize].operation {
+        Operation::Constant(bits) => Some(f64::from_bits(bits)),
+        _ => None,
+    };
+    let Operation::Product(node, factor) = graph.nodes[first as usize].operation else {
+        return None;
+    };
+    let factor = number(second)? * number(factor)?;
+    // Beyond the range of doubles the two factors are not one.
+    factor.is_normal().then_some((node, factor))
 }
 
 fn divide(a: Sym, b: Sym) -> Sym {
