@@ -66,6 +66,8 @@ pub struct Failed {
     pub reason: String,
     /// How long it took to fail, s.
     pub seconds: f64,
+    /// Whether it was stopped for the time that it took.
+    pub is_slow: bool,
 }
 
 /// The motion of a scene to the samples of its reference, as often as the budget says.
@@ -84,6 +86,7 @@ pub fn point(
     let errors = errors.ok_or_else(|| Failed {
         reason: "the result is not finite".into(),
         seconds: first,
+        is_slow: false,
     })?;
     let mut seconds = vec![first];
     while seconds.len() < budget.repetitions && start.elapsed() < budget.point {
@@ -147,10 +150,12 @@ pub fn run(
                 solution.statistics.steps
             ),
             seconds,
+            is_slow: true,
         }),
         Err(error) => Err(Failed {
             reason: error.to_string(),
             seconds,
+            is_slow: false,
         }),
     }
 }

@@ -14,6 +14,9 @@ use hamel_scene::SceneDescription;
 /// Steps of a method without step control, from that at which the scene is resolved coarsely to this power of two below it.
 const HALVINGS: i32 = 9;
 
+/// Runs in a row that were stopped for their time before finer ones are left out.
+const SLOW: usize = 2;
+
 /// One curve to be measured.
 #[derive(Clone, Copy, Debug)]
 struct Curve<'a> {
@@ -40,18 +43,28 @@ pub fn measure(
         for curve in curves(plan, case, &description) {
             tick(&format!("{} {}", case.name, curve.scheme.name()));
             let scene = curve.representation.apply(&description).build(registry);
+            // From coarse to fine: what follows runs that were stopped would be stopped as well.
+            let mut slow = 0;
             for method in methods(curve.scheme, coarse) {
                 let empty = row(plan, &curve, method, &reference, machine);
                 if store.has(&empty.key()) {
                     continue;
                 }
-                let measured = match &scene {
-                    Ok(scene) => measure::point(scene, &reference, curve.form, method, plan.budget),
-                    Err(errors) => Err(Failed {
+                let measured = match (&scene, slow) {
+                    (Ok(_), SLOW..) => Err(not_run()),
+                    (Ok(scene), _) => {
+                        measure::point(scene, &reference, curve.form, method, plan.budget)
+                    }
+                    (Err(errors), _) => Err(Failed {
                         reason: first_line(&errors.to_string()),
                         seconds: 0.0,
+                        is_slow: false,
                     }),
                 };
+                match &measured {
+                    Err(failed) if failed.is_slow => slow += 1,
+                    _ => slow = 0,
+                }
                 store.add(&[filled(empty, measured)])?;
             }
         }
@@ -125,6 +138,14 @@ fn coarse_step(
     }
 }
 
+fn not_run() -> Failed {
+    Failed {
+        reason: format!("not run: {SLOW} coarser ones were stopped"),
+        seconds: 0.0,
+        is_slow: true,
+    }
+}
+
 fn first_line(text: &str) -> String {
     text.lines().next().unwrap_or_default().to_owned()
 }
@@ -183,7 +204,7 @@ fn filled(row: Work, measured: Result<Point, Failed>) -> Work {
             ..row
         },
         Err(failed) => Work {
-            seconds_median: Some(failed.seconds),
+            seconds_median: (failed.seconds > 0.0).then_some(failed.seconds),
             failure: failed.reason,
             ..row
         },
