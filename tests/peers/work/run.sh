@@ -2,7 +2,7 @@
 # Installs peers where they are missing, builds, and measures error against run time of whole motions; prints one markdown report.
 #   ./run.sh                                       every scene that others can express (first time: minutes of installs)
 #   ARGS='--scenes chain_8,mixed_tree --libs mujoco,drake' ./run.sh
-#   OURS='path/to/peer_work' ./run.sh              a program of ours that is built already
+#   OURS='path/to/peer-work' ./run.sh              a program of ours that is built already
 #   SKIP_INSTALL=1                                 leave out the installs;   PEERS_WORK=$HOME/.cache/peers   scratch directory
 set -u
 HERE=$(cd "$(dirname "$0")" && pwd); W=${PEERS_WORK:-$HOME/.cache/peers}; export PEERS_WORK=$W
@@ -10,9 +10,9 @@ mkdir -p "$W"/{build,results}
 log() { echo "[peers] $*" >&2; }
 [ -z "${SKIP_INSTALL:-}" ] && "$HERE/../install.sh" base drake
 if [ -z "${OURS:-}" ]; then
-  log "peer_work of this repository, for this machine's instructions"
-  RUSTFLAGS="-C target-cpu=native" cargo build --quiet --release --manifest-path "$HERE/../../Cargo.toml" --example peer_work --target-dir "$W/target" || exit 1
-  OURS="$W/target/release/examples/peer_work"
+  log "our program, which compiles the scenes, for this machine's instructions"
+  RUSTFLAGS="-C target-cpu=native" cargo build --quiet --release --manifest-path "$HERE/program/Cargo.toml" --target-dir "$W/target" || exit 1
+  OURS="$W/target/release/peer-work"
 fi
 export OURS
 MUJOCO=$(echo "$W"/venv/lib/python3*/site-packages/mujoco)

@@ -2,7 +2,7 @@
 """Error against run time beside other libraries, on the project's scenes with references: whole motions, from time 0 to the last sample.
 
 usage: work.py WORK [--scenes a,b] [--libs mujoco,drake] [--most 1.0] [--rounds 7] [--out DIR]
-Environment OURS='command': our program (tests/examples/peer_work.rs).
+Environment OURS='path': our program (program/), by the tree and with compiled scenes.
 
 Programs read lines and answer one line each:
 
@@ -18,6 +18,8 @@ program that reach it are then repeated in rounds through all programs, and the 
 import argparse, csv, json, math, os, select, subprocess, sys
 import scenes, mjcf
 
+# Programs leave their logs here.
+WORK = os.environ.get('PEERS_WORK', os.path.expanduser('~/.cache/peers'))
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.normpath(f'{HERE}/../../..')
 ASKED = [1e-6, 1e-9]
@@ -37,7 +39,7 @@ class Program:
     def start(self):
         env = dict(os.environ, PYTHONPATH=HERE, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1')
         pipe = subprocess.PIPE
-        self.process = subprocess.Popen(self.command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True, env=env)
+        self.process = subprocess.Popen(self.command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True, env=env, cwd=WORK)
 
     def ask(self, line, most=60.0):
         """The answer; a program that has none after so many seconds, or ends, is started anew."""
@@ -118,7 +120,7 @@ def choose(program, points, error):
     if best:
         chosen[program.name] = best
     auto = fastest([p for p in own if p.method == 'auto'], error)
-    if auto:
+    if auto and program.name == 'hamel':
         chosen[f'{program.name} auto'] = auto
     return chosen
 
@@ -206,11 +208,12 @@ def references():
 
 def programs(work, wanted):
     python = {'pinocchio': f'{work}/venv/bin/python', 'drake': f'{work}/venv_drake/bin/python'}
-    known = [('hamel', [os.environ.get('OURS', f'{work}/target/release/examples/peer_work')], 'toml')]
+    ours = os.environ.get('OURS', f'{work}/target/release/peer-work')
+    known = [('hamel', [ours], 'toml'), ('hamel compiled', [ours, '--compiled'], 'toml')]
     known.append(('mujoco', [f'{work}/build/work_mujoco'], 'xml'))
     known += [(name, [command, f'{HERE}/work_{name}.py'], 'json') for name, command in python.items()]
     for name, command, form in known:
-        if os.path.exists(command[0]) and (name == 'hamel' or not wanted or name in wanted):
+        if os.path.exists(command[0]) and (name.startswith('hamel') or not wanted or name in wanted):
             yield Program(name, command, form)
 
 
@@ -220,20 +223,21 @@ def milliseconds(seconds):
 
 def row(scene, error, chosen, least, all_programs, bare):
     """A line of the table."""
-    ours = least.get('hamel', math.inf)
+    own = [p for p in all_programs if p.name.startswith('hamel')]
     cells = [scene['name'], f'{error:.0e}']
-    for label in ('hamel', 'hamel auto'):
+    for label in [p.name for p in own] + ['hamel auto']:
         p = chosen.get(label)
         cells.append(f'{milliseconds(least[label])} {p.method}' if p else '—')
-    for program in all_programs[1:]:
+    for program in all_programs[len(own) :]:
         p = chosen.get(program.name)
         if program.refusal:
             cells.append('not expressible')
         elif not p:
             cells.append('not reached')
         else:
-            ratio = least[program.name] / ours
-            cell = f'{milliseconds(least[program.name])} {p.method} (**{ratio:.1f}**)'
+            ratios = [least[program.name] / least.get(ours.name, math.inf) for ours in own]
+            ratios = ', '.join(f'{ratio:.1f}' if ratio else '—' for ratio in ratios)
+            cell = f'{milliseconds(least[program.name])} {p.method} (**{ratios}**)'
             if program.name == 'pinocchio':
                 ratio = p.evaluations / chosen['hamel'].evaluations if 'hamel' in chosen else math.nan
                 inside = f', inside calls {milliseconds(1e-9 * bare * p.evaluations)}' if bare else ''
@@ -257,7 +261,9 @@ def main():
     os.makedirs(out, exist_ok=True)
     all_programs = list(programs(args.work, args.libs and args.libs.split(',')))
     print('\n'.join(f'- {p.name}: {p.info}' for p in all_programs))
-    names = ['scene', 'error', 'hamel, ms', 'hamel auto, ms'] + [f'{p.name}, ms (/ hamel)' for p in all_programs[1:]]
+    own = [p.name for p in all_programs if p.name.startswith('hamel')]
+    names = ['scene', 'error', *[f'{name}, ms' for name in own], 'hamel auto, ms']
+    names += [f'{p.name}, ms (/ {", / ".join(own)})' for p in all_programs[len(own) :]]
     print('\n| ' + ' | '.join(names) + ' |\n|' + '---|' * len(names))
     table = csv.writer(open(f'{out}/work.csv', 'w'))
     table.writerow('scene library method value error seconds_least seconds_median evaluations steps failure'.split())
