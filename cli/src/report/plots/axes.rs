@@ -11,8 +11,9 @@ pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Width of the legend, px.
 const LEGEND: u32 = 190;
-/// Height of a line of it.
+/// Height of a line of it, and of its first one.
 const LINE: i32 = 20;
+const FIRST: i32 = 44;
 
 /// Points of one colour.
 #[derive(Clone, Debug)]
@@ -37,8 +38,10 @@ pub struct Panel {
     pub marks: bool,
 }
 
-/// Panels side by side, and one legend of all their curves.
+/// Panels side by side, and one legend of all their curves, for which the figure becomes higher where it is long.
 pub fn figure(panels: &[Panel], width: u32, height: u32) -> Result<String, Failure> {
+    let known = known(panels);
+    let height = height.max((FIRST + LINE * known.len() as i32).unsigned_abs());
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
@@ -47,7 +50,7 @@ pub fn figure(panels: &[Panel], width: u32, height: u32) -> Result<String, Failu
         for (area, panel) in left.split_evenly((1, panels.len())).iter().zip(panels) {
             draw(area, panel)?;
         }
-        legend(&right, panels)?;
+        legend(&right, &known)?;
         root.present().map_err(refused)?;
     }
     Ok(responsive(&text, width, height))
@@ -175,15 +178,20 @@ fn shape<'a, DB: DrawingBackend + 'a, C: Clone + 'a>(at: C, look: &Look) -> DynE
     }
 }
 
-fn legend(area: &Area<'_>, panels: &[Panel]) -> Result<(), Failure> {
-    let mut labels: Vec<&Curve> = Vec::new();
+/// Curves of all panels, one of each label.
+fn known(panels: &[Panel]) -> Vec<&Curve> {
+    let mut curves: Vec<&Curve> = Vec::new();
     for curve in panels.iter().flat_map(|panel| &panel.curves) {
-        if labels.iter().all(|known| known.label != curve.label) {
-            labels.push(curve);
+        if curves.iter().all(|known| known.label != curve.label) {
+            curves.push(curve);
         }
     }
-    for (i, curve) in labels.iter().enumerate() {
-        let y = 44 + LINE * i as i32;
+    curves
+}
+
+fn legend(area: &Area<'_>, curves: &[&Curve]) -> Result<(), Failure> {
+    for (i, curve) in curves.iter().enumerate() {
+        let y = FIRST + LINE * i as i32;
         let style = curve.look.colour.stroke_width(2);
         let line = vec![(4, y), (34, y)];
         match curve.look.dashed {
