@@ -12,4 +12,5 @@ mod frames;
 mod linear_step;
 mod random_trees;
 mod reference_form;
+mod refined;
 mod robot_references;
