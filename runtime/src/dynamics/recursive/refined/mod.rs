@@ -85,15 +85,11 @@ impl Refined {
                 true => 0.0,
                 false => (change / rate).abs(),
             };
-            let largest = pairs.clone().fold(0.0, |most: f64, (change, rate)| {
+            let largest = pairs.fold(0.0, |most: f64, (change, rate)| {
                 most.max(part(*change, rate.high()))
             });
-            let size = self
-                .correction
-                .iter()
-                .fold(0.0, |most: f64, x| most.max(x.abs()));
-            // NaN stops as well.
-            if !(size < SHRINKS * last) {
+            let size: f64 = self.correction.iter().map(|x| x.abs()).sum();
+            if size.is_nan() || size >= SHRINKS * last {
                 break;
             }
             for (found, &change) in self.found.iter_mut().zip(&self.correction) {
