@@ -151,7 +151,7 @@ pub enum FormName {
 pub enum ArithmeticName {
     /// Doubles alone
     Doubles,
-    /// Doubles with residuals in 106 bits: for light bodies that carry heavy ones; some twenty times slower
+    /// Doubles with residuals in 106 bits: for light bodies that carry heavy ones; up to a hundred times slower
     Refined,
 }
 

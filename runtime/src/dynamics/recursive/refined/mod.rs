@@ -1,4 +1,4 @@
-//! The recursive form with residuals in 106 bits: slower by some factor of ten, and exact where doubles cancel.
+//! The recursive form with residuals in 106 bits: exact where doubles cancel, and slower, up to a hundred times an evaluation.
 //!
 //! A light body that carries a heavy one, or a long chain, has a mass matrix of a large condition c, and the recursion in doubles finds
 //! accelerations to c roundings. Here they are mended (J. H. Wilkinson, *Rounding Errors in Algebraic Processes*, 1963, §3.6): inverse dynamics in
