@@ -7,7 +7,7 @@ use crate::chart::Chart;
 use crate::elements::ElementKernels;
 use crate::joint::{Joint, Structures, VelocityFrame};
 use crate::spatial::Pose;
-use crate::steps::Steps;
+use crate::steps::{ExtendedSteps, Steps};
 use alloc::sync::Arc;
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector, Vector6};
@@ -29,7 +29,7 @@ pub struct Layout {
 ///
 /// With (N, K, S, C) of [`AnyJoint::layout`], shapes are as in [`Joint`]. The caller hands over slices of exactly these
 /// sizes; a method panics on any other, as an index out of bounds does.
-pub trait AnyJoint: Steps + Chart + ElementKernels + Debug + Send + Sync {
+pub trait AnyJoint: Steps + ExtendedSteps + Chart + ElementKernels + Debug + Send + Sync {
     /// Name of the spec.
     fn name(&self) -> &'static str;
     /// N, K, S and C.

@@ -2,11 +2,9 @@
 
 use super::case::Reference;
 use super::score::{Errors, errors};
-use hamel::dynamics::Recursive;
 use hamel::integrate::{Form, Method, Options, Solution, Statistics, Step, integrate, no_inputs};
 use hamel_scene::Scene;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long and how often.
@@ -125,14 +123,14 @@ pub fn run(
         samples: samples.to_vec(),
     };
     let initial = scene.start();
-    let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+    let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
     let start = Instant::now();
     let mut observer = |_: &Step<'_>| match start.elapsed() < limit {
         true => ControlFlow::Continue(()),
         false => ControlFlow::Break(()),
     };
     let result = integrate(
-        &mut dynamics,
+        &mut *dynamics,
         &initial,
         &options,
         &mut no_inputs,

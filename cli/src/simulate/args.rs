@@ -67,6 +67,10 @@ pub struct Args {
     #[arg(long, value_enum)]
     pub form: Option<FormName>,
 
+    /// What the equations of motion are solved in
+    #[arg(long, value_enum)]
+    pub arithmetic: Option<ArithmeticName>,
+
     /// Integration method; those with step control take --tol, all but auto take --dt
     #[arg(long, value_parser = methods())]
     pub method: Option<MethodName>,
@@ -140,6 +144,15 @@ pub enum FormName {
     Lagrangian,
     /// State (Q, p), port-Hamiltonian, Theorem 3
     Hamiltonian,
+}
+
+/// Names of the kinds of arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ArithmeticName {
+    /// Doubles alone
+    Doubles,
+    /// Doubles with residuals in 106 bits: for light bodies that carry heavy ones; up to a hundred times slower
+    Refined,
 }
 
 /// Names of the places that samples come from.

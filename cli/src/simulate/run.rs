@@ -12,13 +12,11 @@ use super::progress::Progress;
 use super::sample::Sample;
 use super::table::Summary;
 use crate::output::Failure;
-use hamel::dynamics::Recursive;
 use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State, Step};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use std::io::Write;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::Instant;
 
 /// Simulates the scene of `args`.
@@ -90,9 +88,9 @@ fn move_on(
     control: Option<&Loop>,
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
-    let mut dynamics = Recursive::new(Arc::clone(&plan.scene.mechanism));
+    let mut dynamics = plan.settings.arithmetic.dynamics(&plan.scene.mechanism);
     let (initial, options) = (plan.scene.start(), plan.options());
-    let mut integration = Integration::new(&mut dynamics, &initial, &options)
+    let mut integration = Integration::new(&mut *dynamics, &initial, &options)
         .sampling(plan.settings.sampling)
         .observer(observer);
     for event in &plan.scene.events {

@@ -1,9 +1,9 @@
 //! The settings of a scene with the options of the command line laid over them.
 
-use super::args::{Args, FormName, MethodName, SamplingName};
+use super::args::{Args, ArithmeticName, FormName, MethodName, SamplingName};
 use crate::output::Failure;
 use hamel::integrate::{Control, Form, Method, Sampling, Scheme};
-use hamel_scene::Settings;
+use hamel_scene::{Arithmetic, Settings};
 
 /// The settings that `args` and the scene's `settings` make together.
 ///
@@ -18,6 +18,10 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
         FormName::Lagrangian => Form::Lagrangian,
         FormName::Hamiltonian => Form::Hamiltonian,
     });
+    let arithmetic = args.arithmetic.map(|arithmetic| match arithmetic {
+        ArithmeticName::Doubles => Arithmetic::Doubles,
+        ArithmeticName::Refined => Arithmetic::Refined,
+    });
     let sampling = args.sampling.map(|sampling| match sampling {
         SamplingName::Landing => Sampling::Landing,
         SamplingName::Dense => Sampling::Dense,
@@ -28,6 +32,7 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
         method,
         chooses,
         form: form.unwrap_or(settings.form),
+        arithmetic: arithmetic.unwrap_or(settings.arithmetic),
         sample_step: sample_step.unwrap_or(settings.sample_step),
         sampling: sampling.unwrap_or(settings.sampling),
     })

@@ -2,6 +2,7 @@
 //!
 //! * [`Reference`]: Theorems 2 and 3 literally, matrices and all. For reading, checking and small mechanisms.
 //! * [`Recursive`]: the same in O(n), by recursions that share no formula with the former. For everything else.
+//! * [`Refined`]: the same to the last digit where doubles cancel; slower.
 //! * [`quasi`]: Theorem 1, for systems in quasi-coordinates that a caller writes down.
 //!
 //! Whatever integrates or compares equations of motion does so through [`Dynamics`].
@@ -15,7 +16,7 @@ pub use error::DynamicsError;
 pub(crate) use recursive::LoadedMass;
 pub use recursive::{
     ForwardDerivatives, Frame, FrameReadings, HamiltonianDerivatives, InverseDerivatives,
-    MassMatrix, Readings, Recursive, Sensitivity,
+    MassMatrix, Readings, Recursive, Refined, Sensitivity,
 };
 pub use reference::Reference;
 

@@ -5,7 +5,7 @@ use super::between::Between;
 use super::clock::Clock;
 use super::control::Controller;
 use super::flow::Flow;
-use super::options::Control;
+use super::options::{Control, least_step};
 use super::standing::Standing;
 use super::stepper::{self, Span, Stepper};
 use super::{
@@ -274,7 +274,9 @@ impl<'a> Driver<'a> {
                 near,
             });
         }
-        let limit = 16.0 * f64::EPSILON * time.abs().max(self.options.t_end - self.start);
+        // From where time does not move on; at time 0, where it always does, by what is nothing of the span.
+        let span = self.options.t_end - self.start;
+        let limit = least_step(time, f64::EPSILON * span);
         if pacing.step > limit {
             return Ok(());
         }

@@ -84,6 +84,21 @@ pub enum StepFailure {
     Dynamics(#[from] DynamicsError),
 }
 
+/// What to do about a step of fixed size, where its length can be the reason.
+fn advice(cause: &StepFailure) -> &'static str {
+    match cause {
+        StepFailure::Turn { .. }
+        | StepFailure::NoConvergence { .. }
+        | StepFailure::SingularIteration { .. }
+        | StepFailure::NotFinite { .. }
+        | StepFailure::State(_) => "; take a smaller dt",
+        StepFailure::Length { .. }
+        | StepFailure::Inaccurate { .. }
+        | StepFailure::Event { .. }
+        | StepFailure::Dynamics(_) => "",
+    }
+}
+
 /// Why an integration ends before its time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IntegrateError {
@@ -150,7 +165,7 @@ pub enum IntegrateError {
         near: Near,
     },
     /// A step of fixed size fails.
-    #[error("the step of {step:e} s at {} s fails: {cause}{near}; take a smaller dt", Seconds(*.time))]
+    #[error("the step of {step:e} s at {} s fails: {cause}{near}{}", Seconds(*.time), advice(.cause))]
     Step {
         /// When.
         time: f64,

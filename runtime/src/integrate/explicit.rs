@@ -14,8 +14,9 @@ pub(super) struct Explicit {
 }
 
 impl Explicit {
-    pub(super) fn new(tableau: &'static Tableau, flow: &Flow<'_>) -> Self {
-        let stages = tableau.nodes.iter().skip(1);
+    /// `is_controlled` tells whether errors of steps will be asked for.
+    pub(super) fn new(tableau: &'static Tableau, is_controlled: bool, flow: &Flow<'_>) -> Self {
+        let stages = 1..stages_taken(tableau, is_controlled);
         Self {
             tableau,
             stages: stages.map(|_| flow.new_rates()).collect(),
@@ -68,7 +69,7 @@ impl Stepper for Explicit {
         Span { time, step }: Span,
     ) -> Result<(), StepFailure> {
         let tableau = self.tableau;
-        for i in 1..tableau.nodes.len() {
+        for i in 1..=self.stages.len() {
             self.combine(standing, flow, step, tableau.matrix[i])?;
             let at = time + step * tableau.nodes[i];
             standing.evaluate_there(flow, at, &mut self.stages[i - 1])?;
@@ -113,6 +114,16 @@ impl Stepper for Explicit {
     fn order(&self) -> u32 {
         self.tableau.order
     }
+}
+
+/// The stages that a step evaluates: the last ones of some methods are for the estimate alone.
+fn stages_taken(tableau: &Tableau, is_controlled: bool) -> usize {
+    let all = tableau.nodes.len();
+    if is_controlled || tableau.first_same_as_last {
+        return all;
+    }
+    let last = tableau.weights.iter().rposition(|&weight| weight != 0.0);
+    last.map_or(all, |last| last + 1)
 }
 
 /// `unit · Σ weights · rates` into `errors`.

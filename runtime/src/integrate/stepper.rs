@@ -108,7 +108,7 @@ pub(super) struct Solves {
 /// The stepper of a scheme; `tolerance` is that of the step control, if there is one.
 pub(super) fn new(scheme: &Scheme, tolerance: Option<f64>, flow: &Flow<'_>) -> Box<dyn Stepper> {
     if let Some(tableau) = scheme.tableau() {
-        return Box::new(Explicit::new(tableau, flow));
+        return Box::new(Explicit::new(tableau, tolerance.is_some(), flow));
     }
     match scheme {
         Scheme::Midpoint => Box::new(Collocation::new(&collocation::MIDPOINT, tolerance, flow)),

@@ -6,6 +6,7 @@
 
 mod batch;
 mod dual;
+mod extended;
 mod float;
 mod lane;
 #[cfg(feature = "wide")]
@@ -14,6 +15,7 @@ mod rotation;
 mod series;
 
 pub use dual::Dual;
+pub use extended::Extended;
 pub use lane::Lane;
 #[cfg(feature = "wide")]
 pub use lanes::{F64x4, F64x8, Mask4, Mask8};

@@ -8,10 +8,12 @@
 //! neither L nor an inverse is ever formed.
 
 mod articulate;
+mod extended;
 mod place;
 mod vary;
 
 pub use articulate::{Pivot, PivotFailure};
+pub use extended::ExtendedSteps;
 pub use place::Placement;
 pub use vary::Variation;
 

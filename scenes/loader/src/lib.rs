@@ -39,6 +39,6 @@ pub use forces::{
 };
 pub use notice::Notice;
 pub use scene::Scene;
-pub use settings::Settings;
+pub use settings::{Arithmetic, Settings};
 pub use shape::{Geometry, ShapeDescription};
 pub use source::{Located, Span};

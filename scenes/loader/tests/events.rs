@@ -1,7 +1,7 @@
-//! Events and sampling of a scene: what is read, written back, and refused.
+//! Events, sampling and arithmetic of a scene: what is read, written back, and refused.
 
 use hamel::integrate::{Direction, Sampling};
-use hamel_scene::{EventDescription, QuantityDescription, Scene, SceneDescription};
+use hamel_scene::{Arithmetic, EventDescription, QuantityDescription, Scene, SceneDescription};
 
 const BODY: &str = "hamel = 1
 gravity = [0, 0, -9.81]
@@ -36,6 +36,7 @@ then = \"stop\"
 
 [simulation]
 sampling = \"dense\"
+arithmetic = \"refined\"
 ";
 
 fn assert_is_read(scene: &SceneDescription) {
@@ -68,6 +69,7 @@ fn assert_is_read(scene: &SceneDescription) {
             && point.along.as_slice() == [0.0, 0.0, 1.0])
     );
     assert_eq!(scene.settings.sampling, Sampling::Dense);
+    assert_eq!(scene.settings.arithmetic, Arithmetic::Refined);
 }
 
 #[test]
@@ -79,6 +81,7 @@ fn events_are_read_as_they_are_written() {
     let plain = Scene::from_toml(BODY, "scene.toml").expect("sound");
     assert!(plain.events.is_empty());
     assert_eq!(plain.settings.sampling, Sampling::Landing);
+    assert_eq!(plain.settings.arithmetic, Arithmetic::Doubles);
 }
 
 #[test]
@@ -101,6 +104,7 @@ value = 1.0
 
 [simulation]
 sampling = \"thin\"
+arithmetic = \"exact\"
 ";
     let errors = Scene::from_toml(&format!("{BODY}{events}"), "scene.toml").expect_err("wrong");
     let text = errors.to_string();
@@ -113,6 +117,7 @@ sampling = \"thin\"
         "`along` is zero; an axis must have a direction",
         "event `nowhere`: ",
         "`simulation.sampling` is \"thin\", but must be `landing` or `dense`",
+        "`simulation.arithmetic` is \"exact\", but must be `doubles` or `refined`",
     ] {
         assert!(text.contains(expected), "{expected} is not in:\n{text}");
     }

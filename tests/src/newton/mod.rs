@@ -18,7 +18,7 @@ mod solve;
 mod system;
 
 pub use extrapolation::Extrapolation;
-pub use number::{Matrix, Real, Vector, decimal};
+pub use number::{Matrix, Real, Vector, decimal, real};
 pub use record::{BodyRecord, Record, distance};
 pub use scene::{Unsupported, World};
-pub use system::System;
+pub use system::{STATE, System};

@@ -16,6 +16,7 @@ const BITS: usize = 256;
 /// Digits of a written number.
 const DIGITS: usize = 28;
 
+/// A double as it is.
 pub fn real(value: f64) -> Real {
     Real::from(value)
 }

@@ -13,4 +13,5 @@ mod instructions;
 mod linear_step;
 mod random_trees;
 mod reference_form;
+mod refined;
 mod robot_references;

@@ -3,6 +3,7 @@
 //! One program for all suites of a topic: each program links the whole library, which takes more time and disk than its tests.
 
 mod accuracy;
+mod extended;
 mod fuzz_specs;
 mod laws;
 mod no_std;

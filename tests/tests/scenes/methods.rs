@@ -47,9 +47,9 @@ fn run(
         true => ControlFlow::Continue(()),
         false => ControlFlow::Break(()),
     };
-    let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+    let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
     let solution = integrate(
-        &mut dynamics,
+        &mut *dynamics,
         &initial,
         &options,
         &mut no_inputs,
@@ -147,26 +147,73 @@ fn complaint(name: &str, scheme: Scheme, form: Form) -> Option<String> {
     }
 }
 
+/// Pairs of a scene and a method in the Lagrangian form that are known to miss it, with the reason.
+const MISSES: [(&str, Scheme); 3] = [
+    // 13 of what is allowed at 1e-4, at 37 steps for a motion of two seconds; 9 and less from 1e-5 on.
+    ("plate_cart_arm_tilted", Scheme::DormandPrince),
+    // A slope of 0.60: from 12 to 46 steps, whose errors scatter, at a hundredth of the tolerance and less.
+    ("chaplygin_sleigh", Scheme::Verner9),
+    // 16 of what is allowed at 1e-11: where the turning fades to less than the estimate may come to, steps pass over the rest of it.
+    ("chaplygin_sleigh", Scheme::Radau5),
+];
+
+fn is_known(complaint: &str) -> bool {
+    MISSES
+        .iter()
+        .any(|(name, scheme)| complaint.starts_with(&format!("{name}, {}:", scheme.name())))
+}
+
+/// What is wrong with the errors of a method on some scenes.
+fn complaints(scheme: Scheme, cases: &[&str]) -> Vec<String> {
+    let told = |name: &&str| {
+        let told = complaint(name, scheme, Form::Lagrangian)?;
+        Some(format!("{name}, {}: {told}", scheme.name()))
+    };
+    cases.iter().filter_map(told).collect()
+}
+
 #[test]
 fn errors_follow_the_tolerance() {
-    let cases = [
-        "free_generic",
-        "top_lock",
-        "top_slow",
+    let told = complaints(
+        Scheme::Verner9,
+        &[
+            "free_generic",
+            "top_lock",
+            "top_slow",
+            "chain_2",
+            "plate_cart_arm_tilted",
+            "chain_8",
+            "falling_disk",
+            "torsion_1e8",
+        ],
+    );
+    assert!(told.is_empty(), "{told:#?}");
+}
+
+#[test]
+fn errors_of_other_methods_follow_the_tolerance() {
+    let common = [
         "chain_2",
         "plate_cart_arm_tilted",
-        "chain_8",
         "falling_disk",
-        "torsion_1e8",
+        "top_slow",
+        "double_ball_pendulum",
     ];
-    let complaints: Vec<String> = cases
-        .iter()
-        .filter_map(|name| {
-            let told = complaint(name, Scheme::Verner9, Form::Lagrangian)?;
-            Some(format!("{name}: {told}"))
-        })
-        .collect();
-    assert!(complaints.is_empty(), "{complaints:#?}");
+    let explicit = [Scheme::DormandPrince, Scheme::DormandPrince8];
+    let told = explicit
+        .into_iter()
+        .flat_map(|scheme| complaints(scheme, &common));
+    let mut told: Vec<String> = told.filter(|told| !is_known(told)).collect();
+    told.extend(complaints(Scheme::Radau5, &common));
+    told.extend(complaints(
+        Scheme::Radau5,
+        &[
+            "torsion_1e4_damped",
+            "torsion_1e8_damped",
+            "torsion_1e12_damped",
+        ],
+    ));
+    assert!(told.is_empty(), "{told:#?}");
 }
 
 #[test]

@@ -22,6 +22,7 @@ mod loaded;
 mod mass;
 mod operational;
 mod readings;
+mod refined;
 mod rows;
 mod slender;
 mod sweeps;
@@ -33,6 +34,7 @@ pub use frames::FrameReadings;
 pub(crate) use loaded::LoadedMass;
 pub use mass::MassMatrix;
 pub use readings::{Frame, Readings};
+pub use refined::Refined;
 
 use super::{Dynamics, DynamicsError};
 use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
@@ -166,6 +168,29 @@ impl Recursive {
         }
     }
 
+    /// p̄̇ at the speeds that have just been found of momenta, into `rates`.
+    fn rates_of_momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut dyn FnMut(&[f64], &mut [f64]),
+        rates: &mut [f64],
+    ) {
+        let mut tau = core::mem::take(&mut self.inputs);
+        tau.fill(0.0);
+        efforts(speeds, &mut tau);
+        self.act(q, speeds, Some(&tau));
+        let coupled = self.with_coupling(|dynamics, coupling| {
+            dynamics.coupled_rates(q, speeds, rates, coupling);
+        });
+        if coupled.is_none() {
+            self.momentum_rates_at(q, speeds, rates);
+        }
+        self.set_driven_rates(&tau);
+        self.copy_driven(&self.driven, rates);
+        self.inputs = tau;
+    }
+
     /// Loads of the forces, against the wrenches of the nodes, to rates.
     fn solve(&mut self, forces: &[f64], rates: &mut [f64]) -> Result<(), DynamicsError> {
         self.eliminate(forces)?;
@@ -287,19 +312,7 @@ impl Dynamics for Recursive {
     ) -> Result<(), DynamicsError> {
         self.check(q, &[("rates", rates.len())])?;
         self.speeds(q, momenta, speeds)?;
-        let mut tau = core::mem::take(&mut self.inputs);
-        tau.fill(0.0);
-        efforts(speeds, &mut tau);
-        self.act(q, speeds, Some(&tau));
-        let coupled = self.with_coupling(|dynamics, coupling| {
-            dynamics.coupled_rates(q, speeds, rates, coupling);
-        });
-        if coupled.is_none() {
-            self.momentum_rates_at(q, speeds, rates);
-        }
-        self.set_driven_rates(&tau);
-        self.copy_driven(&self.driven, rates);
-        self.inputs = tau;
+        self.rates_of_momenta(q, speeds, efforts, rates);
         Ok(())
     }
 

@@ -3,7 +3,8 @@
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink};
 use crate::settings::{
-    FORM_NAMES, METHOD_NAMES, SAMPLING_NAMES, Settings, form_named, sampling_named,
+    ARITHMETIC_NAMES, FORM_NAMES, METHOD_NAMES, SAMPLING_NAMES, Settings, arithmetic_named,
+    form_named, sampling_named,
 };
 use hamel::integrate::{Control, Method, Scheme};
 
@@ -27,6 +28,11 @@ pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
             .and_then(|form| form.choice(&FORM_NAMES, sink))
             .and_then(form_named)
             .unwrap_or(defaults.form),
+        arithmetic: table
+            .optional("arithmetic")
+            .and_then(|arithmetic| arithmetic.choice(&ARITHMETIC_NAMES, sink))
+            .and_then(arithmetic_named)
+            .unwrap_or(defaults.arithmetic),
         sample_step: positive(&mut table, "sample_step", sink).unwrap_or(defaults.sample_step),
         sampling: table
             .optional("sampling")

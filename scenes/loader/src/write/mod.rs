@@ -8,7 +8,7 @@ mod shape;
 mod value;
 
 use crate::description::SceneDescription;
-use crate::settings::Settings;
+use crate::settings::{Arithmetic, Settings};
 use hamel::integrate::{Method, Sampling};
 use value::{list, number, text};
 
@@ -59,6 +59,9 @@ fn settings(out: &mut String, settings: &Settings) {
     out.push_str(&format!(
         "\n[simulation]\nt_end = {t_end}\nmethod = {method}\n{accuracy}\nform = {form}\nsample_step = {step}\n"
     ));
+    if settings.arithmetic != Arithmetic::default() {
+        entry(out, "arithmetic", &text(settings.arithmetic.name()));
+    }
     if settings.sampling != Sampling::default() {
         entry(out, "sampling", &text(settings.sampling_name()));
     }
