@@ -8,7 +8,7 @@ use hamel_codegen::scene::model::Model;
 use std::fmt::Write as _;
 use std::io::{BufReader, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Output, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// Options under which modules are promised to compile without a warning, and to do one operation after the other.
 const OPTIONS: [&str; 6] = [
@@ -35,6 +35,8 @@ pub struct Module<'a> {
     pub model: &'a Model,
     /// Its functions.
     pub functions: &'a [Function],
+    /// The compiler's option for optimisation.
+    pub optimisation: &'static str,
 }
 
 /// The program, running.
@@ -48,25 +50,25 @@ pub struct Program {
 }
 
 impl Program {
-    /// Builds and starts the program in `folder`, with an option for optimisation such as `-O2`; nothing where there is no C compiler, which is
-    /// told on stderr.
+    /// Builds and starts the program in `folder`; nothing where there is no C compiler, which is told on stderr.
     ///
     /// # Panics
     /// Where a module does not compile, or compiles with a warning.
-    pub fn new(folder: &Path, modules: &[Module<'_>], optimisation: &str) -> Option<Self> {
+    pub fn new(folder: &Path, modules: &[Module<'_>]) -> Option<Self> {
         std::fs::create_dir_all(folder).expect("the folder can be made");
-        let mut sources: Vec<PathBuf> = vec![];
+        let mut objects: Vec<PathBuf> = vec![];
         for module in modules {
             let texts = c99::module(module.model, module.functions, "a test", &module.name);
             let texts = texts.unwrap_or_else(|error| panic!("{error}"));
             write(folder, &format!("{}.h", module.name), &texts.header);
-            sources.push(write(folder, &format!("{}.c", module.name), &texts.source));
+            let source = write(folder, &format!("{}.c", module.name), &texts.source);
+            let object = source.with_extension("o");
+            compile(&[module.optimisation, "-c"], &[source], &object)?;
+            objects.push(object);
         }
-        sources.push(write(folder, "main.c", &main(modules)));
+        objects.push(write(folder, "main.c", &main(modules)));
         let program = folder.join("program");
-        let output = compile(&sources, &program, optimisation)?;
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}");
+        compile(&[], &objects, &program)?;
         let child = Command::new(&program)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -112,19 +114,24 @@ impl Drop for Program {
     }
 }
 
-fn compile(sources: &[PathBuf], program: &Path, optimisation: &str) -> Option<Output> {
+/// Compiles or links; nothing where there is no compiler.
+fn compile(options: &[&str], sources: &[PathBuf], target: &Path) -> Option<()> {
     let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());
     let output = Command::new(&compiler)
         .args(OPTIONS)
         .args(FUSED)
-        .arg(optimisation)
+        .args(options)
         .args(sources)
         .arg("-o")
-        .arg(program)
+        .arg(target)
         .arg("-lm")
         .output();
     match output {
-        Ok(output) => Some(output),
+        Ok(output) => {
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{said}");
+            Some(())
+        }
         Err(error) if error.kind() == ErrorKind::NotFound => {
             // Not by a macro: those are shown only where a test fails.
             let _ = writeln!(

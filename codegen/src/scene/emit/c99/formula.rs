@@ -66,6 +66,8 @@ fn factor(formula: &Formula) -> String {
     let stands_alone = match formula {
         Formula::Number(number) => number.is_sign_positive(),
         Formula::Call(..) => true,
+        // Written as a call where it ends with a product.
+        Formula::Sum(terms) => adds_product(terms),
         other => !other.computes(),
     };
     match stands_alone {
@@ -80,6 +82,12 @@ fn left_factor(formula: &Formula) -> String {
         Formula::Product(..) | Formula::Quotient(..) => value(formula),
         other => factor(other),
     }
+}
+
+/// Whether the last step of a sum is a multiply–add.
+pub fn adds_product(terms: &[(bool, Formula)]) -> bool {
+    let last = Formula::in_order(terms).into_iter().skip(1).last();
+    last.is_some_and(|(_, term)| matches!(term, Formula::Product(..)))
 }
 
 /// Terms that are products are added by multiply–adds.

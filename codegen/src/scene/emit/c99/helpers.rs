@@ -2,7 +2,7 @@
 
 use super::super::Lowered;
 use super::super::lines::Formula;
-use super::formula::literal;
+use super::formula::{adds_product, literal};
 use crate::derived::Primitive;
 use crate::expr::Function as Known;
 use crate::scene::alike::Read;
@@ -65,11 +65,7 @@ impl Used {
             }
             Formula::Input(Read::Sines, _) => self.sines = true,
             Formula::Input(Read::Cosines, _) => self.cosines = true,
-            Formula::Sum(terms) => {
-                let added = Formula::in_order(terms).into_iter().skip(1);
-                let mut terms = added.map(|(_, term)| term);
-                self.mul_add |= terms.any(|term| matches!(term, Formula::Product(..)));
-            }
+            Formula::Sum(terms) => self.mul_add |= adds_product(terms),
             Formula::Call(Known::Stumpff(order), _) => {
                 self.stumpff = self.stumpff.max(Some(*order));
             }

@@ -4,6 +4,7 @@
 //! products are multiply–adds, fused only where the target does that in hardware. Sines and cosines are those of the C library, one by one:
 //! the polynomials of the Rust runtime pay where a compiler vectorises them across angles, which ISO C has no means to ask for.
 
+mod breaks;
 mod formula;
 mod helpers;
 mod layout;
@@ -12,6 +13,7 @@ mod statement;
 use super::{Function, Lowered, argument_size, identifier, identifiers};
 use crate::scene::graph::Argument;
 use crate::scene::model::Model;
+use breaks::broken;
 use formula::value;
 use helpers::Used;
 use serde::Serialize;
@@ -63,9 +65,6 @@ const RESERVED: [&str; 23] = [
     "float_t",
     "math_errhandling",
 ];
-
-/// Longest line that is not broken.
-const WIDTH: usize = 110;
 
 /// The texts of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -181,38 +180,4 @@ impl Written {
 /// The macro of the header that is the size of an argument.
 fn size_macro(argument: Argument) -> &'static str {
     argument_size(argument, ["CONFIGURATION", "FREEDOMS", "SPEEDS"])
-}
-
-/// The text with long lines broken at spaces, what follows one deeper; not those of the preprocessor.
-fn broken(text: &str) -> String {
-    let mut written = String::with_capacity(text.len());
-    for line in text.lines().map(str::trim_end) {
-        let bare = line.trim_start();
-        if line.chars().count() <= WIDTH || bare.starts_with('#') {
-            written += line;
-            written.push('\n');
-            continue;
-        }
-        let indent = line.len() - bare.len();
-        let mut column = 0;
-        for word in bare.split(' ') {
-            let length = word.chars().count();
-            match column {
-                0 => written += &" ".repeat(indent),
-                _ if column + 1 + length > WIDTH => {
-                    written.push('\n');
-                    written += &" ".repeat(indent + 4);
-                    column = indent + 4;
-                }
-                _ => {
-                    written.push(' ');
-                    column += 1;
-                }
-            }
-            written += word;
-            column = column.max(indent) + length;
-        }
-        written.push('\n');
-    }
-    written
 }
