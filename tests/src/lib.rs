@@ -1,6 +1,7 @@
 //! What the suites share: specs by name, seeded random input, oracles.
 
 pub mod accuracy;
+pub mod c99;
 pub mod compiled;
 pub mod derivatives;
 pub mod differences;

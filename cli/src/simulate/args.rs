@@ -22,6 +22,8 @@ Examples:
       one page to open in a browser, with no network: the motion in three dimensions, and plots along the time
   hamel simulate scenes/snake.toml --parquet snake.parquet
       the trajectory for pandas, polars, MATLAB or PlotJuggler
+  hamel simulate scenes/report/chain_8.toml --compiled
+      on what `hamel compile -o FILE.c` writes, built and loaded on the way, instead of the general algorithms
   hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
       the state at three times, as JSON on stdout
   hamel simulate anymal.urdf --floating-base --t-end 0.5
@@ -62,6 +64,11 @@ pub struct Args {
     /// Take the [controller] of FILE, instead of the scene's own if it has one
     #[arg(long, value_name = "FILE")]
     pub controller: Option<PathBuf>,
+
+    /// Simulate with the scene's equations compiled to C, by the C compiler that the variable CC names, else cc, gcc or clang; what `hamel compile` refuses
+    /// is refused
+    #[arg(long)]
+    pub compiled: bool,
 
     /// Form of the equations of motion
     #[arg(long, value_enum)]

@@ -2,6 +2,7 @@
 
 mod args;
 mod choose;
+mod compiled;
 mod control;
 mod csv;
 mod json;

@@ -2,6 +2,7 @@
 
 use super::args::Args;
 use super::choose;
+use super::compiled::compiled;
 use super::control::{Loop, Outcome};
 use super::csv::Trajectory;
 use super::json::{self, Report, Statistics};
@@ -12,9 +13,11 @@ use super::progress::Progress;
 use super::sample::Sample;
 use super::table::Summary;
 use crate::output::Failure;
+use hamel::dynamics::Dynamics;
 use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State, Step};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
+use hamel_scene::Arithmetic;
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -25,7 +28,9 @@ use std::time::Instant;
 /// Mistakes in the scene or the options; a simulation that stops early; output that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let plan = Plan::new(args, registry)?;
-    let run = simulate(&plan, args.quiet)?;
+    let (mut dynamics, equations) = equations(args, &plan)?;
+    let mut run = simulate(&plan, &mut *dynamics, args.quiet)?;
+    run.equations = equations;
     if args.json {
         return print_json(&plan, &run);
     }
@@ -35,8 +40,25 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     print_summary(&plan, &run)
 }
 
+/// The equations of motion: the tree, or what is compiled of the scene, with what it took.
+fn equations(args: &Args, plan: &Plan) -> Result<(Box<dyn Dynamics>, Option<String>), Failure> {
+    let mechanism = &plan.scene.mechanism;
+    if !args.compiled {
+        return Ok((plan.settings.arithmetic.dynamics(mechanism), None));
+    }
+    if plan.settings.arithmetic != Arithmetic::Doubles {
+        return Err(Failure::Options(
+            "compiled equations are reckoned in doubles, and the scene asks for others: with `--compiled` say `--arithmetic doubles`".into(),
+        ));
+    }
+    let compiled = compiled(args, mechanism, plan.settings.form)?;
+    Ok((Box::new(compiled.dynamics), Some(compiled.told)))
+}
+
 /// What a simulation came to.
 struct Run {
+    /// How the equations were compiled, where they were.
+    equations: Option<String>,
     solution: Solution,
     statistics: Statistics,
     outcome: Option<Outcome>,
@@ -44,12 +66,12 @@ struct Run {
     efforts: Vec<Vec<f64>>,
 }
 
-fn simulate(plan: &Plan, quiet: bool) -> Result<Run, Failure> {
+fn simulate(plan: &Plan, dynamics: &mut dyn Dynamics, quiet: bool) -> Result<Run, Failure> {
     let control = Loop::new(plan)?;
     let mut recorder = Recorder::new(plan, quiet)?;
     let mut efforts: Vec<Vec<f64>> = Vec::new();
     let start = Instant::now();
-    let result = move_on(plan, control.as_ref(), &mut |step| {
+    let result = move_on(plan, dynamics, control.as_ref(), &mut |step| {
         let mut tau = Vec::new();
         if let Some(control) = &control {
             control.see(step);
@@ -75,6 +97,7 @@ fn simulate(plan: &Plan, quiet: bool) -> Result<Run, Failure> {
         run_time_s,
     };
     Ok(Run {
+        equations: None,
         solution,
         statistics,
         outcome: control.map(Loop::finish),
@@ -85,12 +108,12 @@ fn simulate(plan: &Plan, quiet: bool) -> Result<Run, Failure> {
 /// Integrates, with feedback where there is a controller: at every instant, or held over its period.
 fn move_on(
     plan: &Plan,
+    dynamics: &mut dyn Dynamics,
     control: Option<&Loop>,
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
-    let mut dynamics = plan.settings.arithmetic.dynamics(&plan.scene.mechanism);
     let (initial, options) = (plan.scene.start(), plan.options());
-    let mut integration = Integration::new(&mut *dynamics, &initial, &options)
+    let mut integration = Integration::new(dynamics, &initial, &options)
         .sampling(plan.settings.sampling)
         .observer(observer);
     for event in &plan.scene.events {
@@ -240,6 +263,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
     let unresolved = choose::unresolved(plan, run.statistics.steps)?;
     let summary = Summary {
         plan,
+        equations: run.equations.as_deref(),
         unresolved: unresolved.as_deref(),
         first: &sample(mechanism, &first, &[])?,
         last: &sample(mechanism, last, &[])?,

@@ -19,6 +19,8 @@ const MOST_EVENTS: usize = 12;
 pub struct Summary<'a> {
     /// What was asked.
     pub plan: &'a Plan,
+    /// How the equations were compiled, where they were.
+    pub equations: Option<&'a str>,
     /// State at time 0.
     pub first: &'a Sample<'a>,
     /// State at the end.
@@ -94,6 +96,9 @@ impl Summary<'_> {
         writeln!(f, "{bodies}, {freedoms}, {speeds}; {form} form; {method}")?;
         if let Some(reason) = &self.plan.reason {
             writeln!(f, "method      {reason}")?;
+        }
+        if let Some(equations) = self.equations {
+            writeln!(f, "equations   {equations}")?;
         }
         writeln!(f, "state at {} s:", self.last.t)
     }

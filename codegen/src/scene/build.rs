@@ -7,7 +7,7 @@
 //! }
 //! ```
 //!
-//! and in the crate `mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`.
+//! and in the crate `mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`. With [`Language::C99`] it is `arm.c` and `arm.h`, for the crate `cc`.
 
 use super::describe::Refused;
 use super::emit;
@@ -20,10 +20,32 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+/// What a module is written in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Language {
+    /// Functions generic over the runtime's scalars.
+    #[default]
+    Rust,
+    /// C as of 1999, in doubles: a source that needs `<math.h>` alone, and a header.
+    C99,
+}
+
+impl Language {
+    /// The ending of a module's file.
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Rust => "rs",
+            Self::C99 => "c",
+        }
+    }
+}
+
 /// Compiles a scene in a build script.
 #[derive(Clone, Debug)]
 pub struct Build {
     scene: PathBuf,
+    name: Option<String>,
+    language: Language,
     folders: Vec<PathBuf>,
     texts: BTreeMap<String, String>,
     functions: Option<Vec<Kind>>,
@@ -36,6 +58,8 @@ pub struct Build {
 pub struct Module {
     /// Its text.
     pub text: String,
+    /// In C, its header: prototypes, sizes and layouts.
+    pub header: Option<String>,
     /// Functions that it does not have, where nobody asked for them by name.
     pub left_out: Vec<TooLong>,
 }
@@ -55,6 +79,12 @@ pub enum Error {
     TooLong(TooLong),
     /// Emitted tokens that are no Rust.
     Write(WriteError),
+    /// A fault in a template, which is part of this crate.
+    Template(tera::Error),
+    /// A name under which C cannot include a header.
+    Name(String),
+    /// Lanes are of modules in Rust.
+    Lanes,
 }
 
 impl std::fmt::Display for Error {
@@ -66,6 +96,14 @@ impl std::fmt::Display for Error {
             Self::Refused(refused) => write!(f, "{refused}"),
             Self::TooLong(long) => write!(f, "{long}"),
             Self::Write(error) => write!(f, "{error}"),
+            Self::Template(error) => write!(f, "{error}"),
+            Self::Name(name) => write!(
+                f,
+                "the module is named {name:?}, and C cannot include `{name}.h`: quotes, backslashes and control characters must not be in a name"
+            ),
+            Self::Lanes => f.write_str(
+                "lanes are of modules in Rust, whose functions are generic over scalars: a module in C takes one state at a time",
+            ),
         }
     }
 }
@@ -76,6 +114,8 @@ impl std::error::Error for Error {}
 pub fn scene(path: impl Into<PathBuf>) -> Build {
     Build {
         scene: path.into(),
+        name: None,
+        language: Language::default(),
         folders: vec![],
         texts: BTreeMap::new(),
         functions: None,
@@ -102,6 +142,20 @@ impl Build {
         self
     }
 
+    /// What the module is written in; without this Rust.
+    #[must_use]
+    pub fn language(mut self, language: Language) -> Self {
+        self.language = language;
+        self
+    }
+
+    /// The module's name, with which its files and, in C, its functions and macros begin; without this the scene's file name.
+    #[must_use]
+    pub fn name(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
     /// The functions to be written; without this all that are not too long.
     #[must_use]
     pub fn functions(mut self, functions: impl IntoIterator<Item = Kind>) -> Self {
@@ -124,7 +178,7 @@ impl Build {
         self
     }
 
-    /// Writes the module into `OUT_DIR`, under the scene's file name with the ending `.rs`. Prints the instructions to cargo that make
+    /// Writes the module into `OUT_DIR`, under its name with the ending `.rs`, or `.c` and `.h`. Prints the instructions to cargo that make
     /// it run again when the scene or a spec changes.
     ///
     /// # Errors
@@ -141,15 +195,21 @@ impl Build {
         for folder in &self.folders {
             println!("cargo::rerun-if-changed={}", folder.display());
         }
-        let Module { text, left_out } = self.module(&name.to_string_lossy())?;
-        for left_out in left_out {
+        let module = self.module(&name.to_string_lossy())?;
+        for left_out in module.left_out {
             println!("cargo::warning={}: {left_out}", self.scene.display());
         }
-        let target = out.join(name).with_extension("rs");
-        if std::fs::read_to_string(&target).is_ok_and(|known| known == text) {
-            return Ok(());
+        let target = out.join(format!("{}.{}", self.module_name(), self.language.ending()));
+        if let Some(header) = &module.header {
+            write(&target.with_extension("h"), header)?;
         }
-        std::fs::write(&target, text).map_err(|error| Error::File(target, error))
+        write(&target, &module.text)
+    }
+
+    fn module_name(&self) -> String {
+        let stem = || self.scene.file_stem().unwrap_or_default();
+        let named = self.name.clone();
+        named.unwrap_or_else(|| stem().to_string_lossy().into_owned())
     }
 
     /// The module as text; `label` names the scene in its first line.
@@ -167,8 +227,37 @@ impl Build {
                 Err(long) => return Err(Error::TooLong(long)),
             }
         }
-        let text = emit::module(&model, &functions, label, self.lanes).map_err(Error::Write)?;
-        Ok(Module { text, left_out })
+        let (text, header) = self.texts(&model, &functions, label)?;
+        Ok(Module {
+            text,
+            header,
+            left_out,
+        })
+    }
+
+    /// The module's text, and its header if it has one.
+    fn texts(
+        &self,
+        model: &Model,
+        functions: &[emit::Function],
+        label: &str,
+    ) -> Result<(String, Option<String>), Error> {
+        match self.language {
+            Language::Rust => {
+                let text = emit::module(model, functions, label, self.lanes);
+                Ok((text.map_err(Error::Write)?, None))
+            }
+            Language::C99 if self.lanes => Err(Error::Lanes),
+            Language::C99 => {
+                let name = self.module_name();
+                if name.contains(|c: char| c.is_control() || matches!(c, '"' | '\\')) {
+                    return Err(Error::Name(name));
+                }
+                let texts = emit::c99::module(model, functions, label, &name);
+                let texts = texts.map_err(Error::Template)?;
+                Ok((texts.source, Some(texts.header)))
+            }
+        }
     }
 
     /// A loop over states must be the innermost one to become SIMD code.
@@ -228,6 +317,14 @@ impl Build {
         };
         text.map(derive).transpose()
     }
+}
+
+/// Writes a text where the file does not hold it yet.
+fn write(path: &Path, text: &str) -> Result<(), Error> {
+    if std::fs::read_to_string(path).is_ok_and(|known| known == text) {
+        return Ok(());
+    }
+    std::fs::write(path, text).map_err(|error| Error::File(path.to_owned(), error))
 }
 
 fn read(path: &Path) -> Result<String, Error> {

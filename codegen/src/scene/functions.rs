@@ -1,7 +1,7 @@
 //! The functions that can be asked for, each by its own recursion; where there are several, the one with the fewest operations.
 
 use super::alike::Plan;
-use super::emit::Function;
+use super::emit::{Function, argument_size};
 use super::equations::{Bias, Tree};
 use super::graph::{Argument, Graph, Sym, Value, record, record_alike};
 use super::model::Model;
@@ -358,11 +358,7 @@ fn function(
     plan: Option<Plan>,
 ) -> Function {
     let [configuration, freedoms, speeds] = model.sizes();
-    let size = |argument: Argument| match argument {
-        Argument::Configuration => configuration,
-        Argument::Efforts => freedoms,
-        Argument::Speeds | Argument::Momenta | Argument::Accelerations => speeds,
-    };
+    let size = |argument| argument_size(argument, [configuration, freedoms, speeds]);
     let arguments = kind.arguments().iter();
     Function {
         name: kind.name(),

@@ -14,7 +14,7 @@
 //!    │  alike       parts that repeat from body to body, where the whole would be long
 //!    ▼
 //! Plan
-//!    │  emit        lines with telling names, loops over like bodies → Rust
+//!    │  emit        lines with telling names, loops over like bodies → Rust, C99
 //!    ▼
 //! module
 //! ```
@@ -36,6 +36,6 @@ pub mod model;
 pub mod prune;
 mod spatial;
 
-pub use build::{Build, Error, Module, scene};
+pub use build::{Build, Error, Language, Module, scene};
 pub use describe::Refused;
 pub use explain::explain;

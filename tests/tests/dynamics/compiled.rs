@@ -32,8 +32,11 @@ fn loops(seed: u64) -> &'static [Loops] {
     }
 }
 
+/// What gives the values of a compiled function at a state: [`compiled::evaluate`], or what stands in for it.
+pub type Evaluate<'a> = &'a dyn Fn(&Model, (Kind, Loops), &[f64], &[f64], &[f64]) -> Vec<f64>;
+
 /// A state, and what the tree makes of it.
-struct Point {
+pub struct Point {
     place: String,
     /// How it is compiled.
     loops: &'static [Loops],
@@ -45,7 +48,8 @@ struct Point {
 }
 
 impl Point {
-    fn random(model: Model, mechanism: &Arc<Mechanism>, seed: u64) -> Self {
+    /// At a random state.
+    pub fn random(model: Model, mechanism: &Arc<Mechanism>, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let layout = *mechanism.layout();
         Self {
@@ -59,16 +63,26 @@ impl Point {
         }
     }
 
-    /// The written lines agree, without loops and with all loops that there are.
-    fn agree(&self, kind: Kind, inputs: &[f64], expected: &[f64], bound: f64) {
+    /// With loops or without, as said.
+    pub fn compiled_with(self, loops: &'static [Loops]) -> Self {
+        Self { loops, ..self }
+    }
+
+    fn agrees(self) {
+        self.agrees_by(&compiled::evaluate);
+    }
+
+    /// What `by` gives agrees, however it is compiled.
+    fn agree(&self, by: Evaluate<'_>, kind: Kind, inputs: &[f64], expected: &[f64], bound: f64) {
         for &loops in self.loops {
             let how = (kind, loops);
-            let found = compiled::evaluate(&self.model, how, &self.q, &self.speeds, inputs);
+            let found = by(&self.model, how, &self.q, &self.speeds, inputs);
             self.close(&format!("{how:?}"), &found, expected, bound);
         }
     }
 
-    fn agrees(mut self) {
+    /// All functions have the values of the tree.
+    pub fn agrees_by(mut self, by: Evaluate<'_>) {
         let mut tree = Recursive::new(Arc::clone(&self.mechanism));
         tree.complete_speeds(&self.q, &mut self.speeds)
             .expect("constraints determine them");
@@ -80,27 +94,27 @@ impl Point {
         tree.mass_matrix(q, &mut mass).expect("sizes fit");
         let mass = mass.matrix();
         let rows: Vec<f64> = mass.transpose().iter().copied().collect();
-        self.agree(Kind::MassMatrix, &[], &rows, BOUND);
+        self.agree(by, Kind::MassMatrix, &[], &rows, BOUND);
 
         tree.inverse_dynamics(q, speeds, rates, &mut expected)
             .expect("sizes fit");
-        self.agree(Kind::InverseDynamics, rates, &expected, BOUND);
+        self.agree(by, Kind::InverseDynamics, rates, &expected, BOUND);
         tree.bias_forces(q, speeds, &mut expected)
             .expect("sizes fit");
-        self.agree(Kind::BiasForces, &[], &expected, BOUND);
+        self.agree(by, Kind::BiasForces, &[], &expected, BOUND);
 
         let eigenvalues = mass.symmetric_eigenvalues();
         let condition = eigenvalues.max() / eigenvalues.min();
         tree.accelerations(q, speeds, &self.inputs, &mut expected)
             .expect("M̄ is regular");
         let bound = BOUND.max(ROUNDINGS * condition * f64::EPSILON);
-        self.agree(Kind::ForwardDynamics, &self.inputs, &expected, bound);
-        self.forms_agree(&mut tree, bound);
-        self.places_agree();
+        self.agree(by, Kind::ForwardDynamics, &self.inputs, &expected, bound);
+        self.forms_agree(by, &mut tree, bound);
+        self.places_agree(by);
     }
 
     /// The port-Hamiltonian form; `bound` is that of solutions with M̄.
-    fn forms_agree(&self, tree: &mut Recursive, bound: f64) {
+    fn forms_agree(&self, by: Evaluate<'_>, tree: &mut Recursive, bound: f64) {
         let (q, speeds) = (&self.q, &self.speeds);
         let mut momenta = vec![0.0; speeds.len()];
         tree.momenta(q, speeds, &mut momenta).expect("sizes fit");
@@ -110,9 +124,8 @@ impl Point {
             .expect("M̄ is regular");
         let energy = tree.hamiltonian(q, &momenta).expect("M̄ is regular");
         for &loops in self.loops {
-            let evaluate = |kind, state: &[f64]| {
-                compiled::evaluate(&self.model, (kind, loops), q, state, &self.inputs)
-            };
+            let evaluate =
+                |kind, state: &[f64]| by(&self.model, (kind, loops), q, state, &self.inputs);
             self.close("momenta", &evaluate(Kind::Momenta, speeds), &momenta, BOUND);
             let found = evaluate(Kind::Speeds, &momenta);
             self.close("speeds", &found, speeds, bound);
@@ -132,7 +145,7 @@ impl Point {
         }
     }
 
-    fn places_agree(&self) {
+    fn places_agree(&self, by: Evaluate<'_>) {
         let kinematics = self.mechanism.kinematics(&self.q, &self.speeds);
         let kinematics = kinematics.expect("sizes fit");
         let expected = kinematics.bodies.iter().flat_map(|body| {
@@ -140,7 +153,7 @@ impl Point {
             [rotation, body.pose.translation.as_slice().to_vec()].concat()
         });
         let expected: Vec<f64> = expected.collect();
-        self.agree(Kind::Poses, &[], &expected, BOUND);
+        self.agree(by, Kind::Poses, &[], &expected, BOUND);
     }
 
     fn close(&self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
@@ -162,7 +175,7 @@ impl Point {
 }
 
 /// Every scene file, with what the compiler says of it.
-fn scene_files() -> Vec<(Scene, Result<Model, Refused>)> {
+pub fn scene_files() -> Vec<(Scene, Result<Model, Refused>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     let folders = [folder.clone(), folder.join("report")];
     let entries = folders

@@ -2,6 +2,7 @@
 
 mod allocation;
 mod batches;
+mod c99;
 mod chains;
 mod compiled;
 mod derivatives;

@@ -1,10 +1,12 @@
-//! Lines in double precision: what the written code computes, without writing it.
+//! Lines in double precision: what the written code computes, operation by operation, without writing it; sines and cosines are the
+//! standard functions.
 
 use super::lines::{Formula, Line, Loop, Place};
 use super::{Function, Lowered};
 use crate::scene::alike::Read;
 use crate::scene::graph::Argument;
 use crate::scene::graph::known::{call, primitive};
+use hamel::scalar::Scalar;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
@@ -146,16 +148,7 @@ impl State {
             }
             Formula::Row(width, row, entry) => self.row(*width, *row, *entry),
             Formula::Name(name) => self.names.get(name).copied().unwrap_or(f64::NAN),
-            Formula::Sum(terms) => terms
-                .iter()
-                .map(|(minus, term)| {
-                    if *minus {
-                        -self.value(term)
-                    } else {
-                        self.value(term)
-                    }
-                })
-                .sum(),
+            Formula::Sum(terms) => self.sum(terms),
             Formula::Product(a, b) => self.value(a) * self.value(b),
             Formula::Quotient(a, b) => self.value(a) / self.value(b),
             Formula::Negative(inner) => -self.value(inner),
@@ -175,5 +168,21 @@ impl State {
             // Has a line of its own.
             Formula::Several(..) => f64::NAN,
         }
+    }
+
+    /// Terms that are products are added by multiply–adds.
+    fn sum(&self, terms: &[(bool, Formula)]) -> f64 {
+        let signed = |minus: bool, value: f64| if minus { -value } else { value };
+        let mut terms = Formula::in_order(terms).into_iter();
+        let Some((minus, first)) = terms.next() else {
+            return 0.0;
+        };
+        let start = signed(*minus, self.value(first));
+        terms.fold(start, |sum, (minus, term)| match term {
+            Formula::Product(a, b) => {
+                Scalar::mul_add(signed(*minus, self.value(a)), self.value(b), sum)
+            }
+            term => sum + signed(*minus, self.value(term)),
+        })
     }
 }

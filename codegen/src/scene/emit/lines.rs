@@ -98,6 +98,37 @@ impl Formula {
         }
     }
 
+    /// The terms of a sum in the order in which they are added: what is no product before products, which multiply–adds take, and what is
+    /// positive before what is not, so that no sign stands alone.
+    pub fn in_order(terms: &[(bool, Self)]) -> Vec<&(bool, Self)> {
+        let mut terms: Vec<&(bool, Self)> = terms.iter().collect();
+        let is_product = |term: &(bool, Self)| matches!(term.1, Self::Product(..));
+        terms.sort_by_key(|term| (is_product(term), term.0));
+        terms
+    }
+
+    /// Visits the formula and all that stands in it.
+    pub fn each(&self, visit: &mut impl FnMut(&Self)) {
+        visit(self);
+        match self {
+            Self::Sum(terms) => terms.iter().for_each(|(_, term)| term.each(visit)),
+            Self::Product(a, b) | Self::Quotient(a, b) => {
+                a.each(visit);
+                b.each(visit);
+            }
+            Self::Negative(of) | Self::Part(of, _) => of.each(visit),
+            Self::Call(_, arguments) | Self::Several(_, arguments) => {
+                arguments.iter().for_each(|argument| argument.each(visit));
+            }
+            Self::Number(_)
+            | Self::Column(_)
+            | Self::Input(..)
+            | Self::Source(..)
+            | Self::Row(..)
+            | Self::Name(_) => {}
+        }
+    }
+
     /// Whether it computes anything.
     pub fn computes(&self) -> bool {
         !matches!(
@@ -148,6 +179,26 @@ pub struct Loop {
     pub sources: Vec<(String, usize, Place)>,
     /// What it computes.
     pub lines: Vec<Line>,
+}
+
+impl Line {
+    /// Visits its formulas, those in a loop too.
+    pub fn each_formula(&self, visit: &mut impl FnMut(&Formula)) {
+        match self {
+            Self::Heading(_) => {}
+            Self::Value(_, formula) | Self::SinCos(.., formula) | Self::Result(_, formula) => {
+                formula.each(visit);
+            }
+            Self::SinCosAll(all) => all.iter().for_each(|(.., angle)| angle.each(visit)),
+            Self::Angles(formulas)
+            | Self::Row(Row {
+                values: formulas, ..
+            }) => {
+                formulas.iter().for_each(|formula| formula.each(visit));
+            }
+            Self::Loop(turn) => turn.lines.iter().for_each(|line| line.each_formula(visit)),
+        }
+    }
 }
 
 /// One line.

@@ -4,6 +4,7 @@
 //! equations, and loops of such lines. It holds no decision of a language: names are ASCII identifiers, sums and products are as they are
 //! computed.
 
+pub mod c99;
 mod evaluate;
 pub mod lines;
 mod looped;
@@ -15,6 +16,7 @@ pub use rust::module;
 
 use super::alike::Plan;
 use super::graph::{Argument, Graph, Operations, Value};
+use super::model::Model;
 use crate::emit::names::NameSet;
 use lines::{Formula, Line};
 use std::collections::BTreeMap;
@@ -86,6 +88,47 @@ impl Lowered {
 /// Name of the array of rows of a length.
 fn array(width: usize) -> String {
     format!("rows_of_{width}")
+}
+
+/// Names of the bodies as parts of identifiers.
+fn identifiers(model: &Model) -> Vec<String> {
+    let bodies = model.bodies.iter();
+    bodies.map(|body| identifier(&body.name, "body")).collect()
+}
+
+/// A name as the first part of an identifier, ASCII and in lower case; `kind` stands before it where it does not begin with a letter.
+fn identifier(name: &str, kind: &str) -> String {
+    let plain = name.chars().map(|c| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            '_'
+        }
+    });
+    let plain: String = plain.collect();
+    match plain.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        true => plain,
+        false => format!("{kind}_{plain}"),
+    }
+}
+
+/// Names in a comment: long lists by their ends.
+fn list(names: &[String]) -> String {
+    match names {
+        [first, second, .., last] if names.len() > 4 => {
+            format!("{first}, {second}, … {last} ({} bodies)", names.len())
+        }
+        names => names.join(", "),
+    }
+}
+
+/// That of three things which belongs to the argument: of Q, of τ, and of v̄, p̄ and v̄̇.
+pub fn argument_size<T>(argument: Argument, [configuration, freedoms, speeds]: [T; 3]) -> T {
+    match argument {
+        Argument::Configuration => configuration,
+        Argument::Efforts => freedoms,
+        Argument::Speeds | Argument::Momenta | Argument::Accelerations => speeds,
+    }
 }
 
 impl Argument {

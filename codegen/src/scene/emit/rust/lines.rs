@@ -1,7 +1,7 @@
 //! Lines and formulas in Rust.
 
-use super::super::array;
 use super::super::lines::{Formula, Line, Loop, Place};
+use super::super::{array, list};
 use crate::derived::Primitive;
 use crate::emit::rust::comment;
 use crate::expr::Function as Known;
@@ -128,16 +128,6 @@ fn table_of<T>(
     })
 }
 
-/// Names in a comment: long lists by their ends.
-fn list(names: &[String]) -> String {
-    match names {
-        [first, second, .., last] if names.len() > 4 => {
-            format!("{first}, {second}, … {last} ({} bodies)", names.len())
-        }
-        names => names.join(", "),
-    }
-}
-
 /// An index as text.
 fn index(place: Place) -> TokenStream {
     let number = |number: i64| {
@@ -251,11 +241,7 @@ fn factor(formula: &Formula) -> TokenStream {
 
 /// Terms that are products are added by multiply–adds.
 fn sum(terms: &[(bool, Formula)]) -> TokenStream {
-    let mut terms: Vec<&(bool, Formula)> = terms.iter().collect();
-    let is_product = |term: &(bool, Formula)| matches!(term.1, Formula::Product(..));
-    // It starts with what is no product, and positive, so that no sign stands alone.
-    terms.sort_by_key(|term| (is_product(term), term.0));
-    let mut terms = terms.into_iter();
+    let mut terms = Formula::in_order(terms).into_iter();
     let Some((minus, first)) = terms.next() else {
         return quote! { n(0.0) };
     };

@@ -3,7 +3,7 @@
 mod equations;
 mod lines;
 
-use super::{Function, Lowered, array};
+use super::{Function, Lowered, array, identifiers};
 use crate::emit::rust::{WriteError, text};
 use crate::scene::model::Model;
 use equations::{equations, is_batched};
@@ -75,29 +75,6 @@ fn sizes(model: &Model) -> TokenStream {
         quote! { #[doc = #docs] pub const #name: usize = #size; }
     });
     quote! { #(#items)* }
-}
-
-/// Names of the bodies as parts of identifiers.
-fn identifiers(model: &Model) -> Vec<String> {
-    let identifier = |name: &str| {
-        let plain = name.chars().map(|c| {
-            if c.is_ascii_alphanumeric() {
-                c.to_ascii_lowercase()
-            } else {
-                '_'
-            }
-        });
-        let plain: String = plain.collect();
-        match plain.starts_with(|c: char| c.is_ascii_alphabetic()) {
-            true => plain,
-            false => format!("body_{plain}"),
-        }
-    };
-    model
-        .bodies
-        .iter()
-        .map(|body| identifier(&body.name))
-        .collect()
 }
 
 /// With `inlined`, a loop over states sees its body, for each level of instructions.

@@ -1,0 +1,70 @@
+//! `hamel compile` as a user runs it: the files that it writes, and what it refuses.
+
+mod common;
+
+use common::{hamel, stdout};
+use std::path::{Path, PathBuf};
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).expect("a folder of the build");
+    folder
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn a_module_in_c_is_a_source_and_a_header_under_the_name_of_the_file() {
+    let source = folder("compile_c").join("my board.c");
+    let shown = source.to_str().expect("text");
+    let told = stdout(&["compile", "scenes/snakeboard.toml", "-o", shown]);
+    assert_eq!(told, "");
+    let (text, header) = (read(&source), read(&source.with_extension("h")));
+    assert!(text.contains("#include \"my board.h\"\n"), "{text}");
+    for function in ["forward_dynamics", "momentum_rates", "poses"] {
+        let name = format!("void my_board_{function}(");
+        assert!(text.contains(&name) && header.contains(&name), "{function}");
+    }
+    let sizes = [
+        ("BODIES", 4),
+        ("CONFIGURATION", 9),
+        ("FREEDOMS", 6),
+        ("SPEEDS", 6),
+    ];
+    for (size, value) in sizes {
+        let defined = format!("#define MY_BOARD_{size} {value}\n");
+        assert!(header.contains(&defined), "{header}");
+    }
+    assert!(header.contains("body `front`"), "{header}");
+}
+
+#[test]
+fn what_c_cannot_have_is_refused() {
+    let folder = folder("compile_refused");
+    let scene = "scenes/snakeboard.toml";
+    let lanes = folder.join("lanes.c");
+    let lanes = hamel(&[
+        "compile",
+        scene,
+        "--lanes",
+        "-o",
+        lanes.to_str().expect("text"),
+    ]);
+    let said = String::from_utf8_lossy(&lanes.stderr);
+    assert_eq!(lanes.status.code(), Some(2), "{said}");
+    assert!(said.contains("lanes are of modules in Rust"), "{said}");
+
+    let quoted = folder.join("a\"b.c");
+    let quoted = hamel(&["compile", scene, "-o", quoted.to_str().expect("text")]);
+    let said = String::from_utf8_lossy(&quoted.stderr);
+    assert_eq!(quoted.status.code(), Some(1), "{said}");
+    assert!(said.contains("C cannot include"), "{said}");
+    assert!(
+        std::fs::read_dir(&folder)
+            .expect("a folder")
+            .next()
+            .is_none()
+    );
+}

@@ -1,0 +1,311 @@
+//! Compiled modules in C: every scene that is compiled, bit by bit as its lines are evaluated here and as Rust computes them, and against the tree.
+
+use super::compiled::{Point, scene_files};
+use hamel::nalgebra::{Rotation3, Vector3};
+use hamel::scalar::Dual;
+use hamel_codegen::derived::Primitive;
+use hamel_codegen::expr::Function as Known;
+use hamel_codegen::scene::emit::Function;
+use hamel_codegen::scene::functions::{Kind, Loops, compile};
+use hamel_codegen::scene::graph::{Argument, Sym, atan2, call, primitive, record};
+use hamel_codegen::scene::model::Model;
+use hamel_codegen::scene::scene;
+use hamel_scene::Scene;
+use hamel_tests::c99::{Module, Program};
+use hamel_tests::emitted::{ball_chain, geodesic_springs, plate_cart_arm, snakeboard};
+use hamel_tests::random;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::cell::RefCell;
+use std::path::Path;
+
+fn folder(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("c99")
+        .join(name)
+}
+
+/// The functions of a model that are not too long, as a module has them.
+fn functions(model: &Model) -> Vec<Function> {
+    let compiled = Kind::ALL
+        .iter()
+        .filter_map(|&kind| compile(model, kind, Loops::default()).ok());
+    compiled.map(|chosen| chosen.function).collect()
+}
+
+/// Whether the bits are the same; any NaN is as good as another.
+fn same(a: &[f64], b: &[f64]) -> bool {
+    let pairs = a.iter().zip(b);
+    let mut same = pairs.map(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
+    a.len() == b.len() && same.all(|same| same)
+}
+
+/// Operations of a module from which on it is not optimised here.
+const LONG: usize = 20_000;
+
+/// States of each scene whose values are compared.
+const STATES: u64 = 3;
+
+/// Every function of every scene that is not too long has the bits of its evaluated lines, and the values of the tree to the bounds of the test `compiled`.
+#[test]
+fn scenes_agree() {
+    let scenes = scene_files();
+    let scenes: Vec<(Scene, Model)> = scenes
+        .into_iter()
+        .map(|(scene, model)| (scene, model.unwrap_or_else(|refused| panic!("{refused}"))))
+        .collect();
+    let functions: Vec<Vec<Function>> = scenes.iter().map(|(_, model)| functions(model)).collect();
+    let named = scenes.iter().zip(&functions).enumerate();
+    let modules: Vec<Module<'_>> = named
+        .map(|(i, ((_, model), functions))| Module {
+            name: format!("scene_{i}"),
+            model,
+            functions,
+            optimisation: match functions.iter().map(Function::written).sum::<usize>() {
+                // Compilers take more time for a long function than for many short ones.
+                ..LONG => "-O1",
+                _ => "-O0",
+            },
+        })
+        .collect();
+    let Some(program) = Program::new(&folder("scenes"), &modules) else {
+        return;
+    };
+    let program = RefCell::new(program);
+    for (i, (scene, model)) in scenes.iter().enumerate() {
+        let by = |_: &Model, (kind, loops): (Kind, Loops), q: &[f64], v: &[f64], u: &[f64]| {
+            let mut compiled = functions[i].iter();
+            // What would be too long is not in the module.
+            let Some(function) = compiled.find(|one| one.name == kind.name()) else {
+                return hamel_tests::compiled::evaluate(model, (kind, loops), q, v, u);
+            };
+            let given = |argument| match argument {
+                Argument::Configuration => q,
+                Argument::Speeds | Argument::Momenta => v,
+                Argument::Efforts | Argument::Accelerations => u,
+            };
+            let arguments = function.arguments.iter();
+            let arguments: Vec<&[f64]> = arguments.map(|&(one, _)| given(one)).collect();
+            let name = format!("scene_{i}");
+            let found = program.borrow_mut().call(&name, function.name, &arguments);
+            let expected = function.evaluate(|argument| given(argument).to_vec());
+            assert!(
+                same(&found, &expected),
+                "{}, {kind:?}: {found:?} and {expected:?}",
+                model.name
+            );
+            found
+        };
+        for seed in 0..STATES {
+            Point::random(model.clone(), &scene.mechanism, 100 * seed + i as u64)
+                .compiled_with(&[Loops::Long])
+                .agrees_by(&by);
+        }
+    }
+}
+
+/// As numbers whose sines and cosines are the standard functions, one by one.
+fn dual<const N: usize>(numbers: &[f64]) -> [Dual<f64>; N] {
+    std::array::from_fn(|i| Dual::constant(numbers[i]))
+}
+
+fn values<'a>(numbers: impl IntoIterator<Item = &'a Dual<f64>>) -> Vec<f64> {
+    numbers.into_iter().map(|number| number.value).collect()
+}
+
+/// A function of a committed module: in C its name, which arguments it takes of Q, v̄ or p̄, and τ or v̄̇; and the same in Rust.
+struct Committed {
+    module: &'static str,
+    function: &'static str,
+    arguments: &'static [usize],
+    in_rust: fn([&[f64]; 3]) -> Vec<f64>,
+}
+
+macro_rules! committed {
+    ($module:ident, $function:ident, [$($argument:literal),*] $(, $flattened:ident)?) => {
+        Committed {
+            module: stringify!($module),
+            function: stringify!($function),
+            arguments: &[$($argument),*],
+            in_rust: |state| {
+                let results = $module::$function($(&dual(state[$argument])),*);
+                values(results$(.$flattened())?.iter())
+            },
+        }
+    };
+}
+
+fn committed() -> Vec<Committed> {
+    vec![
+        committed!(plate_cart_arm, forward_dynamics, [0, 1, 2]),
+        committed!(plate_cart_arm, inverse_dynamics, [0, 1, 2]),
+        committed!(plate_cart_arm, mass_matrix, [0], as_flattened),
+        committed!(plate_cart_arm, bias_forces, [0, 1]),
+        committed!(plate_cart_arm, momentum_rates, [0, 1, 2], as_flattened),
+        committed!(plate_cart_arm, momenta, [0, 1]),
+        committed!(plate_cart_arm, speeds_from_momenta, [0, 1]),
+        committed!(plate_cart_arm, hamiltonian, [0, 1]),
+        committed!(plate_cart_arm, energies, [0, 1]),
+        committed!(plate_cart_arm, poses, [0], as_flattened),
+        committed!(geodesic_springs, forward_dynamics, [0, 1, 2]),
+        committed!(geodesic_springs, momentum_rates, [0, 1, 2], as_flattened),
+        committed!(geodesic_springs, hamiltonian, [0, 1]),
+        committed!(snakeboard, forward_dynamics, [0, 1, 2]),
+        committed!(snakeboard, momentum_rates, [0, 1, 2], as_flattened),
+        committed!(snakeboard, hamiltonian, [0, 1]),
+        committed!(ball_chain, forward_dynamics, [0, 1, 2]),
+        committed!(ball_chain, inverse_dynamics, [0, 1, 2]),
+    ]
+}
+
+/// The committed modules in C have the bits of those in Rust.
+#[test]
+fn committed_modules_agree() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = [
+        "../scenes/plate_cart_arm.toml",
+        "../scenes/snakeboard.toml",
+        "data/scenes/geodesic_springs.toml",
+        "data/scenes/ball_chain.toml",
+    ];
+    let load = |file: &&str| {
+        let model = scene(here.join(file))
+            .library(hamel_joints::specs())
+            .model();
+        let model = model.unwrap_or_else(|error| panic!("{error}"));
+        let scene = Scene::load(here.join(file), &hamel_joints::registry());
+        let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+        let name = Path::new(file).file_stem().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        let mut functions = functions(&model);
+        let own = committed().into_iter().filter(|one| one.module == name);
+        let own: Vec<&str> = own.map(|one| one.function).collect();
+        functions.retain(|function| own.contains(&function.name));
+        (name, scene, functions, model)
+    };
+    let loaded: Vec<_> = files.iter().map(load).collect();
+    let modules = loaded.iter().map(|(name, _, functions, model)| Module {
+        name: name.clone(),
+        model,
+        functions,
+        // The highest level that build systems commonly ask for: more is inlined, and other warnings are looked for.
+        optimisation: "-O2",
+    });
+    let modules: Vec<Module<'_>> = modules.collect();
+    let Some(mut program) = Program::new(&folder("committed"), &modules) else {
+        return;
+    };
+    for Committed {
+        module,
+        function,
+        arguments,
+        in_rust,
+    } in committed()
+    {
+        let named = loaded.iter().find(|(name, ..)| name == module);
+        let (_, scene, ..) = named.unwrap_or_else(|| panic!("{module} is compiled"));
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let layout = *scene.mechanism.layout();
+        for _ in 0..100 {
+            let q = random::configuration(&mut random, &scene.mechanism);
+            let v = random::numbers(&mut random, layout.speeds);
+            let u = random::numbers(&mut random, layout.freedoms);
+            let u = match function {
+                "inverse_dynamics" => &u[..layout.speeds],
+                _ => &u,
+            };
+            let state = [&*q, &*v, u];
+            let given: Vec<&[f64]> = arguments.iter().map(|&one| state[one]).collect();
+            let found = program.call(module, function, &given);
+            let expected = in_rust(state);
+            assert!(
+                same(&found, &expected),
+                "{module}, {function}: {found:?} and {expected:?}"
+            );
+        }
+    }
+}
+
+/// As many as Q has in the scene whose module the helpers are written into.
+const SCALARS: usize = 18;
+
+/// Arguments of the helpers: a number of any sign and size; one below 4π²; a positive one; a matrix off a rotation, by rows; a quaternion.
+fn helper_arguments() -> Vec<[f64; SCALARS]> {
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut arguments = vec![];
+    for i in 0..600 {
+        let mut own = [0.0; SCALARS];
+        own.copy_from_slice(&random::numbers(&mut random, SCALARS));
+        // From 1e-20 to 1e4, and 0.
+        let size = 10_f64.powf(f64::from(i) / 25.0 - 20.0);
+        own[0] *= if i == 0 { 0.0 } else { size };
+        own[1] *= 30.0;
+        own[2] = own[2].abs() * size;
+        // Angles from rounding to a little beyond π.
+        let turn = Vector3::new(own[3], own[4], own[5]).normalize() * size.min(3.2);
+        let rotation = Rotation3::from_scaled_axis(turn).transpose();
+        for (entry, exact) in own[3..12].iter_mut().zip(rotation.matrix().iter()) {
+            *entry = exact + 1e-6 * *entry;
+        }
+        for entry in &mut own[13..16] {
+            *entry *= size;
+        }
+        arguments.push(own);
+    }
+    arguments
+}
+
+/// Functions of the runtime that C does not have, which modules bring along: every one at arguments of all magnitudes.
+#[test]
+fn helpers_agree() {
+    let x = |i| Sym::input(Argument::Configuration, i);
+    let (outputs, graph) = record(|| {
+        let mut all: Vec<Sym> = (0..12)
+            .map(|order| call(Known::Stumpff(order), x(0)))
+            .collect();
+        all.extend((0..6).map(|n| call(Known::DexpInverse(n), x(1))));
+        all.extend([
+            call(Known::Exp, x(0)),
+            call(Known::Ln, x(2)),
+            call(Known::Sqrt, x(2)),
+        ]);
+        all.push(atan2(x(0), x(1)));
+        let matrix: Vec<Sym> = (3..12).map(x).collect();
+        let quaternion: Vec<Sym> = (12..16).map(x).collect();
+        all.extend(primitive(Primitive::RotationVector, &matrix));
+        all.extend(primitive(Primitive::NearestRotation, &matrix));
+        all.extend(primitive(Primitive::QuaternionVector, &quaternion));
+        all.into_iter().map(Sym::value).collect::<Vec<_>>()
+    });
+    // Any that stores enough will do: its functions are not written.
+    let any = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/double_ball_pendulum.toml");
+    let model = scene(any).library(hamel_joints::specs()).model();
+    let model = model.unwrap_or_else(|error| panic!("{error}"));
+    let function = Function {
+        name: "helpers",
+        summary: "All helpers.".to_owned(),
+        arguments: vec![(Argument::Configuration, SCALARS)],
+        columns: 1,
+        graph,
+        outputs,
+        plan: None,
+    };
+    let functions = [function];
+    let module = Module {
+        name: "helpers".to_owned(),
+        model: &model,
+        functions: &functions,
+        optimisation: "-O2",
+    };
+    let Some(mut program) = Program::new(&folder("helpers"), &[module]) else {
+        return;
+    };
+    for arguments in helper_arguments() {
+        let found = program.call("helpers", "helpers", &[&arguments]);
+        let expected = functions[0].evaluate(|_| arguments.to_vec());
+        assert!(
+            same(&found, &expected),
+            "{arguments:?}: {found:?} and {expected:?}"
+        );
+    }
+}
