@@ -1,10 +1,11 @@
-//! What the page shows of what the files hold: figures of one machine, and of each scene those that were measured longest.
+//! What the page shows of what the files hold: figures of one machine, and of each curve those that were measured longest.
 
 use super::build_cost::{self, Cost};
 use super::machine::Machine;
 use super::row::{Drift, Row, Stability, Work};
 use super::store::read;
 use crate::output::Failure;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// All that the page is made of.
@@ -43,8 +44,28 @@ impl Figures {
         drift.retain(|row| row.machine == shown);
         stability.retain(|row| row.machine == shown);
         Ok(Self {
-            work: longest(work, |row| (&row.scene, &row.budget)),
-            drift: longest(drift, |row| (&row.scene, &row.budget)),
+            work: longest(work, |row| {
+                let Work {
+                    scene,
+                    form,
+                    method,
+                    representation,
+                    ..
+                } = row;
+                (
+                    format!("{scene} {form} {method} {representation}"),
+                    &row.budget,
+                )
+            }),
+            drift: longest(drift, |row| {
+                let Drift {
+                    scene,
+                    form,
+                    method,
+                    ..
+                } = row;
+                (format!("{scene} {form} {method}"), &row.budget)
+            }),
             stability,
             costs: build_cost::costs()?,
             machine: Machine::of(&shown),
@@ -64,17 +85,17 @@ fn machines<R: Row>(rows: &[R]) -> Vec<String> {
     machines
 }
 
-/// Without the rows of a short look at scenes that have been measured in full.
-fn longest<R: Clone>(rows: Vec<R>, scene_and_budget: impl Fn(&R) -> (&String, &String)) -> Vec<R> {
-    let in_full: Vec<String> = rows
+/// Without the rows of a short look at curves that have been measured in full.
+fn longest<R: Clone>(rows: Vec<R>, curve_and_budget: impl Fn(&R) -> (String, &String)) -> Vec<R> {
+    let in_full: HashSet<String> = rows
         .iter()
-        .map(&scene_and_budget)
+        .map(&curve_and_budget)
         .filter(|(_, budget)| *budget == "full")
-        .map(|(scene, _)| scene.clone())
+        .map(|(curve, _)| curve)
         .collect();
     let stays = |row: &&R| {
-        let (scene, budget) = scene_and_budget(row);
-        budget == "full" || !in_full.contains(scene)
+        let (curve, budget) = curve_and_budget(row);
+        budget == "full" || !in_full.contains(&curve)
     };
     rows.iter().filter(stays).cloned().collect()
 }

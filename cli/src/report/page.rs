@@ -235,7 +235,7 @@ fn failures(rows: &[&Work]) -> Vec<Failing> {
             let accuracy = format!("{:.1e}", row.accuracy);
             match failing.last_mut() {
                 // One reason with other figures in it is one line: that of the coarsest run.
-                Some(last) if last.curve == label => {
+                Some(last) if last.curve == label && words(&last.reason) == words(&row.failure) => {
                     last.accuracies = format!("{}, {accuracy}", last.accuracies);
                 }
                 _ => failing.push(Failing {
@@ -247,6 +247,12 @@ fn failures(rows: &[&Work]) -> Vec<Failing> {
         }
     }
     failing
+}
+
+/// A text without its figures.
+fn words(text: &str) -> String {
+    let is_figure = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e');
+    text.chars().filter(|&c| !is_figure(c)).collect()
 }
 
 fn overview(rows: &[Work], methods: &[String]) -> Vec<Line> {

@@ -3,7 +3,8 @@
 use super::row::Row;
 use crate::output::Failure;
 use std::collections::HashSet;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The file of one kind of rows: those of all machines that it was measured on.
@@ -24,10 +25,12 @@ impl<R: Row> Store<R> {
     /// A file that holds other than such rows.
     pub fn open(folder: &Path, machine: &str, fresh: bool) -> Result<Self, Failure> {
         let rows = read::<R>(folder)?;
+        let path = path::<R>(folder);
+        mend(&path).map_err(|error| failure(&path, error))?;
         let own = rows.iter().filter(|row| row.machine() == machine && !fresh);
         Ok(Self {
             measured: own.map(Row::key).collect(),
-            path: path::<R>(folder),
+            path,
             machine: machine.into(),
             rows,
         })
@@ -66,19 +69,43 @@ impl<R: Row> Store<R> {
     }
 }
 
+/// In one piece, so that what is stopped leaves a whole curve or none, as far as the system allows.
 fn append<R: Row>(path: &Path, rows: &[R]) -> csv::Result<()> {
-    let file = OpenOptions::new().create(true).append(true).open(path)?;
+    let mut file = OpenOptions::new().create(true).append(true).open(path)?;
     let is_empty = file.metadata()?.len() == 0;
+    let mut text = Vec::new();
     let mut builder = csv::WriterBuilder::new();
-    write(builder.has_headers(is_empty).from_writer(file), rows)
+    write(builder.has_headers(is_empty).from_writer(&mut text), rows)?;
+    Ok(file.write_all(&text)?)
 }
 
-fn write<R: Row>(mut writer: csv::Writer<File>, rows: &[R]) -> csv::Result<()> {
+fn write<R: Row>(mut writer: csv::Writer<impl Write>, rows: &[R]) -> csv::Result<()> {
     rows.iter().try_for_each(|row| writer.serialize(row))?;
     Ok(writer.flush()?)
 }
 
-/// All rows of a file; none where it is not there.
+/// Cuts off a last line that was not written to its end.
+fn mend(path: &Path) -> std::io::Result<()> {
+    if !path.exists() {
+        return Ok(());
+    }
+    let text = fs::read(path)?;
+    match whole(&text).len() {
+        length if length < text.len() => {
+            let file = OpenOptions::new().write(true).open(path)?;
+            file.set_len(length as u64)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The lines that were written to their ends.
+fn whole(text: &[u8]) -> &[u8] {
+    let end = text.iter().rposition(|byte| *byte == b'\n');
+    &text[..end.map_or(0, |end| end + 1)]
+}
+
+/// All rows of a file, without a last line that was not written to its end; none where it is not there.
 ///
 /// # Errors
 /// A file that holds other than such rows.
@@ -87,8 +114,10 @@ pub fn read<R: Row>(folder: &Path) -> Result<Vec<R>, Failure> {
     if !path.exists() {
         return Ok(Vec::new());
     }
-    let reader = csv::Reader::from_path(&path);
-    let rows = reader.and_then(|mut reader| reader.deserialize().collect());
+    let text = fs::read(&path).map_err(|error| failure(&path, error))?;
+    let rows: csv::Result<Vec<R>> = csv::Reader::from_reader(whole(&text))
+        .deserialize()
+        .collect();
     rows.map_err(|error| {
         Failure::Page(format!(
             "{}: {error}; move the file away, or name another folder",

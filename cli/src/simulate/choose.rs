@@ -33,14 +33,18 @@ pub fn choose(
         is_bound,
     };
     let choice = Choice::new(mechanism, &scene.start(), wanted).map_err(failed)?;
-    Ok((Method::controlled(choice.scheme, tolerance), choice.reason))
+    let reason = match control {
+        Some(_) => choice.reason + "; what the controller adds was not looked at",
+        None => choice.reason,
+    };
+    Ok((Method::controlled(choice.scheme, tolerance), reason))
 }
 
-/// What an implicit method has passed over in `steps` steps, by the oscillations about the first state.
+/// What an implicit method has passed over in `steps` steps to the time `until`, s, by the oscillations about the first state.
 ///
 /// # Errors
 /// As [`choose`].
-pub fn unresolved(plan: &Plan, steps: usize) -> Result<Option<String>, Failure> {
+pub fn unresolved(plan: &Plan, steps: usize, until: f64) -> Result<Option<String>, Failure> {
     let does = match plan.settings.method.scheme() {
         Scheme::Midpoint | Scheme::Gauss2 | Scheme::Gauss3 => "its energy stays bounded",
         Scheme::DiscreteGradient => "its energy is kept",
@@ -50,7 +54,7 @@ pub fn unresolved(plan: &Plan, steps: usize) -> Result<Option<String>, Failure> 
     if plan.scene.mechanism.elements().is_empty() || steps == 0 {
         return Ok(None);
     }
-    let step = plan.settings.t_end / steps as f64;
+    let step = until / steps as f64;
     let spectrum = Spectrum::at(&plan.scene.mechanism, &plan.scene.start()).map_err(failed)?;
     Ok(spectrum.and_then(|spectrum| {
         let mut modes = spectrum.modes().iter();

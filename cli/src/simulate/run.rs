@@ -239,7 +239,7 @@ fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
         form: plan.settings.form_name(),
         method: plan.settings.method.scheme().name(),
         reason: plan.reason.as_deref(),
-        unresolved: choose::unresolved(plan, run.statistics.steps)?,
+        unresolved: choose::unresolved(plan, run.statistics.steps, run.solution.state.time)?,
         samples: &samples,
         events: &events,
         control: run.outcome.as_ref(),
@@ -260,7 +260,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         .map(kinetic)
         .try_fold(0.0, |most: f64, energy| energy.map(|e| most.max(e)));
     let most_kinetic_energy = most.map_err(|error| Failure::Simulation(error.to_string()))?;
-    let unresolved = choose::unresolved(plan, run.statistics.steps)?;
+    let unresolved = choose::unresolved(plan, run.statistics.steps, run.solution.state.time)?;
     let summary = Summary {
         plan,
         equations: run.equations.as_deref(),

@@ -4,8 +4,7 @@
 //! rank at every eigenvalue λ of A whose motion does not fade. Asked before a Riccati equation is solved, since rounding makes such a motion fade
 //! or grow by 1e-16 to 1e-8 of the rates of A, and the solver would find a huge cost for it instead of none.
 
-use crate::eigen::eigenvalues;
-use nalgebra::linalg::balancing::balance_parlett_reinsch;
+use crate::eigen::{balance, eigenvalues};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Rates of fading that pass for none, as parts of the largest rate: two equal eigenvalues of a Jordan block move by √eps = 1.5e-8, three by 6e-6
@@ -53,7 +52,7 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
         return None;
     }
     // The same motions in states of like size: units of states must not decide.
-    let scales = like_sizes(a);
+    let scales = like_sizes(a)?;
     let balanced = DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| {
         a[(i, j)] * (scales[j] / scales[i])
     });
@@ -86,10 +85,10 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
 }
 
 /// Sizes of states in which rows and columns of `a` are alike.
-fn like_sizes(a: &DMatrix<f64>) -> DVector<f64> {
+fn like_sizes(a: &DMatrix<f64>) -> Option<DVector<f64>> {
     let least = ROUNDING * a.amax();
     let mut known = a.map(|x| if x.abs() <= least { 0.0 } else { x });
-    balance_parlett_reinsch(&mut known)
+    balance(&mut known)
 }
 
 /// The state that has the largest part in the direction in which `[A − λ, B]` reaches no further than `faint`.

@@ -69,11 +69,13 @@ impl Choice {
         let (Some(all), Some(bare)) =
             (Spectrum::at(mechanism, state)?, Spectrum::at(&bare, state)?)
         else {
-            let reason = format!(
-                "{} speeds are too many to look for what is stiff, which is done up to {}",
-                mechanism.layout().speeds,
-                Spectrum::MOST_SPEEDS
-            );
+            let reason = match mechanism.layout().speeds {
+                count if count > Spectrum::MOST_SPEEDS => format!(
+                    "{count} speeds are too many to look for what is stiff, which is done up to {}",
+                    Spectrum::MOST_SPEEDS
+                ),
+                _ => "rates at the first state are too far apart to look for what is stiff".into(),
+            };
             return Ok(wanted.explicit(&reason));
         };
         let slow = bare.modes().first().map_or(0.0, Mode::rate);

@@ -5,13 +5,12 @@ use super::jacobian::Jacobian;
 use super::standing::Standing;
 use super::{Form, IntegrateError, State, StepFailure, no_inputs};
 use crate::dynamics::Recursive;
-use crate::eigen::eigenvalues;
+use crate::eigen::{balance, eigenvalues};
 use crate::integrate::approach::Near;
 use crate::mechanism::Mechanism;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// One motion `e^{λt}` of the linearised equations.
@@ -63,8 +62,8 @@ impl Spectrum {
             near: Near(None),
         })?;
         let mut balanced = matrix.clone();
-        balance_parlett_reinsch(&mut balanced);
-        Ok(eigenvalues(balanced).map(|values| {
+        let values = balance(&mut balanced).and_then(|_| eigenvalues(balanced));
+        Ok(values.map(|values| {
             let mut modes: Vec<Mode> = values
                 .into_iter()
                 .map(|value| Mode {

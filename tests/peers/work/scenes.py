@@ -91,7 +91,7 @@ def load(scene, reference):
         kind = body['joint']['type']
         if kind not in SEQUENCES:
             raise Beyond(f'joint `{kind}`')
-        odd = body.keys() & {'drive', 'armature', 'wrench', 'actuator'}
+        odd = body.keys() & {'motion', 'effort', 'armature'}
         if odd:
             raise Beyond(f'body `{body["name"]}` has {", ".join(sorted(odd))}')
         Ra, pa = pose(body.get('body_at'))

@@ -18,7 +18,7 @@ mod compiled {
 
 use cpu_time::ThreadTime;
 use hamel::compiled::{Compiled, Equations};
-use hamel::dynamics::{Dynamics, Recursive};
+use hamel::dynamics::Dynamics;
 use hamel::integrate::{
     Choice, Form, Integration, Method, Options, Sampling, Scheme, Solution, Wanted,
 };
@@ -52,7 +52,7 @@ impl Loaded {
         let mechanism = Arc::clone(&self.scene.mechanism);
         Ok(match self.equations {
             Some(equations) => Box::new(Compiled::new(mechanism, equations)?),
-            None => Box::new(Recursive::new(mechanism)),
+            None => self.scene.settings.arithmetic.dynamics(&mechanism),
         })
     }
 }
