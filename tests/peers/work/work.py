@@ -25,7 +25,7 @@ ROOT = os.path.normpath(f'{HERE}/../../..')
 ASKED = [1e-6, 1e-9]
 KNOBS = {
     'tol': [10 ** (-k / 2) for k in range(4, 28)],
-    'accuracy': [10 ** (-k / 2) for k in range(2, 28)],
+    'accuracy': [10 ** (-k / 2) for k in range(6, 28)],
     'steps': [2**k for k in range(3, 24)],
 }
 
@@ -70,7 +70,7 @@ class Point:
     def __init__(self, program, scene, method, value, repetitions, most):
         self.program, self.method, self.value = program, method, value
         # Other work on the machine may take as much time again.
-        limit = 4.0 * most * max(1, repetitions) + 5.0
+        limit = 4.0 * most * max(1, repetitions) + 1.0
         answer = program.ask(f'run {method} {value!r} {scene["t_end"]!r} {repetitions} {most}', limit).split()
         self.failure = None if answer[0] == 'ok' else ' '.join(answer[1:])
         self.error = math.inf
@@ -88,7 +88,7 @@ def sweep(program, scene, method, knob, most):
         points.append(point)
         if point.failure:
             # Coarse runs of some methods break down and crawl where finer ones go through.
-            if 'longer' in point.failure and (best or len(points) > 8):
+            if 'longer' in point.failure and (best or len(points) > 3):
                 break
             continue
         if best is None or point.error < best.error:
