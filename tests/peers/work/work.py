@@ -113,10 +113,10 @@ def starts_elsewhere(program, scene):
     if not program.ways:
         return
     method, knob = program.ways[0]
-    short = dict(scene, t_end=scene['t_end'] * 1e-12, expected=scene['first'])
+    short = dict(scene, t_end=scene['t_end'] * 1e-15, expected=scene['first'])
     point = Point(program, short, method, 1 if knob == 'steps' else 1e-6, 1, 10.0)
-    # What a part of 1e-12 of the motion changes, with room for accelerations.
-    if not point.failure and point.error > 1e-6:
+    # Stiff springs push at 1e12 m/s²: in that time, by a thousandth.
+    if not point.failure and point.error > 1e-2:
         program.refusal, program.ways = f'its model starts {point.error:.1e} from the reference', []
 
 
