@@ -31,11 +31,7 @@ pub fn run(
     samples: &[f64],
     most_steps: usize,
 ) -> (Solution, f64) {
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form,
         method,
@@ -68,11 +64,7 @@ pub fn kinematics(scene: &Scene, state: &State) -> Kinematics {
 
 /// Energy error of the last state: a part of the larger of the initial energy and kinetic energy.
 pub fn energy_error(scene: &Scene, state: &State) -> f64 {
-    let start = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let start = scene.start();
     let start = kinematics(scene, &start);
     let unit = start.energy().abs().max(start.kinetic_energy());
     (kinematics(scene, state).energy() - start.energy()).abs() / unit

@@ -17,11 +17,7 @@ const TOLERANCE: f64 = 1e-11;
 const T_END: f64 = 2.0;
 
 fn last(scene: &Scene, form: Form) -> State {
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form,
         method: Method::dormand_prince(TOLERANCE),
@@ -46,15 +42,7 @@ fn kinematics(scene: &Scene, state: &State) -> Kinematics {
 #[test]
 fn both_forms_make_the_same_motion_without_slip() {
     for scene in SCENES.map(scenes::load) {
-        let start = scenes::kinematics(
-            &scene,
-            &State {
-                time: 0.0,
-                configuration: scene.configuration.clone(),
-                speeds: scene.speeds.clone(),
-            },
-        )
-        .expect("sizes fit");
+        let start = scenes::kinematics(&scene, &scene.start()).expect("sizes fit");
         let [lagrangian, hamiltonian] =
             [Form::Lagrangian, Form::Hamiltonian].map(|form| last(&scene, form));
         let both = [&lagrangian, &hamiltonian].map(|state| kinematics(&scene, state));

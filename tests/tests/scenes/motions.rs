@@ -91,11 +91,7 @@ fn vector(body: &Value, key: &str) -> Vector3<f64> {
 
 /// The motion as the scene says, arithmetic included, but for the form.
 fn run(scene: &Scene, form: Form, samples: Vec<f64>) -> Solution {
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form,
         method: scene.settings.method,

@@ -5,7 +5,7 @@ use hamel::control::{ComputedTorque, Controller, ErrorDynamics, Feedback, Refere
 use hamel::dynamics::Recursive;
 use hamel::elements::Law;
 use hamel::erased::AnyJoint;
-use hamel::integrate::{Form, Options, State, Step, integrate};
+use hamel::integrate::{Form, Options, Step, integrate};
 use hamel_scene::Scene;
 use hamel_tests::random::library;
 use std::f64::consts::TAU;
@@ -132,11 +132,7 @@ fn follow(scene: &Scene, law: &ComputedTorque, t_end: f64) -> Vec<Reading> {
 fn follow_with(scene: &Scene, law: &ComputedTorque, t_end: f64, see: &mut dyn FnMut(&Step<'_>)) {
     let mut law = law.clone();
     let mut feedback = Feedback::new(&mut law);
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form: Form::Lagrangian,
         method: EXACT,

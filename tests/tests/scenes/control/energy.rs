@@ -27,17 +27,13 @@ fn shaped(form: Form, spring: PortSpring) -> (Scene, EnergyShaping, f64) {
 fn shaped_energy_is_lost_at_the_port_alone() {
     use hamel::control::Feedback;
     use hamel::dynamics::Recursive;
-    use hamel::integrate::{Options, State, Step, integrate};
+    use hamel::integrate::{Options, Step, integrate};
     for form in [Form::Lagrangian, Form::Hamiltonian] {
         for spring in [PortSpring::Log(6.0), PortSpring::Trace(6.0)] {
             let (scene, law, damping) = shaped(form, spring);
             let (mut law, mut gauge) = (law.clone(), law);
             let mut feedback = Feedback::new(&mut law);
-            let initial = State {
-                time: 0.0,
-                configuration: scene.configuration.clone(),
-                speeds: scene.speeds.clone(),
-            };
+            let initial = scene.start();
             let step = 0.5e-3;
             let options = Options {
                 form,

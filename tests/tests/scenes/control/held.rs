@@ -3,18 +3,9 @@
 use super::scene;
 use hamel::dynamics::Recursive;
 use hamel::integrate::{
-    Form, IntegrateError, Method, Options, State, integrate, integrate_held, no_observer,
+    Form, IntegrateError, Method, Options, integrate, integrate_held, no_observer,
 };
-use hamel_scene::Scene;
 use std::sync::Arc;
-
-fn start(scene: &Scene) -> State {
-    State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    }
-}
 
 fn options(form: Form, method: Method, t_end: f64, samples: &[f64]) -> Options {
     Options {
@@ -52,7 +43,7 @@ fn held_inputs_are_those_of_one_integration_for_each_period() {
             let options_of_all = options(form, method, period * f64::from(periods), &samples);
             let solution = integrate_held(
                 &mut dynamics,
-                &start(&scene),
+                &scene.start(),
                 &options_of_all,
                 period,
                 &mut inputs,
@@ -66,7 +57,7 @@ fn held_inputs_are_those_of_one_integration_for_each_period() {
             }
             assert_eq!(solution.samples.len(), samples.len());
 
-            let mut state = start(&scene);
+            let mut state = scene.start();
             for k in 1..=periods {
                 let mut held = [0.0; 3];
                 law(state.time, &state.configuration, &state.speeds, &mut held);
@@ -93,7 +84,7 @@ fn periods_out_of_range_are_refused() {
     for period in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let refused = integrate_held(
             &mut Recursive::new(Arc::clone(&scene.mechanism)),
-            &start(&scene),
+            &scene.start(),
             &options(Form::Lagrangian, METHODS[0], 1.0, &[]),
             period,
             &mut law,

@@ -11,9 +11,7 @@ mod riccati;
 
 use hamel::control::{Controller, Feedback};
 use hamel::dynamics::Recursive;
-use hamel::integrate::{
-    Form, Method, Options, Scheme, Solution, State, Step, integrate, integrate_held,
-};
+use hamel::integrate::{Form, Method, Options, Scheme, Solution, Step, integrate, integrate_held};
 use hamel_scene::Scene;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -68,11 +66,7 @@ fn watch(scene: &Scene, method: Method, t_end: f64, see: &mut dyn FnMut(&Step<'_
     let mut controller = controller(scene);
     let mut feedback = Feedback::new(&mut *controller);
     let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form: scene.settings.form,
         method,

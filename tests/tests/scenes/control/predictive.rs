@@ -14,11 +14,7 @@ const METHOD: Method = Method::controlled(Scheme::DormandPrince, 1e-8);
 fn held(scene: &Scene, controller: &mut dyn Controller, limit: f64) -> (Vec<Vec<f64>>, State) {
     let mut feedback = Feedback::new(controller);
     let mut efforts = Vec::new();
-    let initial = State {
-        time: 0.0,
-        configuration: scene.configuration.clone(),
-        speeds: scene.speeds.clone(),
-    };
+    let initial = scene.start();
     let options = Options {
         form: Form::Lagrangian,
         method: METHOD,
