@@ -5,7 +5,7 @@
 //! Φ is differentiated twice on the way; that is left to dual numbers through the joint's own kernels, so that it is exact for every Φ,
 //! those that are inverted by Newton's method included.
 
-use crate::erased::Sizes;
+use crate::erased::{Sizes, vector};
 use crate::finite::differential;
 use crate::joint::Joint;
 use crate::scalar::Dual;
@@ -54,9 +54,9 @@ where
     ) {
         let field = Field::<J, N, K, S, C> {
             joint: &self.0,
-            base: SVector::from_column_slice(base),
-            phi: SVector::from_column_slice(phi),
-            speeds: SVector::from_column_slice(speeds),
+            base: vector(base),
+            phi: vector(phi),
+            speeds: vector(speeds),
         };
         field.fill(out);
     }

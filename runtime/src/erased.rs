@@ -90,6 +90,8 @@ pub trait AnyJoint: Steps + ExtendedSteps + Chart + ElementKernels + Debug + Sen
     fn retract_differential(&self, q: &[f64], phi: &[f64], out: &mut [f64]);
     /// [`Joint::retract_differential_inverse`] into `out` (K).
     fn retract_differential_inverse(&self, q: &[f64], phi: &[f64], rate: &[f64], out: &mut [f64]);
+    /// `ϕ̇ = D⁻¹ S₀⁻¹ S̄ v̄` at `moved`, which is Φ(Q, ϕ), into `out` (K): D is the differential of Φ at (Q, ϕ), S₀ and S̄ are those at `moved`.
+    fn local_rate(&self, q: &[f64], phi: &[f64], moved: &[f64], speeds: &[f64], out: &mut [f64]);
     /// [`Joint::project`] in place.
     ///
     /// # Errors
@@ -163,8 +165,11 @@ where
 #[derive(Debug)]
 pub(crate) struct Sizes<const N: usize, const K: usize, const S: usize, const C: usize>;
 
-fn vector<const D: usize>(slice: &[f64]) -> SVector<f64, D> {
-    SVector::from_column_slice(slice)
+/// Entry by entry: nalgebra's own way copies a number of bytes that is not known when it is compiled, by a call.
+#[inline]
+pub(crate) fn vector<const D: usize>(slice: &[f64]) -> SVector<f64, D> {
+    let entries = &slice[..D];
+    SVector::from(core::array::from_fn(|i| entries[i]))
 }
 
 fn store<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>, out: &mut [f64]) {
@@ -308,6 +313,24 @@ where
             .0
             .retract_differential_inverse(&vector(q), &vector(phi), &vector(rate));
         store(&result, out);
+    }
+
+    fn local_rate(&self, q: &[f64], phi: &[f64], moved: &[f64], speeds: &[f64], out: &mut [f64]) {
+        let (joint, structures) = (&self.0, J::STRUCTURES);
+        let moved = vector(moved);
+        let velocity: SVector<f64, K> = match structures.speed_basis.is_identity() {
+            true => vector(speeds),
+            false => joint.speed_basis(&moved) * vector::<S>(speeds),
+        };
+        let rate = match structures.velocity_map.is_identity() {
+            true => velocity,
+            false => joint.velocity_map_inverse(&moved) * velocity,
+        };
+        let local_rate = match structures.retract_differential.is_identity() {
+            true => rate,
+            false => joint.retract_differential_inverse(&vector(q), &vector(phi), &rate),
+        };
+        store(&local_rate, out);
     }
 
     fn project(&self, q: &mut [f64]) -> Result<(), FiniteMapError> {

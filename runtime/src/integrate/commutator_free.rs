@@ -167,7 +167,7 @@ impl Stepper for CommutatorFree {
         for i in 1..NODES.len() {
             self.follow(standing, flow, step, PATHS[i - 1])?;
             let at = time + step * NODES[i];
-            standing.evaluate_there(flow, at, &mut self.stages[i - 1])?;
+            standing.evaluate_there(flow, at, self.stages[i - 1].parts())?;
             self.localize(standing, flow, i);
         }
         self.follow(standing, flow, step, PATHS[3])

@@ -190,7 +190,7 @@ impl Dense {
             let tau = self.rules[degree - LEAST].nodes[i];
             self.go(flow, tau);
             let (phi, y) = self.point.split_at(freedoms);
-            flow.evaluate(self.time(tau), &self.base, phi, y, &mut self.rates)?;
+            flow.evaluate(self.time(tau), &self.base, phi, y, self.rates.parts())?;
             let Rates { phi, y, .. } = &self.rates;
             join(self.span.step, phi, y, &mut self.slopes[i]);
         }

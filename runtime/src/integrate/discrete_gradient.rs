@@ -211,8 +211,8 @@ impl Correction {
 
     /// `(T, J̄22) M̄⁻¹Δp̄` and `−p̄/h`.
     fn move_by_structure(&mut self, standing: &Standing, flow: &mut Flow<'_>, step: f64) {
-        self.moved.speeds.copy_from_slice(&self.faster);
-        flow.local_rates_of(&standing.base, &standing.phi, &mut self.moved);
+        let (base, phi) = (&standing.base, &standing.phi);
+        flow.local_rates(base, phi, &self.faster, &mut self.moved.phi);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
             let own = body.ranges().speeds.clone();
             let momenta = (&standing.next_y[own.clone()], &self.composites[index]);

@@ -1,6 +1,7 @@
 //! One step of an explicit method in (ϕ, y).
 
-use super::flow::{Flow, Rates};
+use super::flow::Flow;
+use super::stages::{Stages, Terms, terms};
 use super::standing::Standing;
 use super::stepper::{Span, Stepper};
 use super::{Estimate, StepFailure, Tableau};
@@ -9,55 +10,40 @@ use alloc::vec::Vec;
 /// An explicit Runge–Kutta method.
 pub(super) struct Explicit {
     tableau: &'static Tableau,
-    /// Rates at the stages from the second on; those of the first are the state's.
-    stages: Vec<Rates>,
+    /// What leads to each stage that is evaluated, of the rows of the matrix.
+    paths: Vec<Terms>,
+    /// What leads to the end.
+    end: Terms,
+    estimate: Combined,
+    stages: Stages,
+}
+
+/// [`Estimate`] without the weights that are 0.
+enum Combined {
+    None,
+    One(Terms),
+    Pair { fifth: Terms, third: Terms },
 }
 
 impl Explicit {
     /// `is_controlled` tells whether errors of steps will be asked for.
     pub(super) fn new(tableau: &'static Tableau, is_controlled: bool, flow: &Flow<'_>) -> Self {
-        let stages = 1..stages_taken(tableau, is_controlled);
+        let count = stages_taken(tableau, is_controlled);
+        let rows = tableau.matrix.iter().take(count);
         Self {
             tableau,
-            stages: stages.map(|_| flow.new_rates()).collect(),
+            paths: rows.map(|row| terms(row)).collect(),
+            end: terms(tableau.weights),
+            estimate: match tableau.estimate {
+                Estimate::None => Combined::None,
+                Estimate::One(weights) => Combined::One(terms(weights)),
+                Estimate::Pair { fifth, third } => Combined::Pair {
+                    fifth: terms(fifth),
+                    third: terms(third),
+                },
+            },
+            stages: Stages::new(count, &flow.mechanism),
         }
-    }
-
-    /// Moves to `step · Σ weights · rates` from the state.
-    fn combine(
-        &self,
-        standing: &mut Standing,
-        flow: &Flow<'_>,
-        step: f64,
-        weights: &[f64],
-    ) -> Result<(), StepFailure> {
-        standing.move_by(flow, |first, phi, y| {
-            let stages = core::iter::once(first).chain(&self.stages);
-            for (&weight, rates) in weights.iter().zip(stages) {
-                if weight != 0.0 {
-                    rates.add_to(step * weight, phi, y);
-                }
-            }
-        })
-    }
-
-    /// The largest entry of `unit · Σ weights · rates` as [`Standing::largest_error`] has it.
-    fn largest(
-        &self,
-        standing: &mut Standing,
-        flow: &mut Flow<'_>,
-        unit: f64,
-        weights: &[f64],
-    ) -> Result<(f64, usize), StepFailure> {
-        let (errors, first) = standing.errors();
-        let sum = |entries: fn(&Rates) -> &[f64], errors: &mut [f64]| {
-            let stages = || core::iter::once(first).chain(&self.stages).map(entries);
-            sum_errors(weights, stages, unit, errors);
-        };
-        sum(|rates| &rates.phi, &mut errors.phi);
-        sum(|rates| &rates.y, &mut errors.y);
-        let last = self.stages.last();
-        standing.largest_error(flow, last.map(|rates| &*rates.speeds))
     }
 }
 
@@ -68,16 +54,22 @@ impl Stepper for Explicit {
         flow: &mut Flow<'_>,
         Span { time, step }: Span,
     ) -> Result<(), StepFailure> {
-        let tableau = self.tableau;
-        for i in 1..=self.stages.len() {
-            self.combine(standing, flow, step, tableau.matrix[i])?;
-            let at = time + step * tableau.nodes[i];
-            standing.evaluate_there(flow, at, &mut self.stages[i - 1])?;
+        let Self {
+            tableau,
+            paths,
+            end,
+            stages,
+            ..
+        } = self;
+        stages.begin(&standing.rates);
+        for (i, path) in paths.iter().enumerate().skip(1) {
+            standing.move_by_increment(flow, stages.sum(step, path))?;
+            standing.evaluate_there(flow, time + step * tableau.nodes[i], stages.room(i))?;
         }
         if tableau.first_same_as_last {
             return Ok(());
         }
-        self.combine(standing, flow, step, tableau.weights)
+        standing.move_by_increment(flow, stages.sum(step, end))
     }
 
     fn error(
@@ -87,13 +79,20 @@ impl Stepper for Explicit {
         Span { step, .. }: Span,
         tolerance: f64,
     ) -> Result<(f64, usize), StepFailure> {
-        let unit = step / tolerance;
-        match self.tableau.estimate {
-            Estimate::None => Ok((0.0, 0)),
-            Estimate::One(weights) => self.largest(standing, flow, unit, weights),
-            Estimate::Pair { fifth, third } => {
-                let (fifth, joint) = self.largest(standing, flow, unit, fifth)?;
-                let (third, _) = self.largest(standing, flow, unit, third)?;
+        let Self {
+            estimate, stages, ..
+        } = self;
+        let mut largest = |weights: &Terms| {
+            let errors = stages.sum_beyond_rounding(step, weights);
+            standing.set_errors(1.0 / tolerance, errors);
+            standing.largest_error(flow, Some(stages.last_speeds()))
+        };
+        match estimate {
+            Combined::None => Ok((0.0, 0)),
+            Combined::One(weights) => largest(weights),
+            Combined::Pair { fifth, third } => {
+                let (fifth, joint) = largest(fifth)?;
+                let (third, _) = largest(third)?;
                 Ok((paired(fifth, third), joint))
             }
         }
@@ -106,9 +105,8 @@ impl Stepper for Explicit {
         time: f64,
         _span: Span,
     ) -> Result<(), StepFailure> {
-        let last = self.stages.last_mut();
-        let last = last.filter(|_| self.tableau.first_same_as_last);
-        standing.accept(flow, time, last)
+        let is_same = self.tableau.first_same_as_last;
+        standing.accept(flow, time, is_same.then(|| self.stages.last()))
     }
 
     fn order(&self) -> u32 {
@@ -124,30 +122,6 @@ fn stages_taken(tableau: &Tableau, is_controlled: bool) -> usize {
     }
     let last = tableau.weights.iter().rposition(|&weight| weight != 0.0);
     last.map_or(all, |last| last + 1)
-}
-
-/// `unit · Σ weights · rates` into `errors`.
-fn sum_errors<'a, I: Iterator<Item = &'a [f64]>>(
-    weights: &[f64],
-    stages: impl Fn() -> I,
-    unit: f64,
-    errors: &mut [f64],
-) {
-    for (i, error) in errors.iter_mut().enumerate() {
-        let (mut sum, mut size) = (0.0_f64, 0.0);
-        for (weight, rates) in weights.iter().zip(stages()) {
-            let term = weight * rates[i];
-            sum += term;
-            size += term.abs();
-        }
-        // What rounding makes of terms that cancel is no error of the step.
-        let beyond = sum.abs() - 2.0 * f64::EPSILON * size;
-        *error = if beyond < 0.0 {
-            0.0
-        } else {
-            unit * beyond.copysign(sum)
-        };
-    }
 }
 
 /// The estimate of [`Estimate::Pair`]; NaN where a difference is.

@@ -129,7 +129,7 @@ impl Exponential {
                 &standing.base,
                 &standing.offset,
                 &standing.y,
-                &mut self.rates,
+                self.rates.parts(),
             )?;
             let rates = self.rates.phi.iter().chain(&self.rates.y);
             for (drift, there) in self.drift.iter_mut().zip(rates) {
@@ -141,7 +141,7 @@ impl Exponential {
 
     /// Moves to the increment.
     fn move_on(&self, standing: &mut Standing, flow: &Flow<'_>) -> Result<(), StepFailure> {
-        standing.move_by_increments(flow, core::iter::once((1.0, &*self.increment)))
+        standing.move_by_increment(flow, &self.increment)
     }
 
     /// D of a stage at `time`, where `standing` has come to after `later` seconds: `f − f₀ − J Z − later · ∂f/∂t`.
@@ -152,7 +152,7 @@ impl Exponential {
         flow: &mut Flow<'_>,
         Span { time, step: later }: Span,
     ) -> Result<(), StepFailure> {
-        standing.evaluate_there(flow, time + later, &mut self.rates)?;
+        standing.evaluate_there(flow, time + later, self.rates.parts())?;
         let remainder = &mut self.remainders[stage];
         store(&self.rates, remainder);
         add(remainder, -1.0, &self.first);

@@ -31,6 +31,15 @@ impl Rates {
         add(y, weight, &self.y);
     }
 
+    /// The room of all three.
+    pub(super) fn parts(&mut self) -> RatesMut<'_> {
+        RatesMut {
+            phi: &mut self.phi,
+            y: &mut self.y,
+            speeds: &mut self.speeds,
+        }
+    }
+
     /// Room for those of a mechanism.
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let layout = mechanism.layout();
@@ -40,6 +49,14 @@ impl Rates {
             speeds: vec![0.0; layout.speeds],
         }
     }
+}
+
+/// Room for [`Rates`], wherever it is.
+#[derive(Debug)]
+pub(super) struct RatesMut<'a> {
+    pub(super) phi: &'a mut [f64],
+    pub(super) y: &'a mut [f64],
+    pub(super) speeds: &'a mut [f64],
 }
 
 /// The equations of motion with their inputs, as a vector field.
@@ -53,10 +70,6 @@ pub(super) struct Flow<'a> {
     efforts: Vec<f64>,
     /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
     held: Option<Vec<f64>>,
-    velocity: Vec<f64>,
-    local_rate: Vec<f64>,
-    /// One joint's S̄, S₀ or S₀⁻¹, K×K at most.
-    matrix: Vec<f64>,
 }
 
 impl<'a> Flow<'a> {
@@ -67,7 +80,6 @@ impl<'a> Flow<'a> {
     ) -> Self {
         let mechanism = Arc::clone(dynamics.mechanism());
         let layout = *mechanism.layout();
-        let widest = widest(&mechanism);
         Self {
             dynamics,
             inputs,
@@ -76,9 +88,6 @@ impl<'a> Flow<'a> {
             configuration: vec![0.0; layout.configuration],
             efforts: vec![0.0; layout.freedoms],
             held: None,
-            velocity: vec![0.0; widest],
-            local_rate: vec![0.0; widest],
-            matrix: vec![0.0; widest * widest],
             mechanism,
         }
     }
@@ -165,12 +174,12 @@ impl<'a> Flow<'a> {
         base: &[f64],
         phi: &[f64],
         y: &[f64],
-        rates: &mut Rates,
+        mut rates: RatesMut<'_>,
     ) -> Result<(), DynamicsError> {
         self.evaluations += 1;
         retract(&self.mechanism, base, phi, &mut self.configuration);
-        self.dynamic_rates(time, y, rates)?;
-        self.local_rates_of(base, phi, rates);
+        self.dynamic_rates(time, y, &mut rates)?;
+        self.local_rates(base, phi, rates.speeds, rates.phi);
         Ok(())
     }
 
@@ -209,17 +218,10 @@ impl<'a> Flow<'a> {
         self.dynamics.hamiltonian(q, y)
     }
 
-    /// ϕ̇ of the speeds in `rates`, at the Q at which the equations were evaluated last: `Φ(base, phi)`.
-    pub(super) fn local_rates_of(&mut self, base: &[f64], phi: &[f64], rates: &mut Rates) {
-        for index in 0..self.mechanism.bodies().len() {
-            self.local_rates(index, base, phi, rates);
-        }
-    }
-
     /// Rates at `q` that differ from `rates` in their base points alone: now `base`, with `q = Φ(base, phi)`.
     pub(super) fn recentre(&mut self, q: &[f64], base: &[f64], phi: &[f64], rates: &mut Rates) {
         self.configuration.copy_from_slice(q);
-        self.local_rates_of(base, phi, rates);
+        self.local_rates(base, phi, &rates.speeds, &mut rates.phi);
     }
 
     /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::accelerations`] takes them.
@@ -254,7 +256,7 @@ impl<'a> Flow<'a> {
         &mut self,
         time: f64,
         y: &[f64],
-        rates: &mut Rates,
+        rates: &mut RatesMut<'_>,
     ) -> Result<(), DynamicsError> {
         let Self {
             dynamics,
@@ -273,51 +275,32 @@ impl<'a> Flow<'a> {
         match self.form {
             Form::Lagrangian => {
                 rates.speeds.copy_from_slice(y);
-                dynamics.complete_speeds(configuration, &mut rates.speeds)?;
-                fill(&rates.speeds, efforts);
-                dynamics.accelerations(configuration, &rates.speeds, efforts, &mut rates.y)
+                dynamics.complete_speeds(configuration, rates.speeds)?;
+                fill(rates.speeds, efforts);
+                dynamics.accelerations(configuration, rates.speeds, efforts, rates.y)
             }
             Form::Hamiltonian => {
                 let mut fill = |speeds: &[f64], out: &mut [f64]| {
                     fill(speeds, efforts);
                     out.copy_from_slice(efforts);
                 };
-                let (speeds, y_rates) = (&mut rates.speeds, &mut rates.y);
-                dynamics.momentum_rates(configuration, y, &mut fill, speeds, y_rates)
+                dynamics.momentum_rates(configuration, y, &mut fill, rates.speeds, rates.y)
             }
         }
     }
 
-    /// `ϕ̇ = S(Q_n, ϕ)⁻¹ v` of one joint, with `S(Q_n, ϕ)⁻¹ = D⁻¹ S₀(Q_i)⁻¹`.
-    fn local_rates(&mut self, index: usize, base: &[f64], phi: &[f64], rates: &mut Rates) {
-        let body = &self.mechanism.bodies()[index];
-        let (joint, ranges) = (body.joint(), body.ranges());
-        let (freedoms, size) = (ranges.freedoms.clone(), ranges.freedoms.len());
-        let q = body.configuration(&self.configuration);
-        let speeds = &rates.speeds[ranges.speeds.clone()];
-        let velocity = &mut self.velocity[..size];
-        let local_rate = &mut self.local_rate[..size];
-
-        if joint.structures().speed_basis.is_identity() {
-            velocity.copy_from_slice(speeds);
-        } else {
-            let basis = &mut self.matrix[..size * speeds.len()];
-            joint.speed_basis(q, basis);
-            multiply(basis, speeds, velocity);
-        }
-        if joint.structures().velocity_map.is_identity() {
-            local_rate.copy_from_slice(velocity);
-        } else {
-            let inverse = &mut self.matrix[..size * size];
-            joint.velocity_map_inverse(q, inverse);
-            multiply(inverse, velocity, local_rate);
-        }
-        let own_rates = &mut rates.phi[freedoms.clone()];
-        if joint.structures().retract_differential.is_identity() {
-            own_rates.copy_from_slice(local_rate);
-        } else {
-            let (base, phi) = (body.configuration(base), &phi[freedoms]);
-            joint.retract_differential_inverse(base, phi, local_rate, own_rates);
+    /// ϕ̇ of all joints, at the Q at which the equations were evaluated last: `Φ(base, phi)`.
+    pub(super) fn local_rates(&self, base: &[f64], phi: &[f64], speeds: &[f64], rates: &mut [f64]) {
+        for body in self.mechanism.bodies() {
+            let ranges = body.ranges();
+            let own = ranges.freedoms.clone();
+            body.joint().local_rate(
+                body.configuration(base),
+                &phi[own.clone()],
+                body.configuration(&self.configuration),
+                &speeds[ranges.speeds.clone()],
+                &mut rates[own],
+            );
         }
     }
 }

@@ -110,7 +110,7 @@ impl Jacobian {
             // Half the digits, as for any difference of first order.
             *entry += num_traits::Float::sqrt(f64::EPSILON) * before.abs().max(1.0);
             let step = *entry - before;
-            flow.evaluate(time, &standing.base, &phi, &y, &mut self.rates)?;
+            flow.evaluate(time, &standing.base, &phi, &y, self.rates.parts())?;
             match j.checked_sub(freedoms) {
                 None => phi[j] = before,
                 Some(speed) => y[speed] = before,

@@ -43,6 +43,7 @@ mod residue;
 mod root;
 mod solution;
 mod spectrum;
+mod stages;
 mod standing;
 mod stepper;
 mod tableau;

@@ -1,7 +1,7 @@
 //! Where a step begins, and where the step being tried ends: what all schemes share.
 
 use super::StepFailure;
-use super::flow::{Flow, Rates, retract};
+use super::flow::{Flow, Rates, RatesMut, retract};
 use super::residue::{Residue, add_exactly};
 use super::turns::{Turns, check_finite};
 use alloc::sync::Arc;
@@ -76,7 +76,7 @@ impl Standing {
 
     /// Rates at the state.
     pub(super) fn evaluate(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
-        let rates = &mut self.rates;
+        let rates = self.rates.parts();
         flow.evaluate(time, &self.base, &self.offset, &self.y, rates)?;
         check_finite(&flow.mechanism, &self.rates.phi, &self.rates.y)
     }
@@ -86,10 +86,15 @@ impl Standing {
         &self,
         flow: &mut Flow<'_>,
         time: f64,
-        rates: &mut Rates,
+        RatesMut { phi, y, speeds }: RatesMut<'_>,
     ) -> Result<(), StepFailure> {
+        let rates = RatesMut {
+            phi: &mut *phi,
+            y: &mut *y,
+            speeds,
+        };
         flow.evaluate(time, &self.base, &self.phi, &self.next_y, rates)?;
-        check_finite(&flow.mechanism, &rates.phi, &rates.y)
+        check_finite(&flow.mechanism, phi, y)
     }
 
     /// Moves the point to the state and what `add` adds to it in ϕ and y, from what the last step left over on.
@@ -104,6 +109,33 @@ impl Standing {
         add(&self.rates, phi, y);
         add_all_exactly(&self.offset, &mut self.phi, phi);
         add_all_exactly(&self.y, &mut self.next_y, y);
+        self.turns.check(&flow.mechanism, &self.phi, &self.next_y)
+    }
+
+    /// Moves the point to the state and one increment, ϕ first and then y.
+    pub(super) fn move_by_increment(
+        &mut self,
+        flow: &Flow<'_>,
+        increment: &[f64],
+    ) -> Result<(), StepFailure> {
+        let (turned, pushed) = increment.split_at(self.offset.len());
+        let (rest, lost) = (&self.residue, &mut self.next_residue);
+        let parts = [
+            (
+                &self.offset,
+                turned,
+                &rest.phi,
+                &mut self.phi,
+                &mut lost.phi,
+            ),
+            (&self.y, pushed, &rest.y, &mut self.next_y, &mut lost.y),
+        ];
+        for (start, change, rest, sum, lost) in parts {
+            let terms = start.iter().zip(change).zip(rest);
+            for (((&start, change), rest), (sum, lost)) in terms.zip(sum.iter_mut().zip(lost)) {
+                (*sum, *lost) = add_exactly(start, change + rest);
+            }
+        }
         self.turns.check(&flow.mechanism, &self.phi, &self.next_y)
     }
 
@@ -130,11 +162,6 @@ impl Standing {
         y.fill(0.0);
         add(phi, weight, turned);
         add(y, weight, pushed);
-    }
-
-    /// Room for an estimate of the errors of ϕ and y, and the rates at the state.
-    pub(super) fn errors(&mut self) -> (&mut Rates, &Rates) {
-        (&mut self.errors, &self.rates)
     }
 
     /// The largest of the estimated errors, as parts of ϕ and v̄ or of 1, and the joint that has it; `last` are speeds at or near the end of
@@ -174,13 +201,13 @@ impl Standing {
         Ok(worst)
     }
 
-    /// Makes the point that the step has come to the state; joints whose ϕ has grown get a new base point. `last` are the rates there, if the
-    /// scheme has them already; it gets those at the state before.
+    /// Makes the point that the step has come to the state; joints whose ϕ has grown get a new base point. `last` are ẏ and v̄ there, if the
+    /// scheme has them already.
     pub(super) fn accept(
         &mut self,
         flow: &mut Flow<'_>,
         time: f64,
-        last: Option<&mut Rates>,
+        last: Option<(&[f64], &[f64])>,
     ) -> Result<(), StepFailure> {
         core::mem::swap(&mut self.residue, &mut self.next_residue);
         core::mem::swap(&mut self.y, &mut self.next_y);
@@ -199,12 +226,13 @@ impl Standing {
         }
         // Prescribed speeds are what their laws say, not what steps have made of them.
         flow.mechanism.set_driven_speeds(time, &mut self.y);
-        let Some(last) = last.filter(|_| drives.is_empty()) else {
+        let Some((y, speeds)) = last.filter(|_| drives.is_empty()) else {
             return self.evaluate(flow, time);
         };
-        // Only ϕ̇ belongs to the old base points.
-        core::mem::swap(&mut self.rates, last);
+        // ϕ̇ belongs to the old base points.
         let rates = &mut self.rates;
+        rates.y.copy_from_slice(y);
+        rates.speeds.copy_from_slice(speeds);
         flow.recentre(&self.configuration, &self.base, &self.offset, rates);
         Ok(())
     }

@@ -13,6 +13,8 @@ pub(super) struct Turns {
     /// Angular rows of X^c S₀ at the base points, 3×K column by column, joints one after the other: ϕ to each joint's rotation
     /// vector, to first order, and exactly where Φ is an exponential.
     maps: Vec<f64>,
+    /// Bodies whose Φ ends near a full turn, each with the |ϕ|² up to which its rotation cannot be beyond π.
+    bent: Vec<(usize, f64)>,
     /// One joint's X^c, 6×K.
     twist_map: Vec<f64>,
     /// One joint's S₀, K×K.
@@ -23,7 +25,14 @@ impl Turns {
     /// Room for the joints of `mechanism`.
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let widest = widest(mechanism);
+        let bodies = mechanism.bodies().iter().enumerate();
+        let is_bent = |body: &Body| {
+            let structures = body.joint().structures();
+            !structures.retract_differential.is_identity()
+        };
+        let bent = bodies.filter(|(_, body)| is_bent(body));
         Self {
+            bent: bent.map(|(index, _)| (index, 0.0)).collect(),
             maps: vec![0.0; 3 * mechanism.layout().freedoms],
             twist_map: vec![0.0; 6 * widest],
             velocity_map: vec![0.0; widest * widest],
@@ -47,6 +56,16 @@ impl Turns {
                 target.copy_from_slice(&twist[..3]);
             }
         }
+        for (index, safe) in &mut self.bent {
+            let own = &mechanism.bodies()[*index].ranges().freedoms;
+            // The norm of a matrix is at most the root of the sum of its squares.
+            let squares = square(&self.maps[3 * own.start..3 * own.end]);
+            *safe = if squares > 0.0 {
+                PI * PI / squares
+            } else {
+                f64::INFINITY
+            };
+        }
     }
 
     /// Refuses what is not finite, and rotations beyond π where the differential of Φ ends near a full turn. Angles about one
@@ -58,15 +77,20 @@ impl Turns {
         y: &[f64],
     ) -> Result<(), StepFailure> {
         check_finite(mechanism, phi, y)?;
-        for body in mechanism.bodies() {
-            if body.joint().structures().retract_differential.is_identity() {
+        for &(index, safe) in &self.bent {
+            let body = &mechanism.bodies()[index];
+            let freedoms = body.ranges().freedoms.clone();
+            let phi = &phi[freedoms.clone()];
+            if square(phi) <= safe {
                 continue;
             }
-            let freedoms = body.ranges().freedoms.clone();
             let mut turn = [0.0; 3];
-            let own = 3 * freedoms.start..3 * freedoms.end;
-            multiply(&self.maps[own], &phi[freedoms], &mut turn);
-            let square: f64 = turn.iter().map(|entry| entry * entry).sum();
+            multiply(
+                &self.maps[3 * freedoms.start..3 * freedoms.end],
+                phi,
+                &mut turn,
+            );
+            let square = square(&turn);
             if square > PI * PI {
                 return Err(StepFailure::Turn {
                     joint: body.joint_name().into(),
@@ -84,16 +108,26 @@ pub(super) fn check_finite(
     phi: &[f64],
     y: &[f64],
 ) -> Result<(), StepFailure> {
-    let is_finite = |body: &Body| {
-        let ranges = body.ranges();
-        let own = phi[ranges.freedoms.clone()].iter();
-        own.chain(&y[ranges.speeds.clone()])
-            .all(|value| value.is_finite())
-    };
-    match mechanism.bodies().iter().find(|body| !is_finite(body)) {
-        Some(body) => Err(StepFailure::NotFinite {
-            joint: body.joint_name().into(),
-        }),
-        None => Ok(()),
+    if all_finite(phi) & all_finite(y) {
+        return Ok(());
     }
+    let is_finite = |body: &&Body| {
+        let ranges = body.ranges();
+        all_finite(&phi[ranges.freedoms.clone()]) & all_finite(&y[ranges.speeds.clone()])
+    };
+    let joint = mechanism.bodies().iter().find(|body| !is_finite(body));
+    Err(StepFailure::NotFinite {
+        joint: joint.map_or("", |body| body.joint_name()).into(),
+    })
+}
+
+/// Without a way out, so that several entries are compared at once.
+fn all_finite(values: &[f64]) -> bool {
+    values
+        .iter()
+        .fold(true, |all, value| all & value.is_finite())
+}
+
+fn square(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
 }

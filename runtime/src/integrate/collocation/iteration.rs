@@ -148,8 +148,8 @@ impl Collocation {
         let Span { time, step } = span;
         let stages = self.stages.iter_mut().zip(&self.increments);
         for ((rates, increment), node) in stages.zip(self.method.nodes) {
-            standing.move_by_increments(flow, core::iter::once((1.0, &**increment)))?;
-            standing.evaluate_there(flow, time + step * node, rates)?;
+            standing.move_by_increment(flow, increment)?;
+            standing.evaluate_there(flow, time + step * node, rates.parts())?;
             if let Some(correction) = &mut self.correction {
                 correction.apply(standing, flow, span, increment, rates)?;
             }

@@ -184,7 +184,7 @@ impl Stepper for Collocation {
         let (phi, y) = self.estimate.split_at_mut(self.freedoms);
         add(phi, 1.0, &standing.offset);
         add(y, 1.0, &standing.y);
-        flow.evaluate(span.time, &standing.base, phi, y, &mut self.probe)?;
+        flow.evaluate(span.time, &standing.base, phi, y, self.probe.parts())?;
         self.estimate(standing, span.step, tolerance);
         self.judge(standing, flow)
     }

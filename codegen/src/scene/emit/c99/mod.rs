@@ -40,7 +40,7 @@ const TEMPLATES: [(&str, &str); 4] = [
 ];
 
 /// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
-const RESERVED: [&str; 23] = [
+const RESERVED: [&str; 26] = [
     "q",
     "v",
     "p",
@@ -57,7 +57,10 @@ const RESERVED: [&str; 23] = [
     "stumpff_direct",
     "inverse_factorials",
     "dexp_inverse",
+    "cotangent",
     "pole_tails",
+    "power",
+    "powers",
     "rotation_vector",
     "quaternion_vector",
     "nearest_rotation",
