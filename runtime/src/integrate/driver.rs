@@ -78,7 +78,7 @@ impl<'a> Driver<'a> {
         initial: &State,
         options: &'a Options,
         period: Option<f64>,
-        inputs: &'a mut Inputs<'a>,
+        inputs: Option<&'a mut Inputs<'a>>,
         (sampling, events): (Sampling, Vec<Event<'a>>),
     ) -> Result<Self, IntegrateError> {
         let mut flow = Flow::new(dynamics, inputs, options.form);

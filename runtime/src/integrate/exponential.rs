@@ -116,7 +116,7 @@ impl Exponential {
     ) -> Result<(), StepFailure> {
         let first = time + PART_OF_STEP * step;
         let later = first - time;
-        if later <= 0.0 {
+        if later <= 0.0 || flow.is_autonomous() {
             self.drift.fill(0.0);
             return Ok(());
         }

@@ -62,7 +62,8 @@ pub(super) struct RatesMut<'a> {
 /// The equations of motion with their inputs, as a vector field.
 pub(super) struct Flow<'a> {
     dynamics: &'a mut dyn Dynamics,
-    inputs: &'a mut Inputs<'a>,
+    /// `None` where there are none.
+    inputs: Option<&'a mut Inputs<'a>>,
     pub(super) mechanism: Arc<Mechanism>,
     pub(super) form: Form,
     pub(super) evaluations: usize,
@@ -75,7 +76,7 @@ pub(super) struct Flow<'a> {
 impl<'a> Flow<'a> {
     pub(super) fn new(
         dynamics: &'a mut dyn Dynamics,
-        inputs: &'a mut Inputs<'a>,
+        inputs: Option<&'a mut Inputs<'a>>,
         form: Form,
     ) -> Self {
         let mechanism = Arc::clone(dynamics.mechanism());
@@ -97,8 +98,16 @@ impl<'a> Flow<'a> {
         let freedoms = self.mechanism.layout().freedoms;
         let mut held = self.held.take().unwrap_or_else(|| vec![0.0; freedoms]);
         held.fill(0.0);
-        (self.inputs)(time, q, speeds, &mut held);
+        if let Some(inputs) = &mut self.inputs {
+            inputs(time, q, speeds, &mut held);
+        }
         self.held = Some(held);
+    }
+
+    /// Whether the rates at a state are the same at all times, until the next [`Flow::hold`].
+    pub(super) fn is_autonomous(&self) -> bool {
+        let is_left_alone = self.inputs.is_none() || self.held.is_some();
+        is_left_alone && self.mechanism.drives().is_empty()
     }
 
     /// Room for the rates of one stage.
@@ -227,7 +236,7 @@ impl<'a> Flow<'a> {
     /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::accelerations`] takes them.
     pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
         let held = self.held.as_deref();
-        fill(self.inputs, held, time, q, speeds, efforts);
+        fill(&mut self.inputs, held, time, q, speeds, efforts);
         self.mechanism.set_driven_accelerations(time, efforts);
     }
 
@@ -307,7 +316,7 @@ impl<'a> Flow<'a> {
 
 /// Inputs as they are held, or else as they follow the state.
 fn fill(
-    inputs: &mut Inputs<'_>,
+    inputs: &mut Option<&mut Inputs<'_>>,
     held: Option<&[f64]>,
     time: f64,
     q: &[f64],
@@ -318,7 +327,9 @@ fn fill(
         Some(held) => efforts.copy_from_slice(held),
         None => {
             efforts.fill(0.0);
-            inputs(time, q, speeds, efforts);
+            if let Some(inputs) = inputs {
+                inputs(time, q, speeds, efforts);
+            }
         }
     }
 }

@@ -2,9 +2,7 @@
 
 use super::driver::Driver;
 use super::options::check_length;
-use super::{
-    Event, Inputs, IntegrateError, Observer, Options, Solution, State, Step, no_inputs, no_observer,
-};
+use super::{Event, Inputs, IntegrateError, Observer, Options, Solution, State, Step, no_observer};
 use crate::dynamics::Dynamics;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -41,7 +39,7 @@ pub struct Integration<'a> {
     dynamics: &'a mut dyn Dynamics,
     initial: &'a State,
     options: &'a Options,
-    inputs: Box<Inputs<'a>>,
+    inputs: Option<Box<Inputs<'a>>>,
     period: Option<f64>,
     observer: Box<Observer<'a>>,
     sampling: Sampling,
@@ -55,7 +53,7 @@ impl<'a> Integration<'a> {
             dynamics,
             initial,
             options,
-            inputs: Box::new(no_inputs),
+            inputs: None,
             period: None,
             observer: Box::new(no_observer),
             sampling: Sampling::Landing,
@@ -65,7 +63,7 @@ impl<'a> Integration<'a> {
 
     /// With efforts τ (one entry a freedom) from time, q and v̄; entries are zero when it is called.
     pub fn inputs(mut self, inputs: impl FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a) -> Self {
-        self.inputs = Box::new(inputs);
+        self.inputs = Some(Box::new(inputs));
         self
     }
 
@@ -105,7 +103,9 @@ impl<'a> Integration<'a> {
     pub fn run(mut self) -> Result<Solution, IntegrateError> {
         self.check()?;
         let hold = self.period;
-        let (inputs, observer) = (&mut *self.inputs, &mut *self.observer);
+        let inputs = self.inputs.as_mut();
+        let inputs = inputs.map(|inputs| -> &mut Inputs<'_> { &mut **inputs });
+        let observer = &mut *self.observer;
         let (dynamics, options) = (self.dynamics, self.options);
         let wanted = (self.sampling, self.events);
         Driver::new(dynamics, self.initial, options, hold, inputs, wanted)?.run(observer)

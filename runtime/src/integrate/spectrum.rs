@@ -3,7 +3,7 @@
 use super::flow::Flow;
 use super::jacobian::Jacobian;
 use super::standing::Standing;
-use super::{Form, IntegrateError, State, StepFailure, no_inputs};
+use super::{Form, IntegrateError, State, StepFailure};
 use crate::dynamics::Recursive;
 use crate::eigen::{balance, eigenvalues};
 use crate::integrate::approach::Near;
@@ -133,8 +133,7 @@ impl Spectrum {
 /// `∂(ϕ̇, v̄̇)/∂(ϕ, v̄)` at a state.
 fn linearized(mechanism: &Arc<Mechanism>, state: &State) -> Result<DMatrix<f64>, StepFailure> {
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
-    let mut none = no_inputs;
-    let mut flow = Flow::new(&mut dynamics, &mut none, Form::Lagrangian);
+    let mut flow = Flow::new(&mut dynamics, None, Form::Lagrangian);
     let (q, speeds) = (&state.configuration, &state.speeds);
     let standing = Standing::new(&mut flow, state.time, q, speeds)?;
     let mut jacobian = Jacobian::new(&flow);

@@ -4,9 +4,7 @@ use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::{configuration, tree};
 use hamel::dynamics::Reference;
-use hamel::integrate::{
-    Form, Method, Options, Scheme, Solution, State, integrate, no_inputs, no_observer,
-};
+use hamel::integrate::{Form, Integration, Method, Options, Scheme, Solution, State};
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
@@ -66,14 +64,8 @@ pub fn mixed() -> Arc<Mechanism> {
 
 pub fn run(mechanism: &Arc<Mechanism>, initial: &State, options: &Options) -> Solution {
     let mut dynamics = Reference::new(Arc::clone(mechanism));
-    integrate(
-        &mut dynamics,
-        initial,
-        options,
-        &mut no_inputs,
-        &mut no_observer,
-    )
-    .expect("integrates")
+    let integration = Integration::new(&mut dynamics, initial, options);
+    integration.run().expect("integrates")
 }
 
 /// Largest difference of configurations and speeds.
