@@ -11,8 +11,8 @@ use num_traits::Float;
 /// φ₀ … φ₄.
 const COUNT: usize = 5;
 
-/// Terms of φ₄'s series: at norm 1 the next, 1/20!, is below half a rounding of 1/4!.
-const TERMS: usize = 16;
+/// Groups of as many terms of φ₄'s series as there are powers: at norm 1 the term after the last, 1/20!, is below half a rounding of 1/4!.
+const GROUPS: usize = 4;
 
 /// φ functions of one matrix and of half of it.
 pub(super) struct Phi {
@@ -21,6 +21,8 @@ pub(super) struct Phi {
     /// Of half of it.
     half: [DMatrix<f64>; COUNT],
     matrix: DMatrix<f64>,
+    /// The square, the third and the fourth power of the matrix.
+    powers: [DMatrix<f64>; 3],
     work: DMatrix<f64>,
     /// The diagonal D of the balanced `D⁻¹ A D`: powers of 2.
     scales: Vec<f64>,
@@ -33,6 +35,7 @@ impl Phi {
             whole: core::array::from_fn(|_| zeros()),
             half: core::array::from_fn(|_| zeros()),
             matrix: zeros(),
+            powers: core::array::from_fn(|_| zeros()),
             work: zeros(),
             scales: vec![1.0; size],
         }
@@ -121,26 +124,41 @@ impl Phi {
         count
     }
 
-    /// All φ of a matrix of norm 1: φ₄ by Horner's rule, the others from it.
+    /// All φ of a matrix of norm 1: φ₄ in powers of the fourth power (M. S. Paterson and L. J. Stockmeyer, 1973), the others from it.
     fn sum_series(&mut self) {
+        self.raise();
         let Self {
             whole,
             matrix,
+            powers: [square, third, fourth],
             work,
             ..
         } = self;
         let last = COUNT - 1;
         whole[last].fill(0.0);
-        for k in (0..TERMS).rev() {
-            matrix.mul_to(&whole[last], work);
-            whole[last].copy_from(work);
-            add_to_diagonal(&mut whole[last], 1.0 / factorial(k + last));
+        for group in (0..GROUPS).rev() {
+            fourth.mul_to(&whole[last], work);
+            let first = last + 4 * group;
+            for (term, power) in [&*matrix, square, third].into_iter().enumerate() {
+                let weight = 1.0 / factorial(first + term + 1);
+                work.zip_apply(power, |sum, x| *sum += weight * x);
+            }
+            add_to_diagonal(work, 1.0 / factorial(first));
+            core::mem::swap(&mut whole[last], work);
         }
         for k in (0..last).rev() {
             let (lower, upper) = whole.split_at_mut(k + 1);
             matrix.mul_to(&upper[0], &mut lower[k]);
             add_to_diagonal(&mut lower[k], 1.0 / factorial(k));
         }
+    }
+
+    fn raise(&mut self) {
+        let Self { matrix, powers, .. } = self;
+        let [square, third, fourth] = powers;
+        matrix.mul_to(matrix, square);
+        matrix.mul_to(square, third);
+        square.mul_to(square, fourth);
     }
 
     /// `φ_k(2z) = 2⁻ᵏ (φ₀(z) φ_k(z) + Σ_{j=1}^{k} φ_j(z)/(k−j)!)`, and `φ₀(2z) = φ₀(z)²`.
@@ -152,12 +170,11 @@ impl Phi {
                 let weight = 1.0 / factorial(k - j);
                 work.zip_apply(lower, |sum, x| *sum += weight * x);
             }
-            let scale = Float::powi(0.5, k as i32);
-            whole[k].copy_from(work);
-            whole[k] *= scale;
+            *work *= Float::powi(0.5, k as i32);
+            core::mem::swap(&mut whole[k], work);
         }
         whole[0].mul_to(&whole[0], work);
-        whole[0].copy_from(work);
+        core::mem::swap(&mut whole[0], work);
     }
 }
 

@@ -233,6 +233,29 @@ fn errors_follow_the_tolerance_everywhere() {
     assert!(complaints.is_empty(), "{complaints:#?}");
 }
 
+/// Every motion has a method whose errors follow the tolerance from 1e-4 to 1e-12.
+#[test]
+#[ignore = "every scene: half a minute, with --release"]
+fn a_method_follows_the_tolerance_on_every_scene() {
+    let in_turn = [
+        Scheme::DormandPrince8,
+        Scheme::Verner9,
+        Scheme::DormandPrince,
+        Scheme::Radau5,
+        Scheme::Exponential,
+    ];
+    let told = |name: &String| {
+        let mut told = Vec::new();
+        for scheme in in_turn {
+            let complaint = complaint(name, scheme, Form::Lagrangian)?;
+            told.push(format!("{name}, {}: {complaint}", scheme.name()));
+        }
+        Some(told)
+    };
+    let told: Vec<Vec<String>> = cases().iter().filter_map(told).collect();
+    assert!(told.is_empty(), "{told:#?}");
+}
+
 /// A method that damps what is stiff steps over a layer that it does not resolve.
 #[test]
 fn overdamped_springs_take_as_many_steps_whatever_their_stiffness() {
