@@ -43,3 +43,4 @@ pub mod scalar;
 pub mod spatial;
 #[cfg(feature = "alloc")]
 pub mod steps;
+mod unrolled;

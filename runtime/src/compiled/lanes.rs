@@ -6,6 +6,7 @@
 //! differ by rounding.
 
 use crate::scalar::{Lane, Scalar};
+use crate::unrolled::unrolled;
 
 /// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
 pub const LANES: usize = 8;
@@ -172,12 +173,32 @@ fn eight<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize>(
     F: OfState<Q, V, U>,
 {
     for lane in 0..LANES {
-        let q = core::array::from_fn(|i| Lane::<FUSED>(q[i][lane]));
-        let v = core::array::from_fn(|i| Lane::<FUSED>(v[i][lane]));
-        let u = core::array::from_fn(|i| Lane::<FUSED>(u[i][lane]));
-        let value = F::value(&q, &v, &u);
-        for i in 0..V {
-            results[i][lane] = value[i].0;
-        }
+        let value =
+            F::value::<Lane<FUSED>>(&of_lane(q, lane), &of_lane(v, lane), &of_lane(u, lane));
+        put(value, results, lane);
     }
+}
+
+/// The numbers of one state.
+#[inline(always)]
+fn of_lane<const FUSED: bool, const N: usize>(
+    lanes: &[[f64; LANES]; N],
+    lane: usize,
+) -> [Lane<FUSED>; N] {
+    let mut own = [Lane(0.0); N];
+    unrolled!(i in N {
+        own[i] = Lane(lanes[i][lane]);
+    });
+    own
+}
+
+#[inline(always)]
+fn put<const FUSED: bool, const N: usize>(
+    own: [Lane<FUSED>; N],
+    lanes: &mut [[f64; LANES]; N],
+    lane: usize,
+) {
+    unrolled!(i in N {
+        lanes[i][lane] = own[i].0;
+    });
 }

@@ -5,6 +5,7 @@
 //! selection, sines and cosines; the other functions are those of `f64`, and a loop with them is not vectorised.
 
 use super::{Scalar, batch, rotation};
+use crate::unrolled::unrolled;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{Float, One, Zero};
@@ -71,18 +72,6 @@ impl<const FUSED: bool> One for Lane<FUSED> {
     }
 }
 
-/// Statements one after the other in place of a loop, which would keep the loop around it from being vectorised.
-macro_rules! unrolled {
-    ($angles:ident, $sines:ident, $cosines:ident, $($i:literal)*) => {
-        $(if $i < N {
-            ($sines[$i], $cosines[$i]) = $angles[$i].sin_cos();
-        })*
-    };
-}
-
-/// The number of angles that [`Lane::sin_cos_all`] takes without a loop.
-const UNROLLED: usize = 64;
-
 impl<const FUSED: bool> Scalar for Lane<FUSED> {
     type Mask = bool;
 
@@ -114,13 +103,9 @@ impl<const FUSED: bool> Scalar for Lane<FUSED> {
     #[inline(always)]
     fn sin_cos_all<const N: usize>(angles: &[Self; N]) -> ([Self; N], [Self; N]) {
         let (mut sines, mut cosines) = ([Self(0.0); N], [Self(0.0); N]);
-        unrolled! { angles, sines, cosines,
-            0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31
-            32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63
-        }
-        for i in UNROLLED..N {
+        unrolled!(i in N {
             (sines[i], cosines[i]) = angles[i].sin_cos();
-        }
+        });
         (sines, cosines)
     }
 
