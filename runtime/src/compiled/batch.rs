@@ -1,6 +1,7 @@
 //! Many states of one compiled scene: rows of Q, v̄ and inputs in, rows of results out.
 
 use super::{Equations, Level, ManyStates, OneState};
+use crate::scalar::all_finite;
 use alloc::string::String;
 use core::fmt::Write;
 
@@ -274,8 +275,11 @@ impl Call<'_> {
             let [q, v, u] = self.rows(first, states);
             many(self.level, q, v, u, results);
         }
+        if self.many.is_some() && all_finite(results) {
+            return;
+        }
         for (state, results) in results.chunks_exact_mut(speeds).enumerate() {
-            if self.many.is_none() || !results.iter().all(|entry| entry.is_finite()) {
+            if self.many.is_none() || !all_finite(results) {
                 let [q, v, u] = self.rows(first + state, 1);
                 (self.one)(q, v, u, results);
             }

@@ -5,8 +5,11 @@
 //! that neither the number of states nor their order shows in any result. Levels with fused multiply–adds and those without
 //! differ by rounding.
 
+use super::transpose::{Plain, Transpose, apart, side_by_side};
 use crate::scalar::{Lane, Scalar};
 use crate::unrolled::unrolled;
+#[cfg(all(feature = "levels", target_arch = "x86_64"))]
+use core::marker::PhantomData;
 
 /// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
 pub const LANES: usize = 8;
@@ -80,19 +83,19 @@ pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
         Level::Baseline => {}
         Level::Avx2 => {
             if let Some(simd) = pulp::x86::V3::try_new() {
-                return simd.vectorize(At::<F, Q, V, U>(rows, core::marker::PhantomData));
+                return simd.vectorize(At::<F, _, Q, V, U>(rows, simd, PhantomData));
             }
         }
         Level::Avx512 => {
             if let Some(simd) = pulp::x86::V4::try_new() {
-                return simd.vectorize(At::<F, Q, V, U>(rows, core::marker::PhantomData));
+                return simd.vectorize(At::<F, _, Q, V, U>(rows, simd, PhantomData));
             }
         }
     }
     // There is but one.
     #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
     let _ = level;
-    rows.fill::<F, { cfg!(target_feature = "fma") }>();
+    rows.fill::<F, { cfg!(target_feature = "fma") }>(Plain);
 }
 
 /// Arguments and results, a row for each state.
@@ -105,61 +108,44 @@ struct Rows<'a, const Q: usize, const V: usize, const U: usize> {
 
 /// The same for a level with fused multiply–adds.
 #[cfg(all(feature = "levels", target_arch = "x86_64"))]
-struct At<'a, F, const Q: usize, const V: usize, const U: usize>(
+struct At<'a, F, S, const Q: usize, const V: usize, const U: usize>(
     Rows<'a, Q, V, U>,
-    core::marker::PhantomData<F>,
+    S,
+    PhantomData<F>,
 );
 
 #[cfg(all(feature = "levels", target_arch = "x86_64"))]
-impl<F: OfState<Q, V, U>, const Q: usize, const V: usize, const U: usize> pulp::NullaryFnOnce
-    for At<'_, F, Q, V, U>
+impl<F, S, const Q: usize, const V: usize, const U: usize> pulp::NullaryFnOnce
+    for At<'_, F, S, Q, V, U>
+where
+    F: OfState<Q, V, U>,
+    S: Transpose,
 {
     type Output = ();
 
     // Inlined, as all that it calls, into a function that may use the instructions of the level.
     #[inline(always)]
     fn call(self) {
-        self.0.fill::<F, true>();
+        self.0.fill::<F, true>(self.1);
     }
 }
 
 impl<const Q: usize, const V: usize, const U: usize> Rows<'_, Q, V, U> {
     #[inline(always)]
-    fn fill<F: OfState<Q, V, U>, const FUSED: bool>(self) {
+    fn fill<F: OfState<Q, V, U>, const FUSED: bool>(self, by: impl Transpose) {
         let count = self.results.len();
         let count = count.min(self.q.len()).min(self.v.len()).min(self.u.len());
         let mut start = 0;
         while start < count {
-            let q = side_by_side(self.q, start);
-            let v = side_by_side(self.v, start);
-            let u = side_by_side(self.u, start);
+            let q = side_by_side(by, self.q, start);
+            let v = side_by_side(by, self.v, start);
+            let u = side_by_side(by, self.u, start);
             let mut results = [[0.0; LANES]; V];
             eight::<F, FUSED, Q, V, U>(&q, &v, &u, &mut results);
-            for (lane, row) in self.results[start..count]
-                .iter_mut()
-                .take(LANES)
-                .enumerate()
-            {
-                for i in 0..V {
-                    row[i] = results[i][lane];
-                }
-            }
+            apart(by, &results, &mut self.results[start..count]);
             start += LANES;
         }
     }
-}
-
-/// Entry by entry the numbers of eight rows from `start`, the last one repeated.
-#[inline(always)]
-fn side_by_side<const N: usize>(rows: &[[f64; N]], start: usize) -> [[f64; LANES]; N] {
-    let mut lanes = [[0.0; LANES]; N];
-    for lane in 0..LANES {
-        let row = &rows[(start + lane).min(rows.len() - 1)];
-        for i in 0..N {
-            lanes[i][lane] = row[i];
-        }
-    }
-    lanes
 }
 
 /// Eight states: the loop that is vectorised. Rows would do in place of lanes side by side, but longer ones keep the compiler from it.

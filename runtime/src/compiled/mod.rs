@@ -6,6 +6,7 @@
 #[cfg(feature = "alloc")]
 mod batch;
 mod lanes;
+mod transpose;
 #[cfg(feature = "alloc")]
 mod tree;
 

@@ -3,6 +3,7 @@
 use super::StepFailure;
 use super::flow::{multiply, widest};
 use crate::mechanism::{Body, Mechanism};
+use crate::scalar::all_finite;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -119,13 +120,6 @@ pub(super) fn check_finite(
     Err(StepFailure::NotFinite {
         joint: joint.map_or("", |body| body.joint_name()).into(),
     })
-}
-
-/// Without a way out, so that several entries are compared at once.
-fn all_finite(values: &[f64]) -> bool {
-    values
-        .iter()
-        .fold(true, |all, value| all & value.is_finite())
 }
 
 fn square(values: &[f64]) -> f64 {

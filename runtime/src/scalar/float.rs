@@ -97,3 +97,11 @@ implement_scalar!(
     }
 );
 implement_scalar!(f32,);
+
+/// Whether all are finite. Without a way out before the end, so that several are compared at once.
+#[cfg(feature = "alloc")]
+pub(crate) fn all_finite(values: &[f64]) -> bool {
+    values
+        .iter()
+        .fold(true, |all, value| all & value.is_finite())
+}
