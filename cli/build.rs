@@ -30,6 +30,13 @@ fn main() -> io::Result<()> {
     }
     let features = env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     println!("cargo::rustc-env=HAMEL_FEATURES={features}");
+    // Cargo parts them by a character that no flag has.
+    let flags = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
+    println!(
+        "cargo::rustc-env=HAMEL_FLAGS={}",
+        flags.replace('\u{1f}', " ")
+    );
+    println!("cargo::rustc-env=HAMEL_COMMIT={}", commit());
     Ok(())
 }
 
@@ -54,6 +61,25 @@ fn compiler() -> String {
     let output = Command::new(program).arg("--version").output();
     let text = output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
     text.unwrap_or_else(|_| "unknown".into())
+}
+
+/// The commit of the checkout that this is built from. Empty elsewhere, as in a package that was unpacked into another repository, and without git.
+fn commit() -> String {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success().then_some(text)
+    };
+    let is_own = git(&["ls-files", "--error-unmatch", "build.rs"]).is_some();
+    // It has a line more after each commit and each checkout.
+    let log = git(&["rev-parse", "--git-path", "logs/HEAD"]);
+    match log.filter(|_| is_own) {
+        Some(log) => {
+            watch(Path::new(&log));
+            git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_default()
+        }
+        None => String::new(),
+    }
 }
 
 /// The list of scenes with references, in the order of their names: each `report/NAME.json` with its scene beside it or in the folder above.

@@ -79,6 +79,96 @@ fn a_report_measures_each_curve_once() {
     let fresh = fs::read_to_string(folder.join("work.csv")).expect("a file");
     assert!(fresh.starts_with(&foreign));
     assert_eq!(fresh.lines().count(), both.lines().count());
+    let aside = fs::read_to_string(folder.join("work.1.csv")).expect("a file");
+    assert_eq!(aside, both);
+}
+
+/// Rows of a file of figures as their columns, those of names first.
+fn read(folder: &Path) -> Vec<csv::StringRecord> {
+    let mut reader = csv::ReaderBuilder::new();
+    let reader = reader.has_headers(false).from_path(folder.join("work.csv"));
+    let rows: csv::Result<Vec<_>> = reader.expect("a file").into_records().collect();
+    rows.expect("rows")
+}
+
+fn write(folder: &Path, rows: &[csv::StringRecord]) {
+    let mut writer = csv::Writer::from_path(folder.join("work.csv")).expect("a file");
+    for row in rows {
+        writer.write_record(row).expect("a row");
+    }
+    writer.flush().expect("a file");
+}
+
+/// A row with another entry in a column.
+fn changed(rows: &[csv::StringRecord], row: usize, column: &str, entry: &str) -> csv::StringRecord {
+    let place = rows[0].iter().position(|name| name == column);
+    let place = place.expect("a column");
+    let entries = rows[row].iter().enumerate();
+    entries
+        .map(|(i, own)| if i == place { entry } else { own })
+        .collect()
+}
+
+fn column<'a>(rows: &'a [csv::StringRecord], name: &str) -> Vec<&'a str> {
+    let place = rows[0].iter().position(|column| column == name);
+    let place = place.expect("a column");
+    rows[1..].iter().map(|row| &row[place]).collect()
+}
+
+/// What a stopped run has measured decides what comes next, as if it had not been stopped: the steps of the scene, and how many runs were slow.
+#[test]
+fn a_stopped_run_is_gone_on_with() {
+    let folder = folder("report_resumed");
+    let place = folder.display().to_string();
+    let measure = || {
+        let scene = ["--scenes", "top_slow", "--methods", "rk4"];
+        let arguments = [&["report", "--short", "--quiet", "-o", &place], &scene[..]];
+        stdout(&arguments.concat());
+        read(&folder)
+    };
+    let whole = measure();
+    let steps: Vec<f64> = column(&whole, "accuracy")
+        .iter()
+        .map(|step| step.parse().expect("a number"))
+        .collect();
+    // Begun on another machine of the same name, with steps twice as long; the second and the third run were stopped for their time.
+    let stopped = "stopped at 1e-3 of 1e0 s";
+    let mut prefix = vec![whole[0].clone()];
+    for row in 1..=3 {
+        let longer = (2.0 * steps[row - 1]).to_string();
+        let mut own = whole.clone();
+        own[row] = changed(&own, row, "accuracy", &longer);
+        own[row] = changed(&own, row, "failure", if row > 1 { stopped } else { "" });
+        prefix.push(own[row].clone());
+    }
+    write(&folder, &prefix);
+    let resumed = measure();
+    assert_eq!(resumed.len(), whole.len());
+    let found = column(&resumed, "accuracy");
+    let longer: Vec<f64> = steps.iter().map(|step| 2.0 * step).collect();
+    let found: Vec<f64> = found
+        .iter()
+        .map(|step| step.parse().expect("a number"))
+        .collect();
+    assert_eq!(found, longer);
+    // Nine steps a curve.
+    for reason in &column(&resumed, "failure")[3..9] {
+        assert!(reason.starts_with("not run"), "{reason}");
+    }
+}
+
+#[test]
+fn a_page_of_nothing_is_refused() {
+    let folder = folder("report_missing");
+    let place = folder.display().to_string();
+    let output = hamel(&["report", "--page-only", "-o", &place]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        told.contains("report_missing") && told.contains("no figures"),
+        "{told}"
+    );
+    assert!(!folder.exists());
 }
 
 #[test]

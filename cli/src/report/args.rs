@@ -21,6 +21,9 @@ one rounding of its initial state grows to: max(1, conditioning, frequency × ti
 Representations: `matrix` and `quaternion` are this library's ball joints, `euler` its gimbal, the classic that they replace; `declared` is
 the joint that the scene names. A run that fails is a row with its reason, and a cross at the upper edge of its plot.
 
+Run times are those of the thread on its processor: what else the machine does is not in them. A measurement that was stopped, one with --fresh too, goes on
+where it was when the same is asked for without --fresh.
+
 work.csv, drift.csv and stability.csv hold the figures; docs/report.md tells their columns.
 
 Exit codes: 0 success, also where runs failed; 1 a file that cannot be read or written; 2 wrong options.";
@@ -45,7 +48,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub methods: Vec<String>,
 
-    /// Measure anew what the CSV files have of this machine
+    /// Measure anew what the CSV files have of this machine; the files stay as they were beside the new ones, as NAME.1.csv and so on
     #[arg(long)]
     pub fresh: bool,
 

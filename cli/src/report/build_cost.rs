@@ -1,9 +1,9 @@
 //! What generation costs, apart from run time: each joint of the library derived and written out once.
 
+use super::watch::Watch;
 use crate::output::Failure;
 use hamel_codegen::emit::rust;
 use serde::Serialize;
-use std::time::Instant;
 
 /// The cost of one joint.
 #[derive(Clone, Debug, Serialize)]
@@ -27,17 +27,17 @@ pub struct Cost {
 pub fn costs() -> Result<Vec<Cost>, Failure> {
     let costs = hamel_joints::specs().map(|(name, text)| {
         let file = format!("{name}.joint");
-        let start = Instant::now();
+        let start = Watch::start();
         let derived =
             hamel_codegen::derive(text, &file).map_err(|errors| Failure::Spec(Box::new(errors)))?;
-        let derive = start.elapsed();
-        let start = Instant::now();
+        let derive = start.seconds();
+        let start = Watch::start();
         let code = rust::file(&derived, &file).map_err(|error| Failure::Page(error.to_string()))?;
         let milliseconds = |seconds: f64| format!("{:.1}", 1e3 * seconds);
         Ok(Cost {
             joint: name.into(),
-            derive_ms: milliseconds(derive.as_secs_f64()),
-            emit_ms: milliseconds(start.elapsed().as_secs_f64()),
+            derive_ms: milliseconds(derive),
+            emit_ms: milliseconds(start.seconds()),
             spec_lines: text.lines().count(),
             rust_lines: code.lines().count(),
             rust_kb: format!("{:.1}", code.len() as f64 / 1e3),

@@ -4,15 +4,15 @@ use super::case::Case;
 use super::plan::Plan;
 use super::row::{self, Row, form_name};
 use super::store::Store;
+use super::watch::Watch;
 use crate::output::Failure;
 use hamel::dynamics::Recursive;
 use hamel::integrate::{Form, Method, Options, Scheme, Step, integrate, no_inputs};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use hamel_scene::Scene;
-use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Steps a second of the motion's own time: what a user would take for these scenes.
 const STEPS: f64 = 400.0;
@@ -37,7 +37,7 @@ pub fn measure(
                 for &form in plan.forms(scheme) {
                     tick(&format!("{name} {} drift", scheme.name()));
                     let empty = empty(plan, case.name, scheme, form, machine);
-                    if !store.has(&empty.key()) {
+                    if store.find(&empty.key()).is_none() {
                         store.add(&follow(plan, &scene, scheme, form, &empty))?;
                     }
                 }
@@ -89,7 +89,7 @@ fn follow(
     };
     let unit = energy.abs().max(kinetic);
     let limit = Duration::from_secs_f64(plan.drift.seconds);
-    let clock = Instant::now();
+    let clock = Watch::start();
     let mut rows: Vec<row::Drift> = Vec::new();
     let (mut next, mut worst) = (1.0, 0.0_f64);
     let mut observer = |step: &Step<'_>| {
@@ -106,10 +106,7 @@ fn follow(
                 ..empty.clone()
             });
         }
-        match clock.elapsed() < limit {
-            true => ControlFlow::Continue(()),
-            false => ControlFlow::Break(()),
-        }
+        clock.allows(limit, step)
     };
     let options = Options {
         form,

@@ -5,6 +5,7 @@ use super::machine::Machine;
 use super::row::{Drift, Row, Stability, Work};
 use super::store::read;
 use crate::output::Failure;
+use itertools::Itertools;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -30,15 +31,16 @@ impl Figures {
         let mut drift = read::<Drift>(folder)?;
         let mut stability = read::<Stability>(folder)?;
         let this = Machine::this().line();
-        let mut machines = machines(&work);
-        machines.extend(self::machines(&drift));
-        machines.extend(self::machines(&stability));
+        // The last one first.
+        let rows = work.iter().rev().map(Row::machine);
+        let rows = rows.chain(drift.iter().rev().map(Row::machine));
+        let rows = rows.chain(stability.iter().rev().map(Row::machine));
+        let mut machines: Vec<String> = rows.unique().map(str::to_owned).collect();
         let shown = match machines.contains(&this) {
             true => this,
             false => machines.first().cloned().unwrap_or(this),
         };
         machines.sort();
-        machines.dedup();
         machines.retain(|machine| *machine != shown);
         work.retain(|row| row.machine == shown);
         drift.retain(|row| row.machine == shown);
@@ -72,17 +74,11 @@ impl Figures {
             others: machines,
         })
     }
-}
 
-/// The machines of some rows, the last one first.
-fn machines<R: Row>(rows: &[R]) -> Vec<String> {
-    let mut machines: Vec<String> = Vec::new();
-    for row in rows.iter().rev() {
-        if !machines.iter().any(|known| known == row.machine()) {
-            machines.push(row.machine().to_owned());
-        }
+    /// Whether nothing has been measured.
+    pub fn is_empty(&self) -> bool {
+        self.work.is_empty() && self.drift.is_empty() && self.stability.is_empty()
     }
-    machines
 }
 
 /// Without the rows of a short look at curves that have been measured in full.

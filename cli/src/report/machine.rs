@@ -1,36 +1,77 @@
 //! What ran, and on what.
 
 use serde::Serialize;
+use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
+
+const GIBIBYTE: f64 = (1_u64 << 30) as f64;
 
 /// The machine, the compiler and its flags, and the version of this program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Machine {
-    /// Name of the processor, and how many of it the system shows.
+    /// Name of the processor, how many of it the system shows, and its memory.
     pub processor: String,
-    /// Operating system and architecture.
+    /// Operating system, its kernel, and what the program was built for.
     pub system: String,
     /// The compiler that built the program.
     pub compiler: String,
-    /// Optimisation level and target features.
+    /// Optimisation level, target features and flags of the compiler.
     pub flags: String,
-    /// Version of this program.
+    /// Version of this program, and the commit that it was built from.
     pub version: String,
 }
 
 impl Machine {
     /// This one.
     pub fn this() -> Self {
-        let count = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        Self {
-            processor: format!("{}, {count} visible", processor()),
-            system: env!("HAMEL_TARGET").into(),
+        let kind = RefreshKind::nothing()
+            .with_cpu(CpuRefreshKind::nothing())
+            .with_memory(MemoryRefreshKind::nothing().with_ram());
+        let system = System::new_with_specifics(kind);
+        // A system that cannot be asked tells nothing.
+        let system = system.ok();
+        let processors = system.as_ref().map_or(&[][..], System::cpus);
+        let name = processors.first().map_or("", |cpu| cpu.brand().trim());
+        let memory = system.as_ref().map_or(0, System::total_memory) as f64 / GIBIBYTE;
+        let parts = Self {
+            processor: format!(
+                "{}, {} visible, {memory:.0} GiB",
+                known(name),
+                processors.len()
+            ),
+            system: format!(
+                "{}, kernel {}, {}",
+                known(&System::long_os_version().unwrap_or_default()),
+                known(&System::kernel_version().unwrap_or_default()),
+                env!("HAMEL_TARGET")
+            ),
             compiler: env!("HAMEL_COMPILER").into(),
             flags: format!(
-                "opt-level {}, target features {}",
+                "opt-level {}, target features {}, flags {}",
                 env!("HAMEL_OPTIMISATION"),
-                env!("HAMEL_FEATURES")
+                env!("HAMEL_FEATURES"),
+                match env!("HAMEL_FLAGS") {
+                    "" => "none",
+                    flags => flags,
+                }
             ),
-            version: env!("CARGO_PKG_VERSION").into(),
+            version: format!(
+                "{}, commit {}",
+                env!("CARGO_PKG_VERSION"),
+                known(env!("HAMEL_COMMIT"))
+            ),
+        };
+        parts.separable()
+    }
+
+    /// Without the mark that stands between parts, which systems and flags may have in their names.
+    fn separable(self) -> Self {
+        let plain = |part: String| part.replace("; ", ", ");
+        Self {
+            processor: plain(self.processor),
+            system: plain(self.system),
+            compiler: plain(self.compiler),
+            flags: plain(self.flags),
+            version: plain(self.version),
         }
     }
 
@@ -60,17 +101,9 @@ impl Machine {
     }
 }
 
-/// The name of the processor, where the system has a file that tells it.
-fn processor() -> String {
-    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("model name"));
-    let name = line.and_then(|line| line.split_once(':'));
-    name.map_or_else(
-        || format!("unknown {}", std::env::consts::ARCH),
-        |(_, name)| name.trim().to_owned(),
-    )
+/// A name, or that there is none.
+fn known(name: &str) -> &str {
+    if name.is_empty() { "unknown" } else { name }
 }
 
 #[cfg(test)]
@@ -82,5 +115,26 @@ mod tests {
         let this = Machine::this();
         assert_eq!(Machine::of(&this.line()), this);
         assert_eq!(Machine::of("elsewhere").processor, "elsewhere");
+    }
+
+    /// What tells machines and builds apart; of none of it is the place empty.
+    #[test]
+    fn lines_tell_of_all_that_differs() {
+        let line = Machine::this().line();
+        for part in [
+            " visible, ",
+            " GiB; ",
+            ", kernel ",
+            "; rustc ",
+            "; opt-level ",
+            ", flags ",
+            ", commit ",
+        ] {
+            let rest = line.split_once(part).map(|(_, rest)| rest);
+            assert!(
+                rest.is_some_and(|rest| !rest.starts_with([',', ';', ' '])),
+                "{part}: {line}"
+            );
+        }
     }
 }

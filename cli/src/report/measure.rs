@@ -1,13 +1,14 @@
 //! One run, timed, with its error.
 
 use super::case::Reference;
+use super::row::STOPPED;
 use super::score::{Errors, errors};
+use super::watch::Watch;
 use hamel::integrate::{Form, Method, Options, Solution, Statistics, Step, integrate, no_inputs};
 use hamel_scene::Scene;
-use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-/// How long and how often.
+/// How long and how often, by the time of the thread.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// A run that takes longer is stopped, and fails.
@@ -77,7 +78,7 @@ pub fn point(
     budget: Budget,
 ) -> Result<Point, Failed> {
     let samples: Vec<f64> = reference.samples.iter().map(|sample| sample.t).collect();
-    let start = Instant::now();
+    let start = Watch::start();
     let (solution, first) = run(scene, form, method, &samples, budget.run)?;
     let errors = errors(&scene.mechanism, reference, &solution);
     let errors = errors.filter(|errors| errors.worst.is_finite());
@@ -124,11 +125,8 @@ pub fn run(
     };
     let initial = scene.start();
     let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
-    let start = Instant::now();
-    let mut observer = |_: &Step<'_>| match start.elapsed() < limit {
-        true => ControlFlow::Continue(()),
-        false => ControlFlow::Break(()),
-    };
+    let start = Watch::start();
+    let mut observer = |step: &Step<'_>| start.allows(limit, step);
     let result = integrate(
         &mut *dynamics,
         &initial,
@@ -136,12 +134,12 @@ pub fn run(
         &mut no_inputs,
         &mut observer,
     );
-    let seconds = start.elapsed().as_secs_f64();
+    let seconds = start.seconds();
     match result {
         Ok(solution) if !solution.stopped => Ok((solution, seconds)),
         Ok(solution) => Err(Failed {
             reason: format!(
-                "at {:.3e} of {:.3e} s after {:.2} s of run time and {} steps",
+                "{STOPPED} at {:.3e} of {:.3e} s after {:.2} s of run time and {} steps",
                 solution.state.time,
                 options.t_end,
                 limit.as_secs_f64(),

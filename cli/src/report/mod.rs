@@ -17,6 +17,7 @@ mod run;
 mod score;
 mod stability;
 mod store;
+mod watch;
 mod work;
 
 pub use args::Args;

@@ -5,6 +5,7 @@ use super::figures::Figures;
 use super::plots;
 use super::row::Work;
 use crate::output::Failure;
+use itertools::Itertools;
 use serde::Serialize;
 use tera::{Context, Tera};
 
@@ -78,7 +79,8 @@ struct Cell {
 pub fn render(figures: &Figures) -> Result<String, Failure> {
     let mut context = Context::new();
     let sections = sections(&figures.work)?;
-    let methods = distinct(figures.work.iter().map(|row| row.method.as_str()));
+    let methods = figures.work.iter().map(|row| row.method.as_str());
+    let methods: Vec<&str> = methods.unique().collect();
     context.insert("machine", &figures.machine);
     context.insert("others", &figures.others);
     context.insert("lines", &overview(&figures.work, &methods));
@@ -102,37 +104,27 @@ pub fn render(figures: &Figures) -> Result<String, Failure> {
     page.map_err(|error| Failure::Page(error.to_string()))
 }
 
-fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut known: Vec<String> = Vec::new();
-    for name in names {
-        if !known.iter().any(|other| other == name) {
-            known.push(name.to_owned());
-        }
-    }
-    known
-}
-
 fn drawings<R>(
     rows: &[R],
     name: impl Fn(&R) -> &String,
     draw: impl Fn(&[&R]) -> Result<String, Failure>,
 ) -> Result<Vec<Drawing>, Failure> {
-    let names = distinct(rows.iter().map(|row| name(row).as_str()));
-    let drawings = names.into_iter().map(|scene| {
+    let names = rows.iter().map(|row| name(row).as_str()).unique();
+    let drawings = names.map(|scene| {
         let own: Vec<&R> = rows.iter().filter(|row| *name(row) == scene).collect();
         Ok(Drawing {
             svg: draw(&own)?,
-            name: scene,
+            name: scene.into(),
         })
     });
     drawings.collect()
 }
 
 fn sections(rows: &[Work]) -> Result<Vec<Section>, Failure> {
-    let names = distinct(rows.iter().map(|row| row.scene.as_str()));
-    let sections = names.into_iter().map(|name| {
+    let names = rows.iter().map(|row| row.scene.as_str()).unique();
+    let sections = names.map(|name| {
         let own: Vec<&Work> = rows.iter().filter(|row| row.scene == name).collect();
-        section(name, &own)
+        section(name.into(), &own)
     });
     sections.collect()
 }
@@ -150,7 +142,7 @@ fn section(name: String, rows: &[&Work]) -> Result<Section, Failure> {
         .copied()
         .filter(|row| row.form == "lagrangian" && COMPARED.contains(&row.method.as_str()))
         .collect();
-    let several = distinct(compared.iter().map(|row| row.representation.as_str())).len() > 1;
+    let several = !compared.iter().map(|row| &row.representation).all_equal();
     let representations = match several {
         true => plots::representations(&compared)?,
         false => String::new(),
@@ -255,11 +247,11 @@ fn words(text: &str) -> String {
     text.chars().filter(|&c| !is_figure(c)).collect()
 }
 
-fn overview(rows: &[Work], methods: &[String]) -> Vec<Line> {
-    let scenes = distinct(rows.iter().map(|row| row.scene.as_str()));
-    let lines = scenes.into_iter().map(|scene| {
+fn overview(rows: &[Work], methods: &[&str]) -> Vec<Line> {
+    let scenes = rows.iter().map(|row| row.scene.as_str()).unique();
+    let lines = scenes.map(|scene| {
         let own: Vec<&Work> = rows.iter().filter(|row| row.scene == scene).collect();
-        let cell = |method: &String| {
+        let cell = |method: &&str| {
             let of_method: Vec<&Work> = own
                 .iter()
                 .copied()
@@ -272,7 +264,7 @@ fn overview(rows: &[Work], methods: &[String]) -> Vec<Line> {
             floor: own
                 .first()
                 .map_or(String::new(), |row| format!("{:.1e}", row.floor)),
-            scene,
+            scene: scene.into(),
         }
     });
     lines.collect()

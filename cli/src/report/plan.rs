@@ -3,6 +3,7 @@
 use super::args::Args;
 use super::case::{Case, schemes};
 use super::measure::Budget;
+use super::row::Row;
 use crate::output::Failure;
 use hamel::integrate::{Form, Scheme};
 
@@ -109,6 +110,20 @@ impl Plan {
             stiff: STIFF.into_iter().filter(|(name, _)| wanted(name)).collect(),
             stiffnesses: (0..=12).step_by(step).map(|i| 10.0_f64.powi(i)).collect(),
         })
+    }
+
+    /// Whether a row tells of what this machine is to measure on some scenes.
+    pub fn covers<'a>(
+        &self,
+        row: &impl Row,
+        machine: &str,
+        mut scenes: impl Iterator<Item = &'a str>,
+    ) -> bool {
+        let (scene, method) = row.curve();
+        row.machine() == machine
+            && row.budget().is_none_or(|budget| budget == self.budget_name)
+            && scenes.any(|name| name == scene)
+            && self.schemes.iter().any(|scheme| scheme.name() == method)
     }
 
     /// Forms in which a scheme is measured.

@@ -21,7 +21,17 @@ pub trait Row: Serialize + for<'a> Deserialize<'a> + Clone {
 
     /// On what.
     fn machine(&self) -> &str;
+
+    /// The scene and the method.
+    fn curve(&self) -> (&str, &str);
+
+    /// How long was measured, of what is measured for longer or shorter.
+    fn budget(&self) -> Option<&str>;
 }
+
+/// How the reason of a run begins that was stopped for its time, and of one that was left out since coarser ones were.
+pub const STOPPED: &str = "stopped";
+pub const NOT_RUN: &str = "not run";
 
 /// A point of a work–precision diagram.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -54,6 +64,15 @@ pub struct Work {
     pub machine: String,
 }
 
+impl Work {
+    /// Whether finer runs take too long as well.
+    pub fn is_slow(&self) -> bool {
+        [STOPPED, NOT_RUN]
+            .iter()
+            .any(|reason| self.failure.starts_with(reason))
+    }
+}
+
 impl Row for Work {
     const FILE: &'static str = "work";
 
@@ -73,6 +92,14 @@ impl Row for Work {
 
     fn machine(&self) -> &str {
         &self.machine
+    }
+
+    fn curve(&self) -> (&str, &str) {
+        (&self.scene, &self.method)
+    }
+
+    fn budget(&self) -> Option<&str> {
+        Some(&self.budget)
     }
 }
 
@@ -107,6 +134,14 @@ impl Row for Drift {
     fn machine(&self) -> &str {
         &self.machine
     }
+
+    fn curve(&self) -> (&str, &str) {
+        (&self.scene, &self.method)
+    }
+
+    fn budget(&self) -> Option<&str> {
+        Some(&self.budget)
+    }
 }
 
 /// The largest step at which a method keeps a stiff scene bounded.
@@ -140,5 +175,13 @@ impl Row for Stability {
 
     fn machine(&self) -> &str {
         &self.machine
+    }
+
+    fn curve(&self) -> (&str, &str) {
+        (&self.scene, &self.method)
+    }
+
+    fn budget(&self) -> Option<&str> {
+        None
     }
 }

@@ -51,7 +51,7 @@ pub fn measure(
                         largest_tried_s: LARGEST / frequency,
                         machine: machine.into(),
                     };
-                    if !store.has(&row.key()) {
+                    if store.find(&row.key()).is_none() {
                         let scene = stiffened(&description, stiffness).build(registry)?;
                         row.step_s = largest(&scene, scheme, form, frequency);
                         store.add(&[row])?;

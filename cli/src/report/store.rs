@@ -2,7 +2,7 @@
 
 use super::row::Row;
 use crate::output::Failure;
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,62 +11,71 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct Store<R> {
     path: PathBuf,
-    rows: Vec<R>,
-    /// Keys of what this machine has measured and is not to measure anew.
-    measured: HashSet<String>,
-    machine: String,
+    /// What this machine has measured, by its keys.
+    measured: HashMap<String, R>,
 }
 
 impl<R: Row> Store<R> {
-    /// Opens the file in a folder; where there is none, the first rows make it. Rows of this machine and version count as measured, unless all is wanted
-    /// anew; those of others stay as they are.
+    /// Opens the file in a folder; where there is none, the first rows make it. Rows of this machine and version count as measured; those of others stay
+    /// as they are.
     ///
     /// # Errors
     /// A file that holds other than such rows.
-    pub fn open(folder: &Path, machine: &str, fresh: bool) -> Result<Self, Failure> {
+    pub fn open(folder: &Path, machine: &str) -> Result<Self, Failure> {
         let rows = read::<R>(folder)?;
         let path = path::<R>(folder);
         mend(&path).map_err(|error| failure(&path, error))?;
-        let own = rows.iter().filter(|row| row.machine() == machine && !fresh);
+        let own = rows.into_iter().filter(|row| row.machine() == machine);
         Ok(Self {
-            measured: own.map(Row::key).collect(),
+            measured: own.map(|row| (row.key(), row)).collect(),
             path,
-            machine: machine.into(),
-            rows,
         })
     }
 
-    /// Whether this machine has rows of this key.
-    pub fn has(&self, key: &str) -> bool {
-        self.measured.contains(key)
+    /// What this machine has measured of this key.
+    pub fn find(&self, key: &str) -> Option<&R> {
+        self.measured.get(key)
     }
 
-    /// Adds rows, which are in the file when this returns, in place of those of this machine that have their keys.
+    /// All that this machine has measured, in no order.
+    pub fn measured(&self) -> impl Iterator<Item = &R> {
+        self.measured.values()
+    }
+
+    /// Adds rows, which are in the file when this returns.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn add(&mut self, rows: &[R]) -> Result<(), Failure> {
-        let keys: HashSet<String> = rows.iter().map(Row::key).collect();
-        let count = self.rows.len();
-        let machine = &self.machine;
-        self.rows
-            .retain(|row| row.machine() != machine || !keys.contains(&row.key()));
-        let replaces = self.rows.len() < count;
-        self.rows.extend_from_slice(rows);
-        self.measured.extend(keys);
-        let written = match replaces {
-            true => self.rewrite(),
-            false => append(&self.path, rows),
-        };
-        written.map_err(|error| failure(&self.path, error.into()))
+        append(&self.path, rows).map_err(|error| failure(&self.path, error.into()))?;
+        let rows = rows.iter().map(|row| (row.key(), row.clone()));
+        self.measured.extend(rows);
+        Ok(())
     }
+}
 
-    /// All rows to a new file, which then takes the place of the old one: a run that is stopped loses neither.
-    fn rewrite(&self) -> csv::Result<()> {
-        let whole = self.path.with_extension("new.csv");
-        write(csv::Writer::from_path(&whole)?, &self.rows)?;
-        Ok(fs::rename(&whole, &self.path)?)
+/// Takes rows out of a file, which is kept as it was beside it as `NAME.1.csv`, or with the next number that is free: what takes their place can be stopped and
+/// gone on with as if they had never been.
+///
+/// # Errors
+/// Files that cannot be read or written.
+pub fn set_aside<R: Row>(folder: &Path, is_old: impl Fn(&R) -> bool) -> Result<(), Failure> {
+    let mut rows = read::<R>(folder)?;
+    let count = rows.len();
+    rows.retain(|row| !is_old(row));
+    if rows.len() == count {
+        return Ok(());
     }
+    let path = path::<R>(folder);
+    let mut copies = (1..).map(|number| path.with_extension(format!("{number}.csv")));
+    let aside = copies.find(|copy| !copy.exists()).unwrap_or_default();
+    let rest = path.with_extension("new.csv");
+    let moved = || -> csv::Result<()> {
+        write(csv::Writer::from_path(&rest)?, &rows)?;
+        fs::copy(&path, &aside)?;
+        Ok(fs::rename(&rest, &path)?)
+    };
+    moved().map_err(|error| failure(&path, error.into()))
 }
 
 /// In one piece, so that what is stopped leaves a whole curve or none, as far as the system allows.

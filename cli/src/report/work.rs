@@ -4,7 +4,7 @@ use super::case::{Case, Reference, accuracy};
 use super::measure::{self, Failed, Point};
 use super::plan::{Plan, TOLERANCES};
 use super::representation::Representation;
-use super::row::{Row, Work, form_name};
+use super::row::{NOT_RUN, Row, Work, form_name};
 use super::store::Store;
 use crate::output::Failure;
 use hamel::integrate::{Form, Method, Scheme};
@@ -16,6 +16,9 @@ const HALVINGS: i32 = 9;
 
 /// Runs in a row that were stopped for their time before finer ones are left out.
 const SLOW: usize = 2;
+
+/// What the accuracy of methods without step control is.
+const STEP: &str = "step_s";
 
 /// One curve to be measured.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +42,10 @@ pub fn measure(
 ) -> Result<(), Failure> {
     for case in &plan.cases {
         let (description, reference) = (case.description()?, case.reference()?);
-        let coarse = coarse_step(&description, &reference, registry, plan);
+        let coarse = match begun_at(store, case, plan) {
+            Some(step) => step,
+            None => coarse_step(&description, &reference, registry, plan),
+        };
         for curve in curves(plan, case, &description) {
             tick(&format!("{} {}", case.name, curve.scheme.name()));
             let scene = curve.representation.apply(&description).build(registry);
@@ -47,7 +53,8 @@ pub fn measure(
             let mut slow = 0;
             for method in methods(curve.scheme, coarse) {
                 let empty = row(plan, &curve, method, &reference, machine);
-                if store.has(&empty.key()) {
+                if let Some(row) = store.find(&empty.key()) {
+                    slow = if row.is_slow() { slow + 1 } else { 0 };
                     continue;
                 }
                 let measured = match (&scene, slow) {
@@ -114,6 +121,14 @@ fn methods(scheme: Scheme, coarse: f64) -> Vec<Method> {
     }
 }
 
+/// The step at which the ladder of a scene began that has been measured in part; from another one its rungs would not be met again.
+fn begun_at(store: &Store<Work>, case: &Case, plan: &Plan) -> Option<f64> {
+    let steps = store
+        .measured()
+        .filter(|row| row.scene == case.name && row.knob == STEP && row.budget == plan.budget_name);
+    steps.map(|row| row.accuracy).reduce(f64::max)
+}
+
 /// The mean step, s, with which step control resolves a scene to 1e-4: the longest over an explicit and an implicit method, rounded to a power of two.
 fn coarse_step(
     description: &SceneDescription,
@@ -140,7 +155,7 @@ fn coarse_step(
 
 fn not_run() -> Failed {
     Failed {
-        reason: format!("not run: {SLOW} coarser ones were stopped"),
+        reason: format!("{NOT_RUN}: {SLOW} coarser ones were stopped"),
         seconds: 0.0,
         is_slow: true,
     }
@@ -164,7 +179,7 @@ fn row(
         representation: curve.representation.name().into(),
         implementation: "tree".into(),
         knob: match method {
-            Method::Fixed { .. } => "step_s".into(),
+            Method::Fixed { .. } => STEP.into(),
             Method::Controlled { .. } => "tolerance".into(),
         },
         accuracy: accuracy(&method),

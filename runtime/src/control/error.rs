@@ -108,6 +108,21 @@ pub enum ControlError {
         /// The least speed, m/s.
         limit: f64,
     },
+    /// Steps of one period are too long to foresee a fast motion.
+    #[error(
+        "the period of {period} s times the rate of {rate:.3e} 1/s of the fastest motion about the goal, most of all of joint `{joint}`, is {:.3e}, and steps of order 4, which foresee it, are stable up to {limit}: make the period at most {:.1e} s, or the springs and dampers that it is due to weaker",
+        period * rate, limit / rate
+    )]
+    PeriodTooLong {
+        /// The joint that moves fastest in it.
+        joint: String,
+        /// The period, s.
+        period: f64,
+        /// |λ|, 1/s.
+        rate: f64,
+        /// What their product may be.
+        limit: f64,
+    },
     /// The optimiser refuses the problem itself.
     #[error("the optimiser cannot be set up: {0}")]
     Optimizer(String),

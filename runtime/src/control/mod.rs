@@ -24,6 +24,7 @@ mod reach;
 mod reference;
 mod regulator;
 pub mod riccati;
+mod scales;
 mod state;
 
 pub use computed_torque::{ComputedTorque, ErrorDynamics};

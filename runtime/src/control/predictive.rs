@@ -8,7 +8,7 @@ use super::regulator::{Equilibrium, Weights};
 use super::riccati::{self, Optimum, Weighting};
 use super::state::check_sizes;
 use super::{ControlError, Controller, DEVIATIONS, Measure};
-use crate::integrate::{Form, LinearStep, Tableau};
+use crate::integrate::{Form, LinearStep, Spectrum, State, Tableau};
 use crate::mechanism::Mechanism;
 use alloc::sync::Arc;
 use core::fmt;
@@ -20,6 +20,9 @@ const FIRST_PROGRAMS: usize = 30;
 
 /// How often a change that makes the plan worse is halved: a program sees motions to first order.
 const MOST_HALVINGS: i32 = 8;
+
+/// The product of step and rate up to which Kutta's method of order 4 is stable: on the real axis; on the imaginary one it is 2.83.
+const STABLE: f64 = 2.785;
 
 /// Holds an equilibrium with efforts within limits, by the optimum over a horizon of some periods, found anew in each period.
 ///
@@ -77,7 +80,7 @@ impl PredictiveRegulator {
     ///
     /// # Errors
     /// Weights or limits of the wrong size, or out of range; an effort at rest beyond its limit; an empty horizon; a period that is not positive; a
-    /// mechanism that cannot be linearised, or that the inputs cannot bring back.
+    /// mechanism that cannot be linearised, or that the inputs cannot bring back; a period that is too long for steps of order 4 to foresee its fastest motion.
     pub fn new(
         equilibrium: Equilibrium,
         weights: &Weights,
@@ -106,6 +109,7 @@ impl PredictiveRegulator {
         let (a, b) = equilibrium.linearized()?;
         riccati::solvable(&a, &b, &state, Time::Continuous)
             .map_err(|cause| equilibrium.locate(cause))?;
+        foreseeable(&equilibrium, period)?;
         let mut step = LinearStep::new(mechanism, Form::Lagrangian, &Tableau::RK4);
         let still = vec![0.0; mechanism.layout().speeds];
         step.linearize(equilibrium.goal(), &still, equilibrium.efforts(), period)?;
@@ -297,6 +301,29 @@ impl PredictiveRegulator {
             cost += 0.5 * weight * (input - rest) * (input - rest);
         }
         cost
+    }
+}
+
+/// Whether steps of a period are stable for all that does not grow by itself; mechanisms that are too large to look are believed.
+fn foreseeable(equilibrium: &Equilibrium, period: f64) -> Result<(), ControlError> {
+    let mechanism = equilibrium.mechanism();
+    let rest = State {
+        time: 0.0,
+        configuration: equilibrium.goal().to_vec(),
+        speeds: vec![0.0; mechanism.layout().speeds],
+    };
+    let Ok(Some(spectrum)) = Spectrum::at(mechanism, &rest) else {
+        return Ok(());
+    };
+    let mut modes = spectrum.modes().iter();
+    match modes.find(|mode| !mode.is_growing()) {
+        Some(mode) if period * mode.rate() > STABLE => Err(ControlError::PeriodTooLong {
+            joint: spectrum.joint(mode).into(),
+            period,
+            rate: mode.rate(),
+            limit: STABLE,
+        }),
+        _ => Ok(()),
     }
 }
 

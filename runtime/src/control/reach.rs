@@ -4,18 +4,19 @@
 //! rank at every eigenvalue λ of A whose motion does not fade. Asked before a Riccati equation is solved, since rounding makes such a motion fade
 //! or grow by 1e-16 to 1e-8 of the rates of A, and the solver would find a huge cost for it instead of none.
 
-use crate::eigen::{balance, eigenvalues};
+use super::scales;
+use crate::eigen::eigenvalues;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Rates of fading that pass for none, as parts of the largest rate: two equal eigenvalues of a Jordan block move by √eps = 1.5e-8, three by 6e-6
-/// of which the test of rank is left to judge.
-const SLOW: f64 = 1e-7;
+/// Regularity of `A − μ` that passes for none, of rows and columns of norm 1: some hundred roundings, times 1e4 for the conditioning of coordinates.
+const SINGULAR: f64 = 1e-10;
 
-/// Reach that passes for none, as a part of the largest: some hundred roundings, times 1e4 for the conditioning of coordinates.
-const FAINT: f64 = 1e-10;
+/// Reach that passes for none, of rows and columns of norm 1: the root of a rounding, as states that move others, and are moved by their rounding alone, are
+/// scaled until both are alike.
+const FAINT: f64 = 2e-8;
 
-/// Entries that pass for the rounding of zeros, as parts of the largest, where scales are chosen: balanced against them, states would differ by 1e8.
-const ROUNDING: f64 = 1e-13;
+/// Sweeps that make norms of rows and columns alike, to a factor of two or so.
+const SWEEPS: usize = 8;
 
 /// How a motion of `ẋ = A x` or `x′ = A x` that does not fade goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,71 +52,71 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
     if !a.iter().chain(b.iter()).all(|x| x.is_finite()) {
         return None;
     }
-    // The same motions in states of like size: units of states must not decide.
-    let scales = like_sizes(a)?;
-    let balanced = DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| {
-        a[(i, j)] * (scales[j] / scales[i])
-    });
-    let size = match balanced.norm() {
-        0.0 => 1.0,
-        norm => norm,
-    };
-    let mut reach = b.clone();
-    for (mut row, scale) in reach.row_iter_mut().zip(&scales) {
-        row /= *scale;
-    }
-    for mut column in reach.column_iter_mut() {
-        let norm = column.norm();
-        if norm > 0.0 {
-            column *= size / norm;
-        }
-    }
-    let lasts = |value: &Complex<f64>| match time {
-        Time::Continuous => value.re >= -SLOW * size,
-        Time::Discrete => value.norm_sqr() >= 1.0 - 2.0 * SLOW,
-    };
-    let mut lasting = eigenvalues(balanced.clone())?.into_iter().filter(lasts);
-    lasting.find_map(|eigenvalue| {
-        let state = unreached(&balanced, &reach, eigenvalue, FAINT * size)?;
+    // The same motions in states of like size: units of states and inputs must not decide.
+    let (balanced, reach) = scales::balanced(a, b)?;
+    let values = eigenvalues(balanced.clone())?.into_iter();
+    let mut lasting = values.filter(|value| lasts(&balanced, *value, time));
+    lasting.find_map(|value| {
+        let state = faint(pencil(&balanced, value, &reach), FAINT)?;
         Some(Motion {
             state,
-            eigenvalue: [eigenvalue.re, eigenvalue.im],
+            eigenvalue: [value.re, value.im],
         })
     })
 }
 
-/// Sizes of states in which rows and columns of `a` are alike.
-fn like_sizes(a: &DMatrix<f64>) -> Option<DVector<f64>> {
-    let least = ROUNDING * a.amax();
-    let mut known = a.map(|x| if x.abs() <= least { 0.0 } else { x });
-    balance(&mut known)
+/// Whether the motion of an eigenvalue does not fade, or might not but for rounding: whether `A − μ` is regular at the nearest μ that does not.
+/// Nearby eigenvalues are each far less certain than that, by the root of a rounding where two are one.
+fn lasts(a: &DMatrix<f64>, value: Complex<f64>, time: Time) -> bool {
+    let nearest = match time {
+        Time::Continuous if value.re < 0.0 => Complex::new(0.0, value.im),
+        Time::Discrete if value.norm() == 0.0 => return false,
+        Time::Discrete if value.norm() < 1.0 => value / value.norm(),
+        _ => return true,
+    };
+    let none = DMatrix::zeros(a.nrows(), 0);
+    faint(pencil(a, nearest, &none), SINGULAR).is_some()
 }
 
-/// The state that has the largest part in the direction in which `[A − λ, B]` reaches no further than `faint`.
-fn unreached(
+/// `[A − λ, B]` with rows and columns of norm 1 or so, and what its rows were divided by.
+fn pencil(
     a: &DMatrix<f64>,
-    reach: &DMatrix<f64>,
-    eigenvalue: Complex<f64>,
-    faint: f64,
-) -> Option<usize> {
+    value: Complex<f64>,
+    b: &DMatrix<f64>,
+) -> (DMatrix<Complex<f64>>, DVector<f64>) {
     let n = a.nrows();
-    let whole = DMatrix::from_fn(n, n + reach.ncols(), |i, j| match j.checked_sub(n) {
-        None if i == j => Complex::from(a[(i, j)]) - eigenvalue,
+    let mut whole = DMatrix::from_fn(n, n + b.ncols(), |i, j| match j.checked_sub(n) {
+        None if i == j => Complex::from(a[(i, j)]) - value,
         None => Complex::from(a[(i, j)]),
-        Some(input) => Complex::from(reach[(i, input)]),
+        Some(input) => Complex::from(b[(i, input)]),
     });
-    let found = whole.svd(true, false);
-    let (place, &least) = found
-        .singular_values
-        .iter()
-        .enumerate()
-        .min_by(|left, right| left.1.total_cmp(right.1))?;
-    if least > faint {
-        return None;
+    let mut sizes = DVector::from_element(n, 1.0);
+    for _ in 0..SWEEPS {
+        for (mut row, size) in whole.row_iter_mut().zip(&mut sizes) {
+            let norm = size_of(row.norm());
+            *size *= norm;
+            row.unscale_mut(norm);
+        }
+        for mut column in whole.column_iter_mut() {
+            column.unscale_mut(size_of(column.norm()));
+        }
     }
+    (whole, sizes)
+}
+
+/// What to divide rows and columns of a norm by.
+fn size_of(norm: f64) -> f64 {
+    if norm > 0.0 { norm } else { 1.0 }
+}
+
+/// The state that has the largest part in the direction in which rows reach no further than `least`.
+fn faint((whole, sizes): (DMatrix<Complex<f64>>, DVector<f64>), least: f64) -> Option<usize> {
+    let found = whole.svd(true, false);
+    let singular = found.singular_values.iter().enumerate();
+    let (place, _) = singular
+        .min_by(|left, right| left.1.total_cmp(right.1))
+        .filter(|(_, found)| **found <= least)?;
     let direction = found.u?;
-    (0..n).max_by(|&i, &j| {
-        let part = |k: usize| direction[(k, place)].norm_sqr();
-        part(i).total_cmp(&part(j))
-    })
+    let part = |state: usize| direction[(state, place)].norm() / sizes[state];
+    (0..sizes.len()).max_by(|&i, &j| part(i).total_cmp(&part(j)))
 }

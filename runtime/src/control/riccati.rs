@@ -7,7 +7,8 @@
 
 use super::ControlError;
 use super::reach::{self, Time};
-use nalgebra::DMatrix;
+use super::scales;
+use nalgebra::{DMatrix, DVector};
 use num_traits::Float;
 
 /// Steps of doubling at most: the slowest closed loop that is found fades over 2⁴⁰ steps.
@@ -65,21 +66,37 @@ pub fn continuous(
     check(a, b, weighting, Time::Continuous)?;
     let inverse = invert(weighting.input.clone())?;
     let reach = b * &inverse * b.transpose();
+    // In states of like size, so that A is no larger than its rates.
+    let scales = scales::of_hamiltonian(a, &reach, weighting.state);
+    let scales = scales.ok_or(ControlError::NotStabilizable)?;
+    let by_size = DMatrix::from_diagonal(&scales);
+    let state = &by_size * weighting.state * &by_size;
+    let reach = symmetrically_divided(&reach, &scales);
+    let cost = continuous_cost(&scales::similar(a, &scales), reach, &state)?;
+    let cost = symmetrically_divided(&cost, &scales);
+    let gain = inverse * b.transpose() * &cost;
+    Ok(Optimum { cost, gain })
+}
+
+/// P of `AᵀP + PA − PGP + Q = 0`.
+fn continuous_cost(
+    a: &DMatrix<f64>,
+    reach: DMatrix<f64>,
+    state: &DMatrix<f64>,
+) -> Result<DMatrix<f64>, ControlError> {
     // Any rate above the norm of A keeps A − γ regular; those of the closed loop are no faster than this by much.
-    let rate = a.norm() + Float::sqrt(reach.norm() * weighting.state.norm());
+    let rate = a.norm() + Float::sqrt(reach.norm() * state.norm());
     let n = a.nrows();
     let shifted = invert(a - DMatrix::identity(n, n) * rate)?;
-    let seen = weighting.state * &shifted;
+    let seen = state * &shifted;
     let moved = &shifted * &reach;
     // W⁻¹ of W = (A − γ) + G (A − γ)⁻ᵀ Q.
-    let whole = a - DMatrix::identity(n, n) * rate + &reach * shifted.transpose() * weighting.state;
+    let whole = a - DMatrix::identity(n, n) * rate + &reach * shifted.transpose() * state;
     let whole = invert(whole)?;
     let start = DMatrix::identity(n, n) + &whole * (2.0 * rate);
     let reach = symmetric(&(moved * whole.transpose() * (2.0 * rate)));
     let state = symmetric(&(whole.transpose() * seen * (2.0 * rate)));
-    let cost = double(start, reach, state)?;
-    let gain = inverse * b.transpose() * &cost;
-    Ok(Optimum { cost, gain })
+    double(start, reach, state)
 }
 
 /// P of `A`, `G = B R⁻¹ Bᵀ` and Q: each step takes `A (I + G P)⁻¹ A` for A, the closed loop of twice as many steps.
@@ -104,6 +121,11 @@ fn double(
         }
     }
     Err(ControlError::NotStabilizable)
+}
+
+/// `D⁻¹ M D⁻¹` of a symmetric M.
+fn symmetrically_divided(matrix: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
+    scales::divided(&scales::divided(matrix, scales).transpose(), scales)
 }
 
 fn symmetric(matrix: &DMatrix<f64>) -> DMatrix<f64> {

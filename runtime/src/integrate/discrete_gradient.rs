@@ -27,7 +27,8 @@ use nalgebra::Vector6;
 /// always held against that of the beginning; to go after it would shake λ, by as much more as p̄ changes little.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Changes of increments from which on λ is adjusted: the energy of a stiff spring in increments further off would throw λ about.
+/// Changes of increments, as parts of the increments, from which on λ is adjusted: the energy of a stiff spring in increments further off would throw
+/// λ about.
 const NEAR: f64 = 1e-3;
 
 /// The correction at work.
@@ -118,9 +119,9 @@ impl Correction {
         Ok(())
     }
 
-    /// The increments have last changed by `size`, in radians, metres and parts of speeds.
-    pub(super) const fn see(&mut self, size: f64) {
-        self.is_in_force = size < NEAR;
+    /// Increments of the size `whole` have last changed by `size`.
+    pub(super) fn see(&mut self, size: f64, whole: f64) {
+        self.is_in_force = size <= NEAR * whole;
     }
 
     /// Whether the energy at the end is what it shall be.

@@ -10,7 +10,7 @@
 //!
 //! | mechanism | scheme |
 //! |---|---|
-//! | most | [`Scheme::DormandPrince`]; [`Scheme::DormandPrince8`] below 1e-8 or so, [`Scheme::Verner9`] near rounding |
+//! | most | [`Scheme::DormandPrince`]; [`Scheme::DormandPrince8`] from 1e-6 down, [`Scheme::Verner9`] near rounding |
 //! | stiff and damped | [`Scheme::Radau5`]: its steps do not depend on the stiffness |
 //! | stiff and undamped | [`Scheme::Exponential`], which follows the oscillation; [`Scheme::Gauss2`] and [`Scheme::Midpoint`] step over it |
 //! | any of these | [`Choice`] looks at the first state, and says why |
@@ -47,6 +47,7 @@ mod stages;
 mod standing;
 mod stepper;
 mod tableau;
+mod trial;
 mod turns;
 mod verner;
 

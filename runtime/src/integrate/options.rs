@@ -24,7 +24,7 @@ pub enum Scheme {
     CommutatorFree4,
     /// Dormand and Prince's of order 5(4).
     DormandPrince,
-    /// Dormand and Prince's of order 8(5,3), known as DOP853: for tolerances below 1e-8 or so.
+    /// Dormand and Prince's of order 8(5,3), known as DOP853: for tolerances of 1e-6 and below.
     DormandPrince8,
     /// Verner's of order 9(8): for tolerances near rounding, which its result feels less than that of DOP853.
     Verner9,
@@ -87,7 +87,7 @@ impl Scheme {
             Self::CommutatorFree4 => "commutator-free of order 4, fixed step",
             Self::DormandPrince => "Dormand-Prince 5(4), step control: for most motions",
             Self::DormandPrince8 => {
-                "Dormand-Prince 8(5,3), step control: for tolerances below 1e-8 or so"
+                "Dormand-Prince 8(5,3), step control: for tolerances of 1e-6 and below"
             }
             Self::Verner9 => "Verner 9(8), step control: for tolerances near rounding",
             Self::Explicit(_) => "an explicit method of the caller's",

@@ -32,6 +32,11 @@ impl Mode {
     pub fn is_damped(&self) -> bool {
         self.growth <= -0.3 * self.rate()
     }
+
+    /// Whether it grows as fast as it oscillates, or so: a mechanism about to buckle or to fall.
+    pub fn is_growing(&self) -> bool {
+        self.growth > 0.3 * self.rate()
+    }
 }
 
 /// The modes about one state of a mechanism.

@@ -3,6 +3,7 @@
 use super::refused;
 use super::style::{FONT, GRID, LABEL, Look, Mark, QUIET, TITLE, decade};
 use crate::output::Failure;
+use itertools::Itertools;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::ops::Range;
@@ -180,13 +181,8 @@ fn shape<'a, DB: DrawingBackend + 'a, C: Clone + 'a>(at: C, look: &Look) -> DynE
 
 /// Curves of all panels, one of each label.
 fn known(panels: &[Panel]) -> Vec<&Curve> {
-    let mut curves: Vec<&Curve> = Vec::new();
-    for curve in panels.iter().flat_map(|panel| &panel.curves) {
-        if curves.iter().all(|known| known.label != curve.label) {
-            curves.push(curve);
-        }
-    }
-    curves
+    let curves = panels.iter().flat_map(|panel| &panel.curves);
+    curves.unique_by(|curve| &curve.label).collect()
 }
 
 fn legend(area: &Area<'_>, curves: &[&Curve]) -> Result<(), Failure> {

@@ -4,6 +4,7 @@ use super::axes::{Curve, Panel, figure};
 use super::style::{self, Look};
 use crate::output::Failure;
 use crate::report::row::Work;
+use itertools::Itertools;
 
 const WIDTH: u32 = 1180;
 const HEIGHT: u32 = 400;
@@ -36,25 +37,14 @@ pub fn forms(rows: &[&Work]) -> Result<String, Failure> {
 
 /// One method in several representations.
 pub fn representations(rows: &[&Work]) -> Result<String, Failure> {
-    let mut names: Vec<&str> = rows.iter().map(|row| row.representation.as_str()).collect();
-    names.dedup();
-    let mut methods: Vec<&str> = rows.iter().map(|row| row.method.as_str()).collect();
-    methods.dedup();
-    let mut distinct: Vec<&str> = Vec::new();
-    for name in names {
-        if !distinct.contains(&name) {
-            distinct.push(name);
-        }
-    }
+    let names = rows.iter().map(|row| row.representation.as_str());
+    let names: Vec<&str> = names.unique().collect();
+    let first = rows.first().map(|row| &row.method);
     let key = |row: &Work| (row.method.clone(), row.representation.clone());
-    let place = |row: &Work| {
-        distinct
-            .iter()
-            .position(|name| **name == row.representation)
-    };
+    let place = |row: &Work| names.iter().position(|name| **name == row.representation);
     // The second method is dashed.
     let look = |row: &Work| Look {
-        dashed: methods.first() != Some(&row.method.as_str()),
+        dashed: first != Some(&row.method),
         ..style::numbered(3 + place(row).unwrap_or_default())
     };
     let label = |row: &Work| format!("{} {}", row.representation, row.method);

@@ -6,6 +6,7 @@ use crate::integrate::discrete_gradient::Correction;
 use crate::integrate::flow::Flow;
 use crate::integrate::standing::{Standing, add};
 use crate::integrate::stepper::Span;
+use alloc::vec::Vec;
 use num_traits::Float;
 
 /// Iterations after which a step is given up. Fixed points that contract by 0.5 need 52 of them.
@@ -15,11 +16,13 @@ const MOST_ITERATIONS: usize = 60;
 /// sixth power of the step as the error of a method of order 5 does. At 1e-4 it is what RADAU5 leaves.
 const UNSOLVED: f64 = 0.2;
 
-/// Changes below this that no longer shrink are rounding's: far above what any regular system makes of it, far below any error allowed.
+/// Changes below this that no longer shrink are rounding's: far above what any regular system makes of it, far below any error allowed. As parts of the
+/// increments, where these are small.
 const STALLED: f64 = 1e-9;
 
-/// Iterations without shrinking after which an energy that is not yet what it shall be is left to rounding: λ and the increments take turns, so that
-/// changes shrink by tenths over several of them.
+/// Iterations without shrinking after which what is small alone is left to rounding: an energy that is not yet what it shall be, as λ and the
+/// increments take turns, so that changes shrink by tenths over several iterations; changes that are not small beside small increments, which may
+/// be the rounding of the state or a motion of that size.
 const LINGERS: usize = 8;
 
 /// Changes that come to less than this part of the least one so far still shrink.
@@ -70,9 +73,10 @@ impl Collocation {
             if let Some(newton) = &mut self.newton {
                 newton.solve(&mut self.changes);
             }
-            let size = self.largest_change(standing);
+            let [size, whole] =
+                [&self.changes, &self.increments].map(|all| self.largest(all, standing));
             if let Some(correction) = &mut self.correction {
-                correction.see(size);
+                correction.see(size, whole);
             }
             for (increment, change) in self.increments.iter_mut().zip(&self.changes) {
                 add(increment, 1.0, change);
@@ -84,11 +88,17 @@ impl Collocation {
                 true => (least, idle) = (size, 0),
                 false => idle += 1,
             }
-            let stalled = size < STALLED && idle >= if self.is_settled() { 2 } else { LINGERS };
-            if self.stands(size, stalled) {
+            let is_faint = size < STALLED * whole.min(1.0);
+            let patience = if is_faint && self.is_settled() {
+                2
+            } else {
+                LINGERS
+            };
+            let stalled = size < STALLED && idle >= patience;
+            if self.stands(size, whole, stalled) {
                 return Ok(());
             }
-            if size.is_nan() || (last.is_finite() && self.is_hopeless(size, before)) {
+            if size.is_nan() || (last.is_finite() && self.is_hopeless(size, whole, before)) {
                 break;
             }
             last = size;
@@ -97,7 +107,7 @@ impl Collocation {
     }
 
     /// Whether the change just made was the last one needed.
-    fn stands(&self, size: f64, stalled: bool) -> bool {
+    fn stands(&self, size: f64, whole: f64, stalled: bool) -> bool {
         let contraction = self.contraction;
         let left = size * contraction / (1.0 - contraction);
         match self.tolerance {
@@ -111,7 +121,9 @@ impl Collocation {
             None => match &self.correction {
                 None => contraction < 0.5 && left < 0.05 * f64::EPSILON,
                 // Work was reckoned before this change, and adds up.
-                Some(correction) => correction.is_settled() && size < 4.0 * f64::EPSILON,
+                Some(correction) => {
+                    correction.is_settled() && size < 4.0 * f64::EPSILON * whole.min(1.0)
+                }
             },
         }
     }
@@ -121,10 +133,11 @@ impl Collocation {
         self.correction.as_ref().is_none_or(Correction::is_settled)
     }
 
-    fn is_hopeless(&self, size: f64, before: f64) -> bool {
+    fn is_hopeless(&self, size: f64, whole: f64, before: f64) -> bool {
         match self.newton {
             // Rounding may be all that is left.
-            _ if self.tolerance.is_none() && size < STALLED => false,
+            _ if self.tolerance.is_none() && size < STALLED * whole.min(1.0) => false,
+            Some(_) if self.tolerance.is_none() && size < STALLED => false,
             // Step control had better try a shorter step; the correction for the energy may upset one iteration.
             Some(_) => {
                 self.contraction.min(if self.tolerance.is_some() {
@@ -185,10 +198,9 @@ impl Collocation {
         phi.iter().copied().chain(rates).map(f64::abs)
     }
 
-    /// The largest size of a change; NaN where one is.
-    fn largest_change(&self, standing: &Standing) -> f64 {
-        let sizes = self
-            .changes
+    /// The largest size of changes or increments; NaN where one is.
+    fn largest(&self, changes: &[Vec<f64>], standing: &Standing) -> f64 {
+        let sizes = changes
             .iter()
             .flat_map(|change| self.sizes(change, standing));
         // A NaN stays.

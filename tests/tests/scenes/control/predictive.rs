@@ -81,3 +81,17 @@ fn feedback_that_is_cut_off_lets_the_pole_fall() {
     let (_, cut) = held(&scene, &mut regulator.clone(), LIMIT);
     assert!(tilt(&cut) > 1.0, "{cut:?}");
 }
+
+/// A damper of 1e3 N s/m stops a slide of 1.3 kg within a millisecond or so, and turns the pole; steps of 0.04 s would throw both off.
+#[test]
+fn periods_that_steps_cannot_foresee_are_refused() {
+    let damped = super::text("balance_mpc").replace(
+        "body_at = { axis = [-1.0, 0.0, 0.0] }",
+        "body_at = { axis = [-1.0, 0.0, 0.0] }\ndamping = 1e3",
+    );
+    let refused = Scene::parse(&damped, "scene.toml", &hamel_joints::registry());
+    let told = refused.expect_err("the period is too long").to_string();
+    for part in ["joint `cardan`", "period of 0.04 s", "2.785", "at most"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+}
