@@ -92,6 +92,11 @@ impl<'a> Flow<'a> {
         self.held = Some(held);
     }
 
+    /// The equations of motion.
+    pub(super) fn dynamics(&mut self) -> &mut dyn Dynamics {
+        self.dynamics
+    }
+
     /// Room for the rates of one stage.
     pub(super) fn new_rates(&self) -> Rates {
         Rates::new(&self.mechanism)
