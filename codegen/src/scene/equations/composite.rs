@@ -195,10 +195,8 @@ impl Tree<'_> {
                 section(number(index), "prescribed motion");
                 for (row, right) in right.iter_mut().enumerate() {
                     *right -= matrix[row][place] * rate;
-                    matrix[row][place] = Sym::zero();
-                    matrix[place][row] = Sym::zero();
                 }
-                matrix[place][place] = Sym::Number(1.0);
+                hold(matrix, place);
                 right[place] = rate;
             }
         }
@@ -230,4 +228,13 @@ impl Tree<'_> {
             .flat_map(|(index, body)| body.share.speeds.clone().map(move |_| number(index)))
             .collect()
     }
+}
+
+/// Makes a speed's rate its own right-hand side, which no other feels.
+pub(super) fn hold(matrix: &mut Matrix, place: usize) {
+    for row in matrix.iter_mut() {
+        row[place] = Sym::zero();
+    }
+    matrix[place].fill(Sym::zero());
+    matrix[place][place] = Sym::Number(1.0);
 }

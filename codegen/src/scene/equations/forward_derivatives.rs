@@ -1,10 +1,10 @@
 //! Derivatives of forward dynamics: `−M̄⁻¹` times what ϕ and v̄ change of the efforts that v̄̇ takes, with M̄ factorised along the tree.
 
-use super::composite::{Factors, Matrix};
+use super::composite::{Factors, Matrix, hold};
 use super::derivatives::unit;
 use super::{Tree, number};
 use crate::scene::graph::{Argument, Slopes, Sym, section};
-use num_traits::{One, Zero};
+use num_traits::Zero;
 
 impl Tree<'_> {
     /// By rows, one a speed: `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄`, `∂v̄̇/∂τ` and v̄̇.
@@ -44,10 +44,7 @@ impl Tree<'_> {
     /// The factors of M̄ where driven joints do not give way.
     fn held_factors(&self, mut matrix: Matrix) -> Factors {
         for place in (0..matrix.len()).filter(|&place| self.is_driven(place)) {
-            for row in 0..matrix.len() {
-                (matrix[row][place], matrix[place][row]) = (Sym::zero(), Sym::zero());
-            }
-            matrix[place][place] = Sym::one();
+            hold(&mut matrix, place);
         }
         self.factorised(matrix)
     }
