@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 const EXAMPLES: &str = "\
 Examples:
   hamel compile panda.urdf -o panda.rs
-      writes forward and inverse dynamics, mass matrix, the port-Hamiltonian form, energies and poses as functions
+      writes forward and inverse dynamics, their derivatives, mass matrix, the port-Hamiltonian form, energies and poses as functions
   hamel compile anymal.urdf --floating-base --function forward-dynamics -o anymal.rs
       one function alone
   hamel compile panda.urdf -o panda.c
@@ -81,6 +81,10 @@ pub enum FunctionName {
     Energies,
     /// Where the bodies are
     Poses,
+    /// How accelerations change with local coordinates, v̄ and τ
+    ForwardDynamicsDerivatives,
+    /// How efforts change with local coordinates and v̄
+    InverseDynamicsDerivatives,
 }
 
 impl FunctionName {
@@ -96,6 +100,8 @@ impl FunctionName {
             Self::Hamiltonian => Kind::Hamiltonian,
             Self::Energies => Kind::Energies,
             Self::Poses => Kind::Poses,
+            Self::ForwardDynamicsDerivatives => Kind::ForwardDerivatives,
+            Self::InverseDynamicsDerivatives => Kind::InverseDerivatives,
         }
     }
 }

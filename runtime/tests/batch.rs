@@ -40,6 +40,8 @@ const IN_LANES: Equations = Equations {
         }
     }),
     inverse_dynamics: None,
+    forward_dynamics_derivatives: None,
+    inverse_dynamics_derivatives: None,
     in_lanes: InLanes {
         forward_dynamics: Some(many_states::<Forward, 2, 2, 3>),
         inverse_dynamics: None,

@@ -5,7 +5,7 @@
 //! peer_compiled [--build] [--limit OPERATIONS] FOLDER MODEL.txt[:ALGO,ALGO...] ...
 //! ```
 //!
-//! ALGO is one of rnea, nle, crba, aba; all of them by default, and with rnea and aba those for 4 and 8 lanes. With `--build` the program is not started: its path is
+//! ALGO is one of rnea, nle, crba, aba, rnea_deriv, aba_deriv; all of them by default, and with rnea and aba those for 4 and 8 lanes. With `--build` the program is not started: its path is
 //! printed. A function of more operations than the limit (30000) is left out; of a model that has none left, or that the compiler refuses, the
 //! program says `skip` and why.
 
@@ -21,11 +21,13 @@ use std::process::{Command, Stdio};
 /// Operations of the longest function that is compiled by default: beyond it the Rust compiler takes minutes.
 const LIMIT: usize = 30_000;
 
-const KINDS: [(&str, Kind); 4] = [
+const KINDS: [(&str, Kind); 6] = [
     ("rnea", Kind::InverseDynamics),
     ("nle", Kind::BiasForces),
     ("crba", Kind::MassMatrix),
     ("aba", Kind::ForwardDynamics),
+    ("rnea_deriv", Kind::InverseDerivatives),
+    ("aba_deriv", Kind::ForwardDerivatives),
 ];
 
 struct Options {
@@ -105,9 +107,10 @@ fn module(
         .collect();
     for algorithm in &asked {
         if !KINDS.iter().any(|(known, _)| known == algorithm) {
-            return Err(
-                format!("no algorithm `{algorithm}`: rnea, nle, crba, aba are there").into(),
-            );
+            return Err(format!(
+                "no algorithm `{algorithm}`: rnea, nle, crba, aba, rnea_deriv, aba_deriv are there"
+            )
+            .into());
         }
     }
     let model = Model::parse(&std::fs::read_to_string(path)?).map_err(|error| error.0)?;

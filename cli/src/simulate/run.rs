@@ -51,7 +51,8 @@ fn equations(args: &Args, plan: &Plan) -> Result<(Box<dyn Dynamics>, Option<Stri
             "compiled equations are reckoned in doubles, and the scene asks for others: with `--compiled` say `--arithmetic doubles`".into(),
         ));
     }
-    let compiled = compiled(args, mechanism, plan.settings.form)?;
+    let (form, scheme) = (plan.settings.form, *plan.settings.method.scheme());
+    let compiled = compiled(args, mechanism, form, scheme)?;
     Ok((Box::new(compiled.dynamics), Some(compiled.told)))
 }
 

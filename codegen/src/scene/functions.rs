@@ -30,11 +30,15 @@ pub enum Kind {
     Energies,
     /// Poses of all bodies from Q.
     Poses,
+    /// How v̄̇ changes with ϕ, v̄ and τ, from Q, v̄ and τ.
+    ForwardDerivatives,
+    /// How the efforts τ̄ change with ϕ and v̄, from Q, v̄ and v̄̇.
+    InverseDerivatives,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::ForwardDynamics,
         Self::InverseDynamics,
         Self::MassMatrix,
@@ -45,6 +49,8 @@ impl Kind {
         Self::Hamiltonian,
         Self::Energies,
         Self::Poses,
+        Self::ForwardDerivatives,
+        Self::InverseDerivatives,
     ];
 
     /// Its name, in emitted code as well.
@@ -60,6 +66,8 @@ impl Kind {
             Self::Hamiltonian => "hamiltonian",
             Self::Energies => "energies",
             Self::Poses => "poses",
+            Self::ForwardDerivatives => "forward_dynamics_derivatives",
+            Self::InverseDerivatives => "inverse_dynamics_derivatives",
         }
     }
 
@@ -80,15 +88,22 @@ impl Kind {
             Self::Poses => {
                 "For each body its rotation to world axes by rows, and its origin in the world, m."
             }
+            Self::ForwardDerivatives => {
+                "For each speed ∂v̄̇/∂ϕ, ∂v̄̇/∂v̄ and ∂v̄̇/∂τ in local coordinates ϕ about Q, then v̄̇; where constraints couple joints ∂v̄/∂ϕ and ∂v̄/∂v̄ \
+                 of the speeds that they complete after these."
+            }
+            Self::InverseDerivatives => {
+                "For each speed ∂τ̄/∂ϕ and ∂τ̄/∂v̄ of inverse dynamics in local coordinates ϕ about Q; ∂τ̄/∂v̄̇ is M̄."
+            }
         }
     }
 
     fn arguments(self) -> &'static [Argument] {
         match self {
-            Self::ForwardDynamics => {
+            Self::ForwardDynamics | Self::ForwardDerivatives => {
                 &[Argument::Configuration, Argument::Speeds, Argument::Efforts]
             }
-            Self::InverseDynamics => &[
+            Self::InverseDynamics | Self::InverseDerivatives => &[
                 Argument::Configuration,
                 Argument::Speeds,
                 Argument::Accelerations,
@@ -157,6 +172,16 @@ impl Kind {
             ),
             Self::Energies => vec![("body by body", |tree| tree.energies())],
             Self::Poses => vec![("body by body", |tree| tree.poses())],
+            Self::ForwardDerivatives => match model.coupling.constraints.is_empty() {
+                true => vec![(
+                    "of inverse dynamics, by M̄ factorised along the tree",
+                    |tree| tree.forward_derivatives(),
+                )],
+                false => vec![(COUPLED, |tree| tree.coupled_derivatives())],
+            },
+            Self::InverseDerivatives => vec![("composite bodies in motion", |tree| {
+                tree.inverse_derivatives()
+            })],
         }
     }
 
@@ -166,12 +191,27 @@ impl Kind {
     }
 
     /// The columns of its result: 1 for a vector.
-    fn columns(self, speeds: usize) -> usize {
+    fn columns(self, model: &Model) -> usize {
+        let [_, freedoms, speeds] = model.sizes();
         match self {
             Self::MassMatrix | Self::MomentumRates => speeds.max(1),
             Self::Poses => 12,
+            Self::ForwardDerivatives => {
+                let coupled = !model.coupling.constraints.is_empty();
+                let own = 2 * freedoms + speeds + 1;
+                own + if coupled { freedoms + speeds } else { 0 }
+            }
+            Self::InverseDerivatives => (freedoms + speeds).max(1),
             _ => 1,
         }
+    }
+
+    /// Whether its like parts are looked for: rows that are as long as the way to the root are not alike.
+    const fn has_like_parts(self) -> bool {
+        !matches!(
+            self,
+            Self::MassMatrix | Self::ForwardDerivatives | Self::InverseDerivatives
+        )
     }
 }
 
@@ -179,11 +219,13 @@ impl Kind {
 const ARTICULATED: &str = "articulated bodies";
 /// Name of the recursion that finds M̄.
 const COMPOSITE: &str = "composite bodies";
+/// Name of what constraints that couple joints take.
+const COUPLED: &str = "independent speeds of coupled joints";
 
 /// The ways to solve with M̄: joint by joint; of M̄ factorised, where it may be the shorter; and where constraints couple joints.
 fn solving(model: &Model, [articulated, factorised, coupled]: [Run; 3]) -> Vec<Way> {
     if !model.coupling.constraints.is_empty() {
-        return vec![("independent speeds of coupled joints", coupled)];
+        return vec![(COUPLED, coupled)];
     }
     let mut ways = vec![(ARTICULATED, articulated)];
     if worth_factorising(model) {
@@ -272,8 +314,11 @@ pub struct Chosen {
 /// # Errors
 /// More than [`LONGEST`] operations.
 pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, TooLong> {
+    let [_, freedoms, speeds] = model.sizes();
     let least = match kind {
         Kind::MassMatrix => ENTRY * pairs(model),
+        Kind::InverseDerivatives => MET * pairs(model),
+        Kind::ForwardDerivatives => (MET + RESPONSE * (freedoms + speeds)) * pairs(model),
         _ => 0,
     };
     let refused = |operations| TooLong { kind, operations };
@@ -289,6 +334,12 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, TooLon
 
 /// Operations of an entry of M̄ beside the diagonal: about the fewest that were counted.
 const ENTRY: usize = 15;
+
+/// Operations of the derivatives of inverse dynamics for a speed and a joint that carries it: fewer than were counted.
+const MET: usize = 30;
+
+/// Operations of one column of M̄⁻¹ times something for such a pair: the fewest.
+const RESPONSE: usize = 2;
 
 /// Pairs of a speed and a joint that carries it.
 fn pairs(model: &Model) -> usize {
@@ -339,8 +390,7 @@ fn looped(
     loops: Loops,
 ) -> Option<Function> {
     let whole = straight.operations().flops();
-    // Rows of the mass matrix are as long as the way to the root: no two are alike.
-    let never = kind == Kind::MassMatrix || loops == Loops::Never;
+    let never = !kind.has_like_parts() || loops == Loops::Never;
     if never || loops == Loops::Long && whole < LOOPED {
         return None;
     }
@@ -366,7 +416,7 @@ fn function(
         arguments: arguments
             .map(|&argument| (argument, size(argument)))
             .collect(),
-        columns: kind.columns(speeds),
+        columns: kind.columns(model),
         graph,
         outputs,
         plan,

@@ -94,6 +94,51 @@ impl<'a> Joint<'a> {
         (0..freedoms).map(column).collect()
     }
 
+    /// The columns of X^c S₀: ϕ̇ to the twist in the child frame.
+    pub fn local_twist_map(&self) -> Vec<Twist> {
+        let entries = self.entries(KernelKind::LocalTwistMap);
+        columns(&entries, self.derived.shape.freedoms)
+    }
+
+    /// ∂(X̄^c x)/∂ϕ, one column a freedom.
+    pub fn twist_gradient(&self, x: &[Sym]) -> Vec<Twist> {
+        let given = [(self.derived.arguments.speeds.as_slice(), x)];
+        let entries = self.entries_with(KernelKind::TwistGradient, &given);
+        columns(&entries, self.derived.shape.freedoms)
+    }
+
+    /// ∂c/∂ϕ, one column a freedom.
+    pub fn bias_gradient(&self) -> Vec<Twist> {
+        let entries = self.entries(KernelKind::BiasAccelerationGradient);
+        columns(&entries, self.derived.shape.freedoms)
+    }
+
+    /// ∂c/∂v̄, one column a speed.
+    pub fn bias_slope(&self) -> Vec<Twist> {
+        let entries = self.entries(KernelKind::BiasAccelerationSlope);
+        columns(&entries, self.derived.shape.speeds)
+    }
+
+    /// ∂(X̄^cᵀ h)/∂ϕ by rows, one a speed; none where X̄^c is constant.
+    pub fn effort_gradient(&self, wrench: &Wrench) -> Vec<Vec<Sym>> {
+        let entries = self.with_wrench(KernelKind::EffortGradient, wrench);
+        let rows = entries.chunks(self.derived.shape.freedoms.max(1));
+        rows.map(<[Sym]>::to_vec).collect()
+    }
+
+    /// How the stored scalars of Q change with each ϕ, at ϕ = 0: `Q̇(Q, S₀ e)`.
+    pub fn configuration_slopes(&self) -> Vec<Vec<Sym>> {
+        let freedoms = self.derived.shape.freedoms;
+        let map = self.entries(KernelKind::VelocityMap);
+        let column = |k: usize| -> Vec<Sym> {
+            let velocity = map.iter().skip(k).step_by(freedoms).copied();
+            let velocity: Vec<Sym> = velocity.collect();
+            let given = [(self.derived.arguments.velocity.as_slice(), &velocity[..])];
+            self.entries_with(KernelKind::ConfigurationRate, &given)
+        };
+        (0..freedoms).map(column).collect()
+    }
+
     /// Φ(Q, ϕ).
     pub fn retract(&self, phi: &[Sym]) -> Vec<Sym> {
         let given = [(self.derived.arguments.local.as_slice(), phi)];
@@ -126,13 +171,14 @@ impl<'a> Joint<'a> {
 
     /// `Ẋ̄^cᵀ h` at v̄.
     pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
-        let parts = momentum.moment.iter().chain(&momentum.force);
-        let momentum: Vec<Sym> = parts.copied().collect();
-        let given = [(
-            self.derived.arguments.wrench.as_slice(),
-            momentum.as_slice(),
-        )];
-        self.entries_with(KernelKind::BiasMomentum, &given)
+        self.with_wrench(KernelKind::BiasMomentum, momentum)
+    }
+
+    /// The entries of a kernel that takes a wrench or a momentum.
+    fn with_wrench(&self, kind: KernelKind, wrench: &Wrench) -> Vec<Sym> {
+        let parts = wrench.moment.iter().chain(&wrench.force);
+        let parts: Vec<Sym> = parts.copied().collect();
+        self.entries_with(kind, &[(self.derived.arguments.wrench.as_slice(), &parts)])
     }
 
     /// The nearest point of the manifold.

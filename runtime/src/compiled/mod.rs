@@ -51,6 +51,11 @@ pub struct Equations {
     pub momentum_rates: Option<MomentumRates>,
     /// H, where the module has it.
     pub hamiltonian: Option<Hamiltonian>,
+    /// Derivatives of forward dynamics from Q, v̄ and τ, where the module has them: for each speed a row of `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄`, `∂v̄̇/∂τ` and v̄̇, and
+    /// where constraints couple joints of `∂v̄/∂ϕ` and `∂v̄/∂v̄` of the speeds that they complete.
+    pub forward_dynamics_derivatives: Option<OneState>,
+    /// Derivatives of inverse dynamics from Q, v̄ and v̄̇, where the module has them: for each speed a row of `∂τ̄/∂ϕ` and `∂τ̄/∂v̄`.
+    pub inverse_dynamics_derivatives: Option<OneState>,
     /// Forward and inverse dynamics of many states, eight at a time.
     pub in_lanes: InLanes,
 }

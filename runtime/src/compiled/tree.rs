@@ -1,7 +1,10 @@
 //! Compiled equations of a mechanism, with the tree for what they do not hold.
 
 use super::Equations;
-use crate::dynamics::{Dynamics, DynamicsError, Recursive};
+use crate::dynamics::{
+    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
+    Recursive,
+};
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -57,6 +60,8 @@ pub struct Compiled {
     tree: Recursive,
     /// τ of the inputs, and none.
     inputs: [vec::Vec<f64>; 2],
+    /// Rows of derivatives of forward dynamics.
+    rows: vec::Vec<f64>,
 }
 
 impl Compiled {
@@ -90,6 +95,7 @@ impl Compiled {
         }
         let mut compiled = Self {
             equations,
+            rows: vec![0.0; ForwardDerivatives::entries(&mechanism)],
             tree: Recursive::new(mechanism),
             inputs: core::array::from_fn(|_| vec![0.0; equations.freedoms]),
         };
@@ -158,6 +164,34 @@ impl Compiled {
         }
     }
 
+    /// The derivatives of inverse dynamics in ϕ and v̄ at (q, v̄, v̄̇) into `out`, as [`Recursive::inverse_dynamics_derivatives`] has them.
+    ///
+    /// # Errors
+    /// A wrong size; results that were made for another mechanism; something that acts on the mechanism whose derivatives are not known.
+    pub fn inverse_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        accelerations: &[f64],
+        out: &mut InverseDerivatives,
+    ) -> Result<(), DynamicsError> {
+        if let Some(inverse) = self.equations.inverse_dynamics_derivatives {
+            let given = [
+                ("speeds", speeds.len()),
+                ("accelerations", accelerations.len()),
+            ];
+            self.check_state(q, given)?;
+            let count = speeds.len() * (self.equations.freedoms + speeds.len());
+            let rows = &mut self.rows[..count];
+            inverse(q, speeds, accelerations, rows);
+            if rows.iter().all(|entry| entry.is_finite()) {
+                return out.read(rows);
+            }
+        }
+        self.tree
+            .inverse_dynamics_derivatives(q, speeds, accelerations, out)
+    }
+
     fn check_state(&self, q: &[f64], speeds: [(&'static str, usize); 2]) -> Result<(), StateError> {
         let Equations {
             configuration,
@@ -188,12 +222,16 @@ impl Compiled {
         }
     }
 
-    fn check(&self, sizes: [(&'static str, usize, usize); 4]) -> Result<(), StateError> {
-        sizes
-            .into_iter()
-            .try_for_each(|(quantity, expected, found)| {
-                check_size(WHOLE, quantity, expected, found)
-            })
+    fn check_inputs(&self, q: &[f64], speeds: &[f64], efforts: &[f64]) -> Result<(), StateError> {
+        let Equations {
+            configuration,
+            freedoms,
+            speeds: count,
+            ..
+        } = *self.equations;
+        check_size(WHOLE, "configuration", configuration, q.len())?;
+        check_size(WHOLE, "speeds", count, speeds.len())?;
+        check_size(WHOLE, "efforts", freedoms, efforts.len())
     }
 }
 
@@ -216,18 +254,8 @@ impl Dynamics for Compiled {
         let Some(forward) = self.equations.forward_dynamics else {
             return self.tree.accelerations(q, speeds, efforts, rates);
         };
-        let Equations {
-            configuration,
-            freedoms,
-            speeds: count,
-            ..
-        } = *self.equations;
-        self.check([
-            ("configuration", configuration, q.len()),
-            ("speeds", count, speeds.len()),
-            ("efforts", freedoms, efforts.len()),
-            ("rates", count, rates.len()),
-        ])?;
+        self.check_inputs(q, speeds, efforts)?;
+        check_size(WHOLE, "rates", self.equations.speeds, rates.len())?;
         forward(q, speeds, efforts, rates);
         if rates.iter().all(|rate| rate.is_finite()) {
             return Ok(());
@@ -305,5 +333,34 @@ impl Dynamics for Compiled {
             true => Ok(energy),
             false => self.tree.hamiltonian(q, momenta),
         }
+    }
+
+    fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError> {
+        if let Some(forward) = self.equations.forward_dynamics_derivatives {
+            self.check_inputs(q, speeds, efforts)?;
+            forward(q, speeds, efforts, &mut self.rows);
+            if self.rows.iter().all(|entry| entry.is_finite()) {
+                return out.read(&self.rows);
+            }
+        }
+        // The tree says which joint it is, and why.
+        self.tree
+            .forward_dynamics_derivatives(q, speeds, efforts, out)
+    }
+
+    fn hamiltonian_derivatives(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &[f64],
+        out: &mut HamiltonianDerivatives,
+    ) -> Result<(), DynamicsError> {
+        self.tree.hamiltonian_derivatives(q, momenta, efforts, out)
     }
 }

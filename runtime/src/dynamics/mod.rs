@@ -93,4 +93,31 @@ pub trait Dynamics {
     /// # Errors
     /// A singular mass matrix; a wrong size.
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError>;
+
+    /// v̄̇ of [`Dynamics::accelerations`] and its derivatives in local coordinates ϕ about Q, v̄ and τ into `out`, as
+    /// [`Recursive::forward_dynamics_derivatives`] has them.
+    ///
+    /// # Errors
+    /// A singular mass matrix; a wrong size; results that were made for another mechanism; [`DynamicsError::NotDifferentiable`] where something
+    /// acts whose derivatives are not known.
+    fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError>;
+
+    /// v̄ and the derivatives of v̄ and p̄̇ of [`Dynamics::momentum_rates`] in ϕ, p̄ and τ into `out`, as [`Recursive::hamiltonian_derivatives`] has
+    /// them.
+    ///
+    /// # Errors
+    /// Those of [`Dynamics::forward_dynamics_derivatives`].
+    fn hamiltonian_derivatives(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &[f64],
+        out: &mut HamiltonianDerivatives,
+    ) -> Result<(), DynamicsError>;
 }

@@ -110,6 +110,11 @@ impl<'a> Flow<'a> {
         is_left_alone && self.mechanism.drives().is_empty()
     }
 
+    /// The equations of motion.
+    pub(super) fn dynamics(&mut self) -> &mut dyn Dynamics {
+        self.dynamics
+    }
+
     /// Room for the rates of one stage.
     pub(super) fn new_rates(&self) -> Rates {
         Rates::new(&self.mechanism)

@@ -8,9 +8,8 @@ use super::StepFailure;
 use super::flow::{Flow, Rates};
 use super::linear::{Change, Charts, Equations};
 use super::standing::Standing;
-use crate::dynamics::{Dynamics, DynamicsError, Recursive, Sensitivity};
+use crate::dynamics::{DynamicsError, Sensitivity};
 use alloc::boxed::Box;
-use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -24,7 +23,6 @@ pub(super) struct Jacobian {
 }
 
 struct Analytic {
-    dynamics: Recursive,
     equations: Equations,
     charts: Charts,
     rates: Rates,
@@ -142,7 +140,6 @@ impl Analytic {
             row[i] = 1.0;
         }
         Self {
-            dynamics: Recursive::new(Arc::clone(mechanism)),
             equations: Equations::new(mechanism, flow.form),
             charts: Charts::new(mechanism),
             rates: Rates::new(mechanism),
@@ -164,10 +161,9 @@ impl Analytic {
         flow.efforts(time, q, speeds, &mut self.efforts);
         let at = (&q[..], &standing.y[..], &self.efforts[..]);
         self.equations
-            .evaluate(&mut self.dynamics, at, &mut self.rates)?;
-        let mechanism = self.dynamics.mechanism();
+            .evaluate(flow.dynamics(), at, &mut self.rates)?;
         self.charts
-            .set(mechanism, &standing.base, &standing.offset, speeds);
+            .set(&flow.mechanism, &standing.base, &standing.offset, speeds);
         let Change { phi, y } = &self.units;
         self.charts.localize(phi, &mut self.local);
         self.equations

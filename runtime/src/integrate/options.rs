@@ -62,6 +62,14 @@ impl Scheme {
         Self::DiscreteGradient,
     ];
 
+    /// Whether steps are made with derivatives of the equations of motion.
+    pub const fn takes_derivatives(&self) -> bool {
+        matches!(
+            self,
+            Self::Midpoint | Self::Gauss2 | Self::Gauss3 | Self::Radau5 | Self::Exponential
+        )
+    }
+
     /// As scenes and the command line write it.
     pub const fn name(&self) -> &'static str {
         match self {

@@ -64,6 +64,9 @@ macro_rules! function {
             }
         })
     };
+    // The runtime's own call is what is measured.
+    ($functions:ident, $module:ident, forward_dynamics_derivatives) => {};
+    ($functions:ident, $module:ident, inverse_dynamics_derivatives) => {};
     ($functions:ident, $module:ident, forward_dynamics) => {
         $functions.forward_x4 = Some($crate::four!($module, forward_dynamics))
     };
@@ -105,6 +108,8 @@ impl Functions {
             ("nle", self.bias_forces.is_some()),
             ("crba", self.mass_matrix.is_some()),
             ("aba", equations.forward_dynamics.is_some()),
+            ("rnea_deriv", equations.inverse_dynamics_derivatives.is_some()),
+            ("aba_deriv", equations.forward_dynamics_derivatives.is_some()),
             ("aba_x4", self.forward_x4.is_some()),
             ("aba_x8", lanes.forward_dynamics.is_some()),
             ("rnea_x4", self.inverse_x4.is_some()),
@@ -128,6 +133,7 @@ struct Loaded {
     out: Vec<f64>,
     out_four: Vec<F64x4>,
     mass: Vec<f64>,
+    slopes: Vec<f64>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -188,6 +194,8 @@ impl Loaded {
             out: vec![0.0; BATCH * equations.speeds],
             out_four: vec![F64x4::default(); equations.speeds],
             mass: vec![0.0; equations.speeds * equations.speeds],
+            // Rows of three matrices as wide as there are speeds, at most, and of the accelerations.
+            slopes: vec![0.0; equations.speeds * (3 * equations.speeds + 1)],
             functions,
             model,
             states,
@@ -238,12 +246,20 @@ impl Loaded {
                     "aba" => equations.forward_dynamics.ok_or_else(missing)?(q, v, u, out),
                     "rnea" => equations.inverse_dynamics.ok_or_else(missing)?(q, v, u, out),
                     "nle" => functions.bias_forces.ok_or_else(missing)?(q, v, out),
+                    "rnea_deriv" => {
+                        let slopes = equations.inverse_dynamics_derivatives;
+                        slopes.ok_or_else(missing)?(q, v, u, &mut self.slopes);
+                    }
+                    "aba_deriv" => {
+                        let slopes = equations.forward_dynamics_derivatives;
+                        slopes.ok_or_else(missing)?(q, v, u, &mut self.slopes);
+                    }
                     "crba" => functions.mass_matrix.ok_or_else(missing)?(q, &mut self.mass),
                     _ => return Err(missing().into()),
                 }
             }
         }
-        black_box((&self.out, &self.out_four, &self.mass));
+        black_box((&self.out, &self.out_four, &self.mass, &self.slopes));
         Ok(())
     }
 
@@ -272,6 +288,9 @@ impl Loaded {
     }
 
     fn check(&mut self, algorithm: &str, k: usize) -> Result<String, Box<dyn Error>> {
+        if algorithm.ends_with("_deriv") {
+            return Ok("none".to_owned());
+        }
         let states = self.together(algorithm);
         self.call(algorithm, k / states)?;
         let order = convert::order(&self.model);

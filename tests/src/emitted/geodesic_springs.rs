@@ -30,6 +30,8 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
         }
     }),
     inverse_dynamics: None,
+    forward_dynamics_derivatives: None,
+    inverse_dynamics_derivatives: None,
     in_lanes: ::hamel::compiled::InLanes {
         forward_dynamics: None,
         inverse_dynamics: None,
@@ -556,7 +558,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ),
         );
     let lower_effort_9 = lower_effort_3 - lower_effort_8;
-    // lower: factor (43 additions, 55 multiplications, 3 divisions)
+    // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
     let lower_factor_3 = (-lower_composite_inertia_8)
@@ -575,12 +577,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         );
     let lower_factor_6 = (-lower_composite_inertia_23)
         .mul_add(lower_factor_2, lower_composite_inertia_16);
-    let lower_factor_7 = (-lower_effort_9)
-        .mul_add(lower_factor_2, lower_effort_2 - lower_effort_7);
-    let lower_factor_8 = lower_composite_inertia_8 * lower_factor;
-    let lower_factor_9 = (-lower_composite_inertia_24)
+    let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
+    let lower_factor_8 = (-lower_composite_inertia_24)
         .mul_add(
-            lower_factor_8,
+            lower_factor_7,
             (-((-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_5,
@@ -588,9 +588,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 )))
                 .mul_add(n(0.6), lower_composite_inertia_7),
         );
-    let lower_factor_10 = (-lower_composite_inertia_23)
+    let lower_factor_9 = (-lower_composite_inertia_23)
         .mul_add(
-            lower_factor_8,
+            lower_factor_7,
             (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_5,
@@ -598,193 +598,193 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
-    let lower_factor_11 = lower_composite_inertia_22 * lower_factor;
-    let lower_factor_12 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_13 = lower_effort_9
+    let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
+    let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
+    let lower_factor_12 = lower_composite_inertia_23 * lower_factor;
+    let lower_factor_13 = n(1.0)
+        / ((-lower_composite_inertia_15)
+            .mul_add(lower_factor_2, lower_composite_inertia_14));
+    let lower_factor_14 = lower_factor_3 * lower_factor_13;
+    let lower_factor_15 = (-lower_factor_4)
         .mul_add(
-            lower_factor_12,
+            lower_factor_14,
+            (-lower_composite_inertia_22)
+                .mul_add(lower_factor_7, lower_composite_inertia_8),
+        );
+    let lower_factor_16 = (-lower_factor_5).mul_add(lower_factor_14, lower_factor_8);
+    let lower_factor_17 = (-lower_factor_6).mul_add(lower_factor_14, lower_factor_9);
+    let lower_factor_18 = lower_factor_4 * lower_factor_13;
+    let lower_factor_19 = (-lower_factor_6)
+        .mul_add(
+            lower_factor_18,
+            (-lower_composite_inertia_23)
+                .mul_add(
+                    lower_factor_10,
+                    (-lower_joint_20)
+                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
+                ),
+        );
+    let lower_factor_20 = lower_factor_5 * lower_factor_13;
+    let lower_factor_21 = lower_factor_6 * lower_factor_13;
+    let lower_factor_22 = n(1.0)
+        / ((-lower_factor_3)
+            .mul_add(
+                lower_factor_14,
+                (-lower_composite_inertia_8)
+                    .mul_add(lower_factor_7, lower_composite_inertia_6),
+            ));
+    let lower_factor_23 = lower_factor_15 * lower_factor_22;
+    let lower_factor_24 = (-lower_factor_15)
+        .mul_add(
+            lower_factor_23,
+            (-lower_factor_4)
+                .mul_add(
+                    lower_factor_18,
+                    (-lower_composite_inertia_22)
+                        .mul_add(
+                            lower_factor_10,
+                            lower_composite_inertia_22 + n(0.04000000000000001),
+                        ),
+                ),
+        );
+    let lower_factor_25 = (-lower_factor_16)
+        .mul_add(
+            lower_factor_23,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_18,
+                    (-lower_composite_inertia_24)
+                        .mul_add(
+                            lower_factor_10,
+                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                        ),
+                ),
+        );
+    let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
+    let lower_factor_27 = lower_factor_16 * lower_factor_22;
+    let lower_factor_28 = (-lower_factor_16)
+        .mul_add(
+            lower_factor_27,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_20,
+                    (-lower_composite_inertia_24)
+                        .mul_add(
+                            lower_factor_11,
+                            lower_composite_inertia_14 + n(0.62)
+                                - lower_composite_inertia_25,
+                        ),
+                ),
+        );
+    let lower_factor_29 = lower_factor_17 * lower_factor_22;
+    let lower_factor_30 = (-lower_factor_17)
+        .mul_add(
+            lower_factor_29,
+            (-lower_factor_6)
+                .mul_add(
+                    lower_factor_21,
+                    (-lower_composite_inertia_23)
+                        .mul_add(
+                            lower_factor_12,
+                            lower_composite_inertia_6 + n(0.59)
+                                - lower_composite_inertia_25,
+                        ),
+                ),
+        );
+    // upper: factor (4 additions, 7 multiplications, 3 divisions)
+    let upper_factor = n(1.0) / lower_factor_24;
+    let upper_factor_2 = lower_factor_25 * upper_factor;
+    let upper_factor_3 = (-lower_factor_26)
+        .mul_add(
+            upper_factor_2,
+            (-lower_factor_17)
+                .mul_add(
+                    lower_factor_27,
+                    (-lower_factor_6)
+                        .mul_add(
+                            lower_factor_20,
+                            (-lower_composite_inertia_23)
+                                .mul_add(lower_factor_11, lower_composite_inertia_7),
+                        ),
+                ),
+        );
+    let upper_factor_4 = lower_factor_26 * upper_factor;
+    let upper_factor_5 = n(1.0)
+        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
+    let upper_factor_6 = upper_factor_3 * upper_factor_5;
+    // lower: load (12 additions, 12 multiplications)
+    let lower_load = (-lower_effort_9)
+        .mul_add(lower_factor_2, lower_effort_2 - lower_effort_7);
+    let lower_load_2 = lower_effort_9
+        .mul_add(
+            lower_factor_11,
             upper_spring_4
                 .mul_add(
                     upper_spring_15 + upper_spring_16,
                     upper_force_4 - lower_effort_5 - upper_spring_17 - tau[1],
                 ),
         );
-    let lower_factor_14 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_15 = n(1.0)
-        / ((-lower_composite_inertia_15)
-            .mul_add(lower_factor_2, lower_composite_inertia_14));
-    let lower_factor_16 = lower_factor_3 * lower_factor_15;
-    let lower_factor_17 = (-lower_factor_4)
+    let lower_load_3 = (-lower_factor_14)
         .mul_add(
-            lower_factor_16,
-            (-lower_composite_inertia_22)
-                .mul_add(lower_factor_8, lower_composite_inertia_8),
+            lower_load,
+            (-lower_effort_9).mul_add(lower_factor_7, lower_effort + lower_effort_6),
         );
-    let lower_factor_18 = (-lower_factor_5).mul_add(lower_factor_16, lower_factor_9);
-    let lower_factor_19 = (-lower_factor_6).mul_add(lower_factor_16, lower_factor_10);
-    let lower_factor_20 = (-lower_factor_7)
+    let lower_load_4 = (-lower_factor_23)
         .mul_add(
-            lower_factor_16,
-            (-lower_effort_9).mul_add(lower_factor_8, lower_effort + lower_effort_6),
-        );
-    let lower_factor_21 = lower_factor_4 * lower_factor_15;
-    let lower_factor_22 = (-lower_factor_6)
-        .mul_add(
-            lower_factor_21,
-            (-lower_composite_inertia_23)
+            lower_load_3,
+            (-lower_factor_18)
                 .mul_add(
-                    lower_factor_11,
-                    (-lower_joint_20)
-                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
+                    lower_load,
+                    (-lower_effort_9).mul_add(lower_factor_10, upper_effort_2),
                 ),
         );
-    let lower_factor_23 = lower_factor_5 * lower_factor_15;
-    let lower_factor_24 = lower_factor_6 * lower_factor_15;
-    let lower_factor_25 = n(1.0)
-        / ((-lower_factor_3)
+    // upper: load (3 additions, 3 multiplications)
+    let upper_load = upper_factor_2
+        .mul_add(
+            lower_load_4,
+            lower_factor_27
+                .mul_add(lower_load_3, lower_factor_20.mul_add(lower_load, lower_load_2)),
+        );
+    let upper_load_2 = (-upper_factor_4)
+        .mul_add(
+            lower_load_4,
+            (-lower_factor_29)
+                .mul_add(
+                    lower_load_3,
+                    (-lower_factor_21)
+                        .mul_add(
+                            lower_load,
+                            (-lower_effort_9).mul_add(lower_factor_12, upper_effort),
+                        ),
+                ),
+        );
+    // upper: response (3 additions, 6 multiplications)
+    let upper_acceleration = (n(1.0)
+        / ((-upper_factor_3)
             .mul_add(
-                lower_factor_16,
-                (-lower_composite_inertia_8)
-                    .mul_add(lower_factor_8, lower_composite_inertia_6),
-            ));
-    let lower_factor_26 = lower_factor_17 * lower_factor_25;
-    let lower_factor_27 = (-lower_factor_17)
-        .mul_add(
-            lower_factor_26,
-            (-lower_factor_4)
-                .mul_add(
-                    lower_factor_21,
-                    (-lower_composite_inertia_22)
-                        .mul_add(
-                            lower_factor_11,
-                            lower_composite_inertia_22 + n(0.04000000000000001),
-                        ),
-                ),
-        );
-    let lower_factor_28 = (-lower_factor_18)
-        .mul_add(
-            lower_factor_26,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_21,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_11,
-                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
-                        ),
-                ),
-        );
-    let lower_factor_29 = (-lower_factor_19).mul_add(lower_factor_26, lower_factor_22);
-    let lower_factor_30 = (-lower_factor_20)
-        .mul_add(
-            lower_factor_26,
-            (-lower_factor_7)
-                .mul_add(
-                    lower_factor_21,
-                    (-lower_effort_9).mul_add(lower_factor_11, upper_effort_2),
-                ),
-        );
-    let lower_factor_31 = lower_factor_18 * lower_factor_25;
-    let lower_factor_32 = (-lower_factor_18)
-        .mul_add(
-            lower_factor_31,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_23,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_12,
-                            lower_composite_inertia_14 + n(0.62)
-                                - lower_composite_inertia_25,
-                        ),
-                ),
-        );
-    let lower_factor_33 = lower_factor_19 * lower_factor_25;
-    let lower_factor_34 = (-lower_factor_19)
-        .mul_add(
-            lower_factor_33,
-            (-lower_factor_6)
-                .mul_add(
-                    lower_factor_24,
-                    (-lower_composite_inertia_23)
-                        .mul_add(
-                            lower_factor_14,
-                            lower_composite_inertia_6 + n(0.59)
-                                - lower_composite_inertia_25,
-                        ),
-                ),
-        );
-    // upper: factor (7 additions, 10 multiplications, 3 divisions)
-    let upper_factor = n(1.0) / lower_factor_27;
-    let upper_factor_2 = lower_factor_28 * upper_factor;
-    let upper_factor_3 = (-lower_factor_29)
-        .mul_add(
-            upper_factor_2,
-            (-lower_factor_19)
-                .mul_add(
-                    lower_factor_31,
-                    (-lower_factor_6)
-                        .mul_add(
-                            lower_factor_23,
-                            (-lower_composite_inertia_23)
-                                .mul_add(lower_factor_12, lower_composite_inertia_7),
-                        ),
-                ),
-        );
-    let upper_factor_4 = lower_factor_30
-        .mul_add(
-            upper_factor_2,
-            lower_factor_20
-                .mul_add(
-                    lower_factor_31,
-                    lower_factor_7.mul_add(lower_factor_23, lower_factor_13),
-                ),
-        );
-    let upper_factor_5 = lower_factor_29 * upper_factor;
-    let upper_factor_6 = (-lower_factor_30)
-        .mul_add(
-            upper_factor_5,
-            (-lower_factor_20)
-                .mul_add(
-                    lower_factor_33,
-                    (-lower_factor_7)
-                        .mul_add(
-                            lower_factor_24,
-                            (-lower_effort_9).mul_add(lower_factor_14, upper_effort),
-                        ),
-                ),
-        );
-    let upper_factor_7 = n(1.0)
-        / ((-lower_factor_28).mul_add(upper_factor_2, lower_factor_32));
-    let upper_factor_8 = upper_factor_3 * upper_factor_7;
-    // upper: acceleration (3 additions, 6 multiplications)
-    let upper_acceleration = (upper_factor_4.mul_add(upper_factor_8, upper_factor_6))
-        * (n(1.0)
-            / ((-upper_factor_3)
-                .mul_add(
-                    upper_factor_8,
-                    (-lower_factor_29).mul_add(upper_factor_5, lower_factor_34),
-                )));
-    let upper_acceleration_2 = upper_factor_7
-        * (upper_factor_3.mul_add(upper_acceleration, upper_factor_4));
+                upper_factor_6,
+                (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
+            ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
+    let upper_acceleration_2 = upper_factor_5
+        * (upper_factor_3.mul_add(upper_acceleration, upper_load));
     let upper_acceleration_3 = upper_factor
-        * ((-lower_factor_29)
+        * ((-lower_factor_26)
             .mul_add(
                 upper_acceleration,
-                lower_factor_28.mul_add(upper_acceleration_2, lower_factor_30),
+                lower_factor_25.mul_add(upper_acceleration_2, lower_load_4),
             ));
-    // lower: acceleration (12 additions, 15 multiplications)
-    let lower_acceleration_6 = lower_factor_25
-        * ((-lower_factor_19)
+    // lower: response (12 additions, 15 multiplications)
+    let lower_acceleration_6 = lower_factor_22
+        * ((-lower_factor_17)
             .mul_add(
                 upper_acceleration,
-                (-lower_factor_17)
+                (-lower_factor_15)
                     .mul_add(
                         upper_acceleration_3,
-                        lower_factor_18.mul_add(upper_acceleration_2, lower_factor_20),
+                        lower_factor_16.mul_add(upper_acceleration_2, lower_load_3),
                     ),
             ));
-    let lower_acceleration_7 = (-lower_factor_5)
+    let lower_response = (-lower_factor_5)
         .mul_add(
             upper_acceleration_2,
             lower_factor_6
@@ -797,8 +797,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                         ),
                 ),
         );
-    let lower_acceleration_8 = lower_factor_15 * (lower_factor_7 - lower_acceleration_7);
-    let lower_acceleration_9 = (-lower_composite_inertia_24)
+    let lower_acceleration_7 = lower_factor_13 * (lower_load - lower_response);
+    let lower_response_2 = (-lower_composite_inertia_24)
         .mul_add(
             upper_acceleration_2,
             lower_composite_inertia_22
@@ -807,7 +807,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     lower_composite_inertia_8
                         .mul_add(
                             lower_acceleration_6,
-                            lower_composite_inertia_15 * lower_acceleration_8,
+                            lower_composite_inertia_15 * lower_acceleration_7,
                         ),
                 ),
         );
@@ -816,10 +816,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         -upper_acceleration_2,
         -upper_acceleration_3,
         -lower_acceleration_6,
-        lower_acceleration_8,
+        lower_acceleration_7,
         -(lower_factor
             * ((-lower_composite_inertia_23)
-                .mul_add(upper_acceleration, lower_effort_9 - lower_acceleration_9))),
+                .mul_add(upper_acceleration, lower_effort_9 - lower_response_2))),
     ]
 }
 
@@ -977,7 +977,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ),
         );
     let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
-    // lower: factor (43 additions, 55 multiplications, 3 divisions)
+    // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
     let lower_factor_3 = (-lower_composite_inertia_8)
@@ -996,11 +996,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         );
     let lower_factor_6 = (-lower_composite_inertia_23)
         .mul_add(lower_factor_2, lower_composite_inertia_16);
-    let lower_factor_7 = p[5].mul_add(lower_factor_2, p[4]);
-    let lower_factor_8 = lower_composite_inertia_8 * lower_factor;
-    let lower_factor_9 = (-lower_composite_inertia_24)
+    let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
+    let lower_factor_8 = (-lower_composite_inertia_24)
         .mul_add(
-            lower_factor_8,
+            lower_factor_7,
             (-((-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_5,
@@ -1008,9 +1007,9 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 )))
                 .mul_add(n(0.6), lower_composite_inertia_7),
         );
-    let lower_factor_10 = (-lower_composite_inertia_23)
+    let lower_factor_9 = (-lower_composite_inertia_23)
         .mul_add(
-            lower_factor_8,
+            lower_factor_7,
             (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_5,
@@ -1018,179 +1017,177 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
-    let lower_factor_11 = lower_composite_inertia_22 * lower_factor;
-    let lower_factor_12 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_14 = n(1.0)
+    let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
+    let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
+    let lower_factor_12 = lower_composite_inertia_23 * lower_factor;
+    let lower_factor_13 = n(1.0)
         / ((-lower_composite_inertia_15)
             .mul_add(lower_factor_2, lower_composite_inertia_14));
-    let lower_factor_15 = lower_factor_3 * lower_factor_14;
-    let lower_factor_16 = (-lower_factor_4)
+    let lower_factor_14 = lower_factor_3 * lower_factor_13;
+    let lower_factor_15 = (-lower_factor_4)
         .mul_add(
-            lower_factor_15,
+            lower_factor_14,
             (-lower_composite_inertia_22)
-                .mul_add(lower_factor_8, lower_composite_inertia_8),
+                .mul_add(lower_factor_7, lower_composite_inertia_8),
         );
-    let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_9);
-    let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_10);
-    let lower_factor_19 = (-p[5])
-        .mul_add(lower_factor_8, lower_factor_7.mul_add(lower_factor_15, p[3]));
-    let lower_factor_20 = lower_factor_4 * lower_factor_14;
-    let lower_factor_21 = (-lower_factor_6)
+    let lower_factor_16 = (-lower_factor_5).mul_add(lower_factor_14, lower_factor_8);
+    let lower_factor_17 = (-lower_factor_6).mul_add(lower_factor_14, lower_factor_9);
+    let lower_factor_18 = lower_factor_4 * lower_factor_13;
+    let lower_factor_19 = (-lower_factor_6)
         .mul_add(
-            lower_factor_20,
+            lower_factor_18,
             (-lower_composite_inertia_23)
                 .mul_add(
-                    lower_factor_11,
+                    lower_factor_10,
                     (-lower_joint_20)
                         .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
-    let lower_factor_22 = lower_factor_5 * lower_factor_14;
-    let lower_factor_23 = lower_factor_6 * lower_factor_14;
-    let lower_factor_24 = n(1.0)
+    let lower_factor_20 = lower_factor_5 * lower_factor_13;
+    let lower_factor_21 = lower_factor_6 * lower_factor_13;
+    let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
             .mul_add(
-                lower_factor_15,
+                lower_factor_14,
                 (-lower_composite_inertia_8)
-                    .mul_add(lower_factor_8, lower_composite_inertia_6),
+                    .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
-    let lower_factor_25 = lower_factor_16 * lower_factor_24;
-    let lower_factor_26 = (-lower_factor_16)
+    let lower_factor_23 = lower_factor_15 * lower_factor_22;
+    let lower_factor_24 = (-lower_factor_15)
         .mul_add(
-            lower_factor_25,
+            lower_factor_23,
             (-lower_factor_4)
                 .mul_add(
-                    lower_factor_20,
+                    lower_factor_18,
                     (-lower_composite_inertia_22)
                         .mul_add(
-                            lower_factor_11,
+                            lower_factor_10,
                             lower_composite_inertia_22 + n(0.04000000000000001),
                         ),
                 ),
         );
-    let lower_factor_27 = (-lower_factor_17)
+    let lower_factor_25 = (-lower_factor_16)
         .mul_add(
-            lower_factor_25,
+            lower_factor_23,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_18,
+                    (-lower_composite_inertia_24)
+                        .mul_add(
+                            lower_factor_10,
+                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                        ),
+                ),
+        );
+    let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
+    let lower_factor_27 = lower_factor_16 * lower_factor_22;
+    let lower_factor_28 = (-lower_factor_16)
+        .mul_add(
+            lower_factor_27,
             (-lower_factor_5)
                 .mul_add(
                     lower_factor_20,
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_11,
-                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
-                        ),
-                ),
-        );
-    let lower_factor_28 = (-lower_factor_18).mul_add(lower_factor_25, lower_factor_21);
-    let lower_factor_29 = (-lower_factor_19)
-        .mul_add(
-            lower_factor_25,
-            (-p[5])
-                .mul_add(lower_factor_11, lower_factor_7.mul_add(lower_factor_20, p[2])),
-        );
-    let lower_factor_30 = lower_factor_17 * lower_factor_24;
-    let lower_factor_31 = (-lower_factor_17)
-        .mul_add(
-            lower_factor_30,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_22,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_12,
                             lower_composite_inertia_14 + n(0.62)
                                 - lower_composite_inertia_25,
                         ),
                 ),
         );
-    let lower_factor_32 = lower_factor_18 * lower_factor_24;
-    let lower_factor_33 = (-lower_factor_18)
+    let lower_factor_29 = lower_factor_17 * lower_factor_22;
+    let lower_factor_30 = (-lower_factor_17)
         .mul_add(
-            lower_factor_32,
+            lower_factor_29,
             (-lower_factor_6)
                 .mul_add(
-                    lower_factor_23,
+                    lower_factor_21,
                     (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_13,
+                            lower_factor_12,
                             lower_composite_inertia_6 + n(0.59)
                                 - lower_composite_inertia_25,
                         ),
                 ),
         );
-    // upper: factor (7 additions, 10 multiplications, 3 divisions)
-    let upper_factor = n(1.0) / lower_factor_26;
-    let upper_factor_2 = lower_factor_27 * upper_factor;
-    let upper_factor_3 = (-lower_factor_28)
+    // upper: factor (4 additions, 7 multiplications, 3 divisions)
+    let upper_factor = n(1.0) / lower_factor_24;
+    let upper_factor_2 = lower_factor_25 * upper_factor;
+    let upper_factor_3 = (-lower_factor_26)
         .mul_add(
             upper_factor_2,
-            (-lower_factor_18)
+            (-lower_factor_17)
                 .mul_add(
-                    lower_factor_30,
+                    lower_factor_27,
                     (-lower_factor_6)
                         .mul_add(
-                            lower_factor_22,
+                            lower_factor_20,
                             (-lower_composite_inertia_23)
-                                .mul_add(lower_factor_12, lower_composite_inertia_7),
+                                .mul_add(lower_factor_11, lower_composite_inertia_7),
                         ),
                 ),
         );
-    let upper_factor_4 = (-lower_factor_7)
+    let upper_factor_4 = lower_factor_26 * upper_factor;
+    let upper_factor_5 = n(1.0)
+        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
+    let upper_factor_6 = upper_factor_3 * upper_factor_5;
+    // lower: load (12 additions, 12 multiplications)
+    let lower_load = p[5].mul_add(lower_factor_2, p[4]);
+    let lower_load_2 = (-p[5])
+        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
+    let lower_load_3 = (-lower_factor_23)
         .mul_add(
-            lower_factor_22,
-            lower_factor_29
+            lower_load_2,
+            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
+        );
+    // upper: load (3 additions, 3 multiplications)
+    let upper_load = (-lower_factor_20)
+        .mul_add(
+            lower_load,
+            upper_factor_2
                 .mul_add(
-                    upper_factor_2,
-                    lower_factor_19
-                        .mul_add(lower_factor_30, p[5].mul_add(lower_factor_12, p[1])),
+                    lower_load_3,
+                    lower_factor_27
+                        .mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1])),
                 ),
         );
-    let upper_factor_5 = lower_factor_28 * upper_factor;
-    let upper_factor_6 = (-lower_factor_29)
+    let upper_load_2 = (-upper_factor_4)
         .mul_add(
-            upper_factor_5,
-            (-lower_factor_19)
+            lower_load_3,
+            (-lower_factor_29)
                 .mul_add(
-                    lower_factor_32,
+                    lower_load_2,
                     (-p[5])
                         .mul_add(
-                            lower_factor_13,
-                            lower_factor_7.mul_add(lower_factor_23, p[0]),
+                            lower_factor_12,
+                            lower_factor_21.mul_add(lower_load, p[0]),
                         ),
                 ),
         );
-    let upper_factor_7 = n(1.0)
-        / ((-lower_factor_27).mul_add(upper_factor_2, lower_factor_31));
-    let upper_factor_8 = upper_factor_3 * upper_factor_7;
-    // upper: speed (3 additions, 6 multiplications)
-    let upper_speed = (upper_factor_4.mul_add(upper_factor_8, upper_factor_6))
-        * (n(1.0)
-            / ((-upper_factor_3)
-                .mul_add(
-                    upper_factor_8,
-                    (-lower_factor_28).mul_add(upper_factor_5, lower_factor_33),
-                )));
-    let upper_speed_2 = upper_factor_7
-        * (upper_factor_3.mul_add(upper_speed, upper_factor_4));
+    // upper: response (3 additions, 6 multiplications)
+    let upper_speed = (n(1.0)
+        / ((-upper_factor_3)
+            .mul_add(
+                upper_factor_6,
+                (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
+            ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
+    let upper_speed_2 = upper_factor_5
+        * (upper_factor_3.mul_add(upper_speed, upper_load));
     let upper_speed_3 = upper_factor
-        * ((-lower_factor_28)
+        * ((-lower_factor_26)
+            .mul_add(upper_speed, lower_factor_25.mul_add(upper_speed_2, lower_load_3)));
+    // lower: response (12 additions, 15 multiplications)
+    let lower_speed = lower_factor_22
+        * ((-lower_factor_17)
             .mul_add(
                 upper_speed,
-                lower_factor_27.mul_add(upper_speed_2, lower_factor_29),
-            ));
-    // lower: speed (12 additions, 15 multiplications)
-    let lower_speed = lower_factor_24
-        * ((-lower_factor_18)
-            .mul_add(
-                upper_speed,
-                (-lower_factor_16)
+                (-lower_factor_15)
                     .mul_add(
                         upper_speed_3,
-                        lower_factor_17.mul_add(upper_speed_2, lower_factor_19),
+                        lower_factor_16.mul_add(upper_speed_2, lower_load_2),
                     ),
             ));
-    let lower_speed_2 = (-lower_factor_5)
+    let lower_response = (-lower_factor_5)
         .mul_add(
             upper_speed_2,
             lower_factor_6
@@ -1199,8 +1196,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
                 ),
         );
-    let lower_speed_3 = lower_factor_14 * (lower_factor_7 + lower_speed_2);
-    let lower_speed_4 = (-lower_composite_inertia_22)
+    let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
+    let lower_response_2 = (-lower_composite_inertia_22)
         .mul_add(
             upper_speed_3,
             (-lower_composite_inertia_8)
@@ -1209,12 +1206,12 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     lower_composite_inertia_24
                         .mul_add(
                             upper_speed_2,
-                            lower_composite_inertia_15 * lower_speed_3,
+                            lower_composite_inertia_15 * lower_speed_2,
                         ),
                 ),
         );
-    let lower_speed_5 = lower_factor
-        * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_speed_4));
+    let lower_speed_3 = lower_factor
+        * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_response_2));
     // lower: momentum (14 additions, 24 multiplications)
     let lower_momentum = upper_speed_2 * n(0.6);
     let lower_momentum_2 = upper_speed * n(0.6);
@@ -1229,7 +1226,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             upper_speed_2,
             (-lower_joint_12)
                 .mul_add(
-                    lower_speed_3,
+                    lower_speed_2,
                     lower_joint_14
                         .mul_add(
                             upper_speed_3,
@@ -1237,7 +1234,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                                 .mul_add(
                                     upper_speed,
                                     lower_joint_14
-                                        .mul_add(lower_speed_5, lower_joint_10 * lower_speed),
+                                        .mul_add(lower_speed_3, lower_joint_10 * lower_speed),
                                 ),
                         ),
                 ),
@@ -1247,7 +1244,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             upper_speed_3,
             (-lower_joint_19)
                 .mul_add(
-                    lower_speed_5,
+                    lower_speed_3,
                     lower_joint_17
                         .mul_add(
                             upper_speed_2,
@@ -1255,7 +1252,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                                 .mul_add(
                                     upper_speed,
                                     lower_joint_17
-                                        .mul_add(lower_speed_3, lower_joint_16 * lower_speed),
+                                        .mul_add(lower_speed_2, lower_joint_16 * lower_speed),
                                 ),
                         ),
                 ),
@@ -1268,10 +1265,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     upper_speed_2,
                     (-lower_joint_24)
                         .mul_add(
-                            lower_speed_5,
+                            lower_speed_3,
                             (-lower_joint_23)
                                 .mul_add(
-                                    lower_speed_3,
+                                    lower_speed_2,
                                     lower_joint_21
                                         .mul_add(upper_speed, lower_joint_21 * lower_speed),
                                 ),
@@ -1409,7 +1406,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_effort_2 = (-lower_spring_4)
         .mul_add(
             lower_spring_20,
-            lower_speed_3
+            lower_speed_2
                 .mul_add(
                     n(0.1),
                     lower_spring_3
@@ -1419,7 +1416,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
-    let lower_effort_3 = (-lower_speed_5)
+    let lower_effort_3 = (-lower_speed_3)
         .mul_add(
             n(0.1),
             (-lower_spring_3)
@@ -1491,13 +1488,13 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             (-lower_joint_10)
                 .mul_add(
                     lower_momentum_rate_2,
-                    (-lower_speed_5)
+                    (-lower_speed_3)
                         .mul_add(
                             lower_momentum_rate_8,
                             lower_joint_16
                                 .mul_add(
                                     lower_momentum_rate_3,
-                                    lower_speed_3.mul_add(lower_momentum_rate_7, -lower_effort),
+                                    lower_speed_2.mul_add(lower_momentum_rate_7, -lower_effort),
                                 ),
                         ),
                 ),
@@ -1511,7 +1508,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     (-lower_joint_12)
                         .mul_add(
                             lower_momentum_rate_2,
-                            (-lower_speed_5)
+                            (-lower_speed_3)
                                 .mul_add(
                                     lower_momentum_rate_9,
                                     lower_speed.mul_add(lower_momentum_rate_7, lower_effort_2),
@@ -1531,7 +1528,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                             lower_joint_14
                                 .mul_add(
                                     lower_momentum_rate_2,
-                                    lower_speed_3
+                                    lower_speed_2
                                         .mul_add(lower_momentum_rate_9, -lower_effort_3),
                                 ),
                         ),
@@ -1716,8 +1713,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             upper_speed_2,
             upper_speed_3,
             lower_speed,
+            lower_speed_2,
             lower_speed_3,
-            lower_speed_5,
         ],
         [
             upper_spring_4
@@ -1888,7 +1885,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                 ),
         );
     let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
-    // lower: factor (43 additions, 55 multiplications, 3 divisions)
+    // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
     let lower_factor_3 = (-lower_composite_inertia_8)
@@ -1907,11 +1904,10 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         );
     let lower_factor_6 = (-lower_composite_inertia_23)
         .mul_add(lower_factor_2, lower_composite_inertia_16);
-    let lower_factor_7 = p[5].mul_add(lower_factor_2, p[4]);
-    let lower_factor_8 = lower_composite_inertia_8 * lower_factor;
-    let lower_factor_9 = (-lower_composite_inertia_24)
+    let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
+    let lower_factor_8 = (-lower_composite_inertia_24)
         .mul_add(
-            lower_factor_8,
+            lower_factor_7,
             (-((-lower_joint_16)
                 .mul_add(
                     lower_composite_inertia_5,
@@ -1919,9 +1915,9 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                 )))
                 .mul_add(n(0.6), lower_composite_inertia_7),
         );
-    let lower_factor_10 = (-lower_composite_inertia_23)
+    let lower_factor_9 = (-lower_composite_inertia_23)
         .mul_add(
-            lower_factor_8,
+            lower_factor_7,
             (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_5,
@@ -1929,179 +1925,177 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
-    let lower_factor_11 = lower_composite_inertia_22 * lower_factor;
-    let lower_factor_12 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_14 = n(1.0)
+    let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
+    let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
+    let lower_factor_12 = lower_composite_inertia_23 * lower_factor;
+    let lower_factor_13 = n(1.0)
         / ((-lower_composite_inertia_15)
             .mul_add(lower_factor_2, lower_composite_inertia_14));
-    let lower_factor_15 = lower_factor_3 * lower_factor_14;
-    let lower_factor_16 = (-lower_factor_4)
+    let lower_factor_14 = lower_factor_3 * lower_factor_13;
+    let lower_factor_15 = (-lower_factor_4)
         .mul_add(
-            lower_factor_15,
+            lower_factor_14,
             (-lower_composite_inertia_22)
-                .mul_add(lower_factor_8, lower_composite_inertia_8),
+                .mul_add(lower_factor_7, lower_composite_inertia_8),
         );
-    let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_9);
-    let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_10);
-    let lower_factor_19 = (-p[5])
-        .mul_add(lower_factor_8, lower_factor_7.mul_add(lower_factor_15, p[3]));
-    let lower_factor_20 = lower_factor_4 * lower_factor_14;
-    let lower_factor_21 = (-lower_factor_6)
+    let lower_factor_16 = (-lower_factor_5).mul_add(lower_factor_14, lower_factor_8);
+    let lower_factor_17 = (-lower_factor_6).mul_add(lower_factor_14, lower_factor_9);
+    let lower_factor_18 = lower_factor_4 * lower_factor_13;
+    let lower_factor_19 = (-lower_factor_6)
         .mul_add(
-            lower_factor_20,
+            lower_factor_18,
             (-lower_composite_inertia_23)
                 .mul_add(
-                    lower_factor_11,
+                    lower_factor_10,
                     (-lower_joint_20)
                         .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
-    let lower_factor_22 = lower_factor_5 * lower_factor_14;
-    let lower_factor_23 = lower_factor_6 * lower_factor_14;
-    let lower_factor_24 = n(1.0)
+    let lower_factor_20 = lower_factor_5 * lower_factor_13;
+    let lower_factor_21 = lower_factor_6 * lower_factor_13;
+    let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
             .mul_add(
-                lower_factor_15,
+                lower_factor_14,
                 (-lower_composite_inertia_8)
-                    .mul_add(lower_factor_8, lower_composite_inertia_6),
+                    .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
-    let lower_factor_25 = lower_factor_16 * lower_factor_24;
-    let lower_factor_26 = (-lower_factor_16)
+    let lower_factor_23 = lower_factor_15 * lower_factor_22;
+    let lower_factor_24 = (-lower_factor_15)
         .mul_add(
-            lower_factor_25,
+            lower_factor_23,
             (-lower_factor_4)
                 .mul_add(
-                    lower_factor_20,
+                    lower_factor_18,
                     (-lower_composite_inertia_22)
                         .mul_add(
-                            lower_factor_11,
+                            lower_factor_10,
                             lower_composite_inertia_22 + n(0.04000000000000001),
                         ),
                 ),
         );
-    let lower_factor_27 = (-lower_factor_17)
+    let lower_factor_25 = (-lower_factor_16)
         .mul_add(
-            lower_factor_25,
+            lower_factor_23,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_18,
+                    (-lower_composite_inertia_24)
+                        .mul_add(
+                            lower_factor_10,
+                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                        ),
+                ),
+        );
+    let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
+    let lower_factor_27 = lower_factor_16 * lower_factor_22;
+    let lower_factor_28 = (-lower_factor_16)
+        .mul_add(
+            lower_factor_27,
             (-lower_factor_5)
                 .mul_add(
                     lower_factor_20,
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_11,
-                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
-                        ),
-                ),
-        );
-    let lower_factor_28 = (-lower_factor_18).mul_add(lower_factor_25, lower_factor_21);
-    let lower_factor_29 = (-lower_factor_19)
-        .mul_add(
-            lower_factor_25,
-            (-p[5])
-                .mul_add(lower_factor_11, lower_factor_7.mul_add(lower_factor_20, p[2])),
-        );
-    let lower_factor_30 = lower_factor_17 * lower_factor_24;
-    let lower_factor_31 = (-lower_factor_17)
-        .mul_add(
-            lower_factor_30,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_22,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_12,
                             lower_composite_inertia_14 + n(0.62)
                                 - lower_composite_inertia_25,
                         ),
                 ),
         );
-    let lower_factor_32 = lower_factor_18 * lower_factor_24;
-    let lower_factor_33 = (-lower_factor_18)
+    let lower_factor_29 = lower_factor_17 * lower_factor_22;
+    let lower_factor_30 = (-lower_factor_17)
         .mul_add(
-            lower_factor_32,
+            lower_factor_29,
             (-lower_factor_6)
                 .mul_add(
-                    lower_factor_23,
+                    lower_factor_21,
                     (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_13,
+                            lower_factor_12,
                             lower_composite_inertia_6 + n(0.59)
                                 - lower_composite_inertia_25,
                         ),
                 ),
         );
-    // upper: factor (7 additions, 10 multiplications, 3 divisions)
-    let upper_factor = n(1.0) / lower_factor_26;
-    let upper_factor_2 = lower_factor_27 * upper_factor;
-    let upper_factor_3 = (-lower_factor_28)
+    // upper: factor (4 additions, 7 multiplications, 3 divisions)
+    let upper_factor = n(1.0) / lower_factor_24;
+    let upper_factor_2 = lower_factor_25 * upper_factor;
+    let upper_factor_3 = (-lower_factor_26)
         .mul_add(
             upper_factor_2,
-            (-lower_factor_18)
+            (-lower_factor_17)
                 .mul_add(
-                    lower_factor_30,
+                    lower_factor_27,
                     (-lower_factor_6)
                         .mul_add(
-                            lower_factor_22,
+                            lower_factor_20,
                             (-lower_composite_inertia_23)
-                                .mul_add(lower_factor_12, lower_composite_inertia_7),
+                                .mul_add(lower_factor_11, lower_composite_inertia_7),
                         ),
                 ),
         );
-    let upper_factor_4 = (-lower_factor_7)
+    let upper_factor_4 = lower_factor_26 * upper_factor;
+    let upper_factor_5 = n(1.0)
+        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
+    let upper_factor_6 = upper_factor_3 * upper_factor_5;
+    // lower: load (12 additions, 12 multiplications)
+    let lower_load = p[5].mul_add(lower_factor_2, p[4]);
+    let lower_load_2 = (-p[5])
+        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
+    let lower_load_3 = (-lower_factor_23)
         .mul_add(
-            lower_factor_22,
-            lower_factor_29
+            lower_load_2,
+            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
+        );
+    // upper: load (3 additions, 3 multiplications)
+    let upper_load = (-lower_factor_20)
+        .mul_add(
+            lower_load,
+            upper_factor_2
                 .mul_add(
-                    upper_factor_2,
-                    lower_factor_19
-                        .mul_add(lower_factor_30, p[5].mul_add(lower_factor_12, p[1])),
+                    lower_load_3,
+                    lower_factor_27
+                        .mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1])),
                 ),
         );
-    let upper_factor_5 = lower_factor_28 * upper_factor;
-    let upper_factor_6 = (-lower_factor_29)
+    let upper_load_2 = (-upper_factor_4)
         .mul_add(
-            upper_factor_5,
-            (-lower_factor_19)
+            lower_load_3,
+            (-lower_factor_29)
                 .mul_add(
-                    lower_factor_32,
+                    lower_load_2,
                     (-p[5])
                         .mul_add(
-                            lower_factor_13,
-                            lower_factor_7.mul_add(lower_factor_23, p[0]),
+                            lower_factor_12,
+                            lower_factor_21.mul_add(lower_load, p[0]),
                         ),
                 ),
         );
-    let upper_factor_7 = n(1.0)
-        / ((-lower_factor_27).mul_add(upper_factor_2, lower_factor_31));
-    let upper_factor_8 = upper_factor_3 * upper_factor_7;
-    // upper: speed (3 additions, 6 multiplications)
-    let upper_speed = (upper_factor_4.mul_add(upper_factor_8, upper_factor_6))
-        * (n(1.0)
-            / ((-upper_factor_3)
-                .mul_add(
-                    upper_factor_8,
-                    (-lower_factor_28).mul_add(upper_factor_5, lower_factor_33),
-                )));
-    let upper_speed_2 = upper_factor_7
-        * (upper_factor_3.mul_add(upper_speed, upper_factor_4));
+    // upper: response (3 additions, 6 multiplications)
+    let upper_speed = (n(1.0)
+        / ((-upper_factor_3)
+            .mul_add(
+                upper_factor_6,
+                (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
+            ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
+    let upper_speed_2 = upper_factor_5
+        * (upper_factor_3.mul_add(upper_speed, upper_load));
     let upper_speed_3 = upper_factor
-        * ((-lower_factor_28)
+        * ((-lower_factor_26)
+            .mul_add(upper_speed, lower_factor_25.mul_add(upper_speed_2, lower_load_3)));
+    // lower: response (17 additions, 22 multiplications)
+    let lower_speed = lower_factor_22
+        * ((-lower_factor_17)
             .mul_add(
                 upper_speed,
-                lower_factor_27.mul_add(upper_speed_2, lower_factor_29),
-            ));
-    // lower: speed (17 additions, 22 multiplications)
-    let lower_speed = lower_factor_24
-        * ((-lower_factor_18)
-            .mul_add(
-                upper_speed,
-                (-lower_factor_16)
+                (-lower_factor_15)
                     .mul_add(
                         upper_speed_3,
-                        lower_factor_17.mul_add(upper_speed_2, lower_factor_19),
+                        lower_factor_16.mul_add(upper_speed_2, lower_load_2),
                     ),
             ));
-    let lower_speed_2 = (-lower_factor_5)
+    let lower_response = (-lower_factor_5)
         .mul_add(
             upper_speed_2,
             lower_factor_6
@@ -2110,8 +2104,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
                 ),
         );
-    let lower_speed_3 = lower_factor_14 * (lower_factor_7 + lower_speed_2);
-    let lower_speed_4 = (-lower_composite_inertia_22)
+    let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
+    let lower_response_2 = (-lower_composite_inertia_22)
         .mul_add(
             upper_speed_3,
             (-lower_composite_inertia_8)
@@ -2120,21 +2114,21 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     lower_composite_inertia_24
                         .mul_add(
                             upper_speed_2,
-                            lower_composite_inertia_15 * lower_speed_3,
+                            lower_composite_inertia_15 * lower_speed_2,
                         ),
                 ),
         );
-    let lower_speed_5 = p[3]
+    let lower_response_3 = p[3]
         .mul_add(
             lower_speed,
             p[2].mul_add(upper_speed_3, p[1].mul_add(upper_speed_2, p[0] * upper_speed)),
         );
-    let lower_speed_6 = p[5]
+    let lower_response_4 = p[5]
         .mul_add(
             lower_factor
                 * ((-lower_composite_inertia_23)
-                    .mul_add(upper_speed, p[5] + lower_speed_4)),
-            p[4].mul_add(lower_speed_3, lower_speed_5),
+                    .mul_add(upper_speed, p[5] + lower_response_2)),
+            p[4].mul_add(lower_speed_2, lower_response_3),
         );
     // upper: spring (20 additions, 34 multiplications, 1 function call)
     let upper_spring = T::rotation_vector(
@@ -2220,7 +2214,10 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         .mul_add(
             n(9.81),
             lower_spring_2
-                .mul_add(n(0.5), upper_spring_2.mul_add(n(0.5), lower_speed_6 * n(0.5))),
+                .mul_add(
+                    n(0.5),
+                    upper_spring_2.mul_add(n(0.5), lower_response_4 * n(0.5)),
+                ),
         );
     [upper_first_moment_2]
 }

@@ -39,6 +39,8 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
             *results = inverse_dynamics::<f64>(q, v, u);
         }
     }),
+    forward_dynamics_derivatives: None,
+    inverse_dynamics_derivatives: None,
     in_lanes: ::hamel::compiled::InLanes {
         forward_dynamics: None,
         inverse_dynamics: None,

@@ -30,6 +30,8 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
         }
     }),
     inverse_dynamics: None,
+    forward_dynamics_derivatives: None,
+    inverse_dynamics_derivatives: None,
     in_lanes: ::hamel::compiled::InLanes {
         forward_dynamics: None,
         inverse_dynamics: None,

@@ -25,12 +25,15 @@ fn folder(name: &str) -> std::path::PathBuf {
         .join(name)
 }
 
-/// The functions of a model that are not too long, as a module has them.
+/// The functions of a model that are not too long, as a module has them; of derivatives those that a compiler is done with soon.
 fn functions(model: &Model) -> Vec<Function> {
-    let compiled = Kind::ALL
-        .iter()
-        .filter_map(|&kind| compile(model, kind, Loops::default()).ok());
-    compiled.map(|chosen| chosen.function).collect()
+    let function = |kind: Kind| {
+        let function = compile(model, kind, Loops::default()).ok()?.function;
+        let derivatives = [Kind::ForwardDerivatives, Kind::InverseDerivatives];
+        let is_short = !derivatives.contains(&kind) || function.written() < LONG;
+        is_short.then_some(function)
+    };
+    Kind::ALL.into_iter().filter_map(function).collect()
 }
 
 /// Whether the bits are the same; any NaN is as good as another.
@@ -97,9 +100,15 @@ fn scenes_agree() {
             found
         };
         for seed in 0..STATES {
-            Point::random(model.clone(), &scene.mechanism, 100 * seed + i as u64)
-                .compiled_with(&[Loops::Long])
-                .agrees_by(&by);
+            let point = || {
+                Point::random(model.clone(), &scene.mechanism, 100 * seed + i as u64)
+                    .compiled_with(&[Loops::Long])
+            };
+            point().agrees_by(&by);
+            let has = |kind: Kind| functions[i].iter().any(|one| one.name == kind.name());
+            if has(Kind::ForwardDerivatives) && has(Kind::InverseDerivatives) {
+                point().derivatives_agree_by(&by);
+            }
         }
     }
 }
@@ -147,6 +156,18 @@ fn committed() -> Vec<Committed> {
         committed!(plate_cart_arm, hamiltonian, [0, 1]),
         committed!(plate_cart_arm, energies, [0, 1]),
         committed!(plate_cart_arm, poses, [0], as_flattened),
+        committed!(
+            plate_cart_arm,
+            forward_dynamics_derivatives,
+            [0, 1, 2],
+            as_flattened
+        ),
+        committed!(
+            plate_cart_arm,
+            inverse_dynamics_derivatives,
+            [0, 1, 2],
+            as_flattened
+        ),
         committed!(geodesic_springs, forward_dynamics, [0, 1, 2]),
         committed!(geodesic_springs, momentum_rates, [0, 1, 2], as_flattened),
         committed!(geodesic_springs, hamiltonian, [0, 1]),
@@ -211,7 +232,7 @@ fn committed_modules_agree() {
             let v = random::numbers(&mut random, layout.speeds);
             let u = random::numbers(&mut random, layout.freedoms);
             let u = match function {
-                "inverse_dynamics" => &u[..layout.speeds],
+                "inverse_dynamics" | "inverse_dynamics_derivatives" => &u[..layout.speeds],
                 _ => &u,
             };
             let state = [&*q, &*v, u];

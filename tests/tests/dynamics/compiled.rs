@@ -1,9 +1,12 @@
 //! Compiled equations against the tree: every scene that is compiled, robots, and random trees of all joints; and that
 //! what a scene does not have costs nothing.
 
+mod derivatives;
+
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::elements::BodySpring;
 use hamel::mechanism::Mechanism;
+use hamel::nalgebra::DMatrix;
 use hamel_codegen::scene::Refused;
 use hamel_codegen::scene::functions::{Kind, Loops, compile};
 use hamel_codegen::scene::model::{Elements, Model};
@@ -103,11 +106,9 @@ impl Point {
             .expect("sizes fit");
         self.agree(by, Kind::BiasForces, &[], &expected, BOUND);
 
-        let eigenvalues = mass.symmetric_eigenvalues();
-        let condition = eigenvalues.max() / eigenvalues.min();
         tree.accelerations(q, speeds, &self.inputs, &mut expected)
             .expect("M̄ is regular");
-        let bound = BOUND.max(ROUNDINGS * condition * f64::EPSILON);
+        let bound = of_solutions(mass);
         self.agree(by, Kind::ForwardDynamics, &self.inputs, &expected, bound);
         self.forms_agree(by, &mut tree, bound);
         self.places_agree(by);
@@ -157,9 +158,14 @@ impl Point {
     }
 
     fn close(&self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
+        self.close_beside(f64::MIN_POSITIVE, what, found, expected, bound);
+    }
+
+    /// Errors are relative to the largest value, or to what it is made of where that is larger.
+    fn close_beside(&self, terms: f64, what: &str, found: &[f64], expected: &[f64], bound: f64) {
         let largest = expected
             .iter()
-            .fold(f64::MIN_POSITIVE, |most, entry| most.max(entry.abs()));
+            .fold(terms, |most, entry| most.max(entry.abs()));
         let error = found.iter().zip(expected).fold(0.0_f64, |most, (a, b)| {
             // NaN is the largest of all.
             let error = (a - b).abs() / largest;
@@ -172,6 +178,13 @@ impl Point {
             self.place
         );
     }
+}
+
+/// The bound of errors of solutions with M̄.
+fn of_solutions(mass: DMatrix<f64>) -> f64 {
+    let eigenvalues = mass.symmetric_eigenvalues();
+    let condition = eigenvalues.max() / eigenvalues.min();
+    BOUND.max(ROUNDINGS * condition * f64::EPSILON)
 }
 
 /// Every scene file, with what the compiler says of it.
@@ -248,18 +261,37 @@ fn what_is_not_compiled_is_named() {
     }
 }
 
-#[test]
-fn robots_agree() {
-    for name in [
+/// Robots of the peers' comparison, small enough for every function.
+fn robots() -> impl Iterator<Item = (&'static str, Arc<Mechanism>)> {
+    let names = [
         "pendulum", "panda7", "anymal", "g1", "rev8", "ball8", "ball32",
-    ] {
+    ];
+    names.into_iter().map(|name| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/robots/{name}.json"));
         let text = std::fs::read_to_string(path).expect("a file of the project");
         let reference = Reference::parse(&text).expect("it is sound");
-        let mechanism = reference.model.mechanism().expect("it is sound");
+        (name, reference.model.mechanism().expect("it is sound"))
+    })
+}
+
+#[test]
+fn robots_agree() {
+    for (name, mechanism) in robots() {
         for seed in 0..3 {
             Point::random(compiled::model(name, &mechanism), &mechanism, seed).agrees();
         }
+    }
+}
+
+fn bare(case: random::Case) -> Point {
+    Point {
+        place: format!("seed {}", case.seed),
+        loops: loops(case.seed),
+        model: compiled::model("random", &case.mechanism),
+        mechanism: case.mechanism,
+        q: case.q,
+        speeds: case.speeds,
+        inputs: case.efforts,
     }
 }
 
@@ -267,16 +299,30 @@ fn robots_agree() {
 fn random_trees_agree() {
     let kinds = random::library();
     for case in random::cases(&kinds, 40, 200) {
-        let point = Point {
-            place: format!("seed {}", case.seed),
-            loops: loops(case.seed),
-            model: compiled::model("random", &case.mechanism),
-            mechanism: Arc::clone(&case.mechanism),
-            q: case.q,
-            speeds: case.speeds,
-            inputs: case.efforts,
-        };
-        point.agrees();
+        bare(case).agrees();
+    }
+}
+
+/// A random tree with elements of all kinds, of odd seeds with driven joints, of every third with constraints that couple joints.
+fn with_elements(case: random::Case) -> Point {
+    let mut random = ChaCha8Rng::seed_from_u64(case.seed);
+    let mut geared = compiled::geared(&mut random, &case.mechanism);
+    if case.seed % 2 == 1 {
+        geared = compiled::driven(&mut random, &geared);
+    }
+    if case.seed % 3 == 2 {
+        geared = compiled::coupled(&mut random, geared, &case.q);
+    }
+    let mut model = compiled::model("random", &geared);
+    model.elements = compiled::elements(&mut random, &geared);
+    Point {
+        place: format!("seed {}, with elements", case.seed),
+        loops: loops(case.seed),
+        mechanism: compiled::equipped(&geared, &model.elements),
+        model,
+        q: case.q,
+        speeds: case.speeds,
+        inputs: case.efforts,
     }
 }
 
@@ -284,26 +330,7 @@ fn random_trees_agree() {
 fn random_trees_with_elements_agree() {
     let kinds = random::library();
     for case in random::cases(&kinds, 20, 100) {
-        let mut random = ChaCha8Rng::seed_from_u64(case.seed);
-        let mut geared = compiled::geared(&mut random, &case.mechanism);
-        if case.seed % 2 == 1 {
-            geared = compiled::driven(&mut random, &geared);
-        }
-        if case.seed % 3 == 2 {
-            geared = compiled::coupled(&mut random, geared, &case.q);
-        }
-        let mut model = compiled::model("random", &geared);
-        model.elements = compiled::elements(&mut random, &geared);
-        let point = Point {
-            place: format!("seed {}, with elements", case.seed),
-            loops: loops(case.seed),
-            mechanism: compiled::equipped(&geared, &model.elements),
-            model,
-            q: case.q,
-            speeds: case.speeds,
-            inputs: case.efforts,
-        };
-        point.agrees();
+        with_elements(case).agrees();
     }
 }
 

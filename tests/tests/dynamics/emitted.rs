@@ -2,8 +2,8 @@
 //! scalar, and integrators take it.
 
 use hamel::compiled::{Compiled, CompiledError, Equations};
-use hamel::dynamics::{Dynamics, Recursive};
-use hamel::integrate::{Form, Integration, Method, Options};
+use hamel::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, Recursive};
+use hamel::integrate::{Control, Form, Integration, Method, Options, Scheme};
 use hamel::scalar::F64x4;
 use hamel_codegen::scene::functions::Kind;
 use hamel_codegen::scene::{Build, scene};
@@ -14,6 +14,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Like links.
 const CHAIN: &str = "data/scenes/ball_chain.toml";
@@ -161,6 +162,101 @@ fn moves_as_the_tree(scene: &Scene, equations: &'static Equations, form: Form) {
     let [found, expected] = [found, expected].map(|solution| solution.state.configuration);
     // Both are within the tolerance of the motion, times what a second makes of it.
     assert!(difference(&found, &expected) < 1e-8);
+}
+
+/// Derivatives of both as compiled Rust has them.
+#[test]
+fn derivatives_are_those_of_the_tree() {
+    let mechanism = &scenes::load("plate_cart_arm").mechanism;
+    let mut tree = Recursive::new(Arc::clone(mechanism));
+    let mut compiled = Compiled::new(Arc::clone(mechanism), &module::EQUATIONS).expect("its scene");
+    let mut inverse = [(); 2].map(|()| InverseDerivatives::new(mechanism));
+    let mut forward = [(); 2].map(|()| ForwardDerivatives::new(mechanism));
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let layout = *mechanism.layout();
+    for _ in 0..10 {
+        let q = random::configuration(&mut random, mechanism);
+        let v = random::numbers(&mut random, layout.speeds);
+        let u = random::numbers(&mut random, layout.freedoms);
+        let rates = &u[..layout.speeds];
+        compiled
+            .inverse_dynamics_derivatives(&q, &v, rates, &mut inverse[0])
+            .expect("the scene is sound");
+        tree.inverse_dynamics_derivatives(&q, &v, rates, &mut inverse[1])
+            .expect("the scene is sound");
+        let [found, expected] = inverse
+            .each_ref()
+            .map(|own| [own.by_local(), own.by_speeds()]);
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!(difference(found.entries(), expected.entries()) < 1e-12);
+        }
+        compiled
+            .forward_dynamics_derivatives(&q, &v, &u, &mut forward[0])
+            .expect("the scene is sound");
+        tree.forward_dynamics_derivatives(&q, &v, &u, &mut forward[1])
+            .expect("the scene is sound");
+        let all = |own: &ForwardDerivatives| {
+            let matrices = [own.by_local(), own.by_speeds(), own.by_efforts()];
+            let matrices = matrices.map(|matrix| matrix.entries().to_vec());
+            [matrices.concat(), own.rates().to_vec()]
+        };
+        let [found, expected] = forward.each_ref().map(all);
+        for (found, expected) in found.iter().zip(&expected) {
+            // The scene is well conditioned.
+            assert!(difference(found, expected) < 1e-12);
+        }
+    }
+    let mut foreign = ForwardDerivatives::new(&scenes::load("heavy_top").mechanism);
+    let zeros = vec![0.0; layout.freedoms.max(layout.speeds)];
+    let (v, u) = (&zeros[..layout.speeds], &zeros[..layout.freedoms]);
+    let refused = compiled.forward_dynamics_derivatives(&mechanism.home(), v, u, &mut foreign);
+    assert_eq!(refused, Err(DynamicsError::ForeignResults));
+}
+
+/// How often [`counted`] was called.
+static CALLS: AtomicUsize = AtomicUsize::new(0);
+
+/// The derivatives of the module, counted.
+fn counted(q: &[f64], v: &[f64], tau: &[f64], rows: &mut [f64]) {
+    CALLS.fetch_add(1, Ordering::Relaxed);
+    if let Some(derivatives) = module::EQUATIONS.forward_dynamics_derivatives {
+        derivatives(q, v, tau, rows);
+    }
+}
+
+static COUNTED: Equations = Equations {
+    forward_dynamics_derivatives: Some(counted),
+    ..module::EQUATIONS
+};
+
+/// Radau IIA takes the derivatives of the module for every Jacobian, and moves as with the tree's.
+#[test]
+fn implicit_integrators_take_compiled_derivatives() {
+    let scene = scenes::load("plate_cart_arm");
+    let initial = scene.start();
+    let options = Options {
+        form: Form::Lagrangian,
+        method: Method::Controlled {
+            scheme: Scheme::Radau5,
+            control: Control::to(1e-9),
+        },
+        t_end: 1.0,
+        samples: vec![],
+    };
+    let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
+    let expected = Integration::new(&mut tree, &initial, &options)
+        .run()
+        .expect("it moves");
+    let mut compiled = Compiled::new(Arc::clone(&scene.mechanism), &COUNTED).expect("its scene");
+    let found = Integration::new(&mut compiled, &initial, &options)
+        .run()
+        .expect("it moves");
+    assert!(found.statistics.jacobians > 0);
+    assert_eq!(CALLS.load(Ordering::Relaxed), found.statistics.jacobians);
+    assert_eq!(found.statistics.steps, expected.statistics.steps);
+    let [found, expected] = [found, expected].map(|solution| solution.state.configuration);
+    // The same steps: only what the iteration leaves unsolved differs.
+    assert!(difference(&found, &expected) < 1e-9);
 }
 
 #[test]

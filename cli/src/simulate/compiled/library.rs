@@ -27,7 +27,10 @@ struct Loaded {
     configuration: usize,
     freedoms: usize,
     speeds: usize,
+    /// Results of the derivatives.
+    entries: usize,
     forward_dynamics: Option<Three>,
+    derivatives: Option<Three>,
     momenta: Option<Two>,
     speeds_from_momenta: Option<Two>,
     momentum_rates: Option<Three>,
@@ -37,14 +40,15 @@ struct Loaded {
     _library: Library,
 }
 
-/// The equations of the library at `path`, which was built of the module `name` of a scene with these stored scalars, freedoms and speeds.
+/// The equations of the library at `path`, which was built of the module `name` of a scene with these stored scalars, freedoms and speeds, and so
+/// many numbers in its derivatives of forward dynamics.
 ///
 /// # Errors
 /// A file that cannot be loaded; a second library.
 pub fn load(
     path: &Path,
     name: &str,
-    [configuration, freedoms, speeds]: [usize; 3],
+    [configuration, freedoms, speeds, entries]: [usize; 4],
 ) -> Result<&'static Equations, Failure> {
     let failed = |error: &dyn std::fmt::Display| {
         Failure::Refused(format!("the compiled scene cannot be loaded: {error}"))
@@ -58,10 +62,11 @@ pub fn load(
     };
     let three = |function: &str| {
         let symbol = format!("{name}_{function}");
-        // SAFETY: as above; `forward_dynamics` and `momentum_rates` take three.
+        // SAFETY: as above; `forward_dynamics`, its derivatives and `momentum_rates` take three.
         unsafe { library.get::<Three>(symbol) }.map(|found| *found)
     };
     let forward_dynamics = three("forward_dynamics").ok();
+    let derivatives = three("forward_dynamics_derivatives").ok();
     let momenta = two("momenta").ok();
     let speeds_from_momenta = two("speeds_from_momenta").ok();
     let momentum_rates = three("momentum_rates").ok();
@@ -70,6 +75,7 @@ pub fn load(
         configuration,
         freedoms,
         speeds,
+        entries,
         equations: Equations {
             scene: "the scene",
             configuration,
@@ -77,6 +83,8 @@ pub fn load(
             speeds,
             forward_dynamics: forward_dynamics.map(|_| call_forward_dynamics as _),
             inverse_dynamics: None,
+            forward_dynamics_derivatives: derivatives.map(|_| call_derivatives as _),
+            inverse_dynamics_derivatives: None,
             momenta: momenta.map(|_| call_momenta as _),
             speeds_from_momenta: speeds_from_momenta.map(|_| call_speeds as _),
             momentum_rates: momentum_rates.map(|_| call_momentum_rates as _),
@@ -87,6 +95,7 @@ pub fn load(
             },
         },
         forward_dynamics,
+        derivatives,
         momenta,
         speeds_from_momenta,
         momentum_rates,
@@ -143,6 +152,12 @@ impl Loaded {
 fn call_forward_dynamics(q: &[f64], v: &[f64], tau: &[f64], rates: &mut [f64]) {
     if let Some(loaded) = LOADED.get() {
         loaded.three(loaded.forward_dynamics, q, v, tau, (rates, loaded.speeds));
+    }
+}
+
+fn call_derivatives(q: &[f64], v: &[f64], tau: &[f64], rows: &mut [f64]) {
+    if let Some(loaded) = LOADED.get() {
+        loaded.three(loaded.derivatives, q, v, tau, (rows, loaded.entries));
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! What a simulation then runs on is what a controller in C would be built of. A Rust module would take a Rust compiler and the sources of the
 //! runtime; a C module needs no more than a C compiler, and takes it less than a second for most scenes. What the module does not have, the tree computes:
-//! the speeds that constraints make depend on others, and all derivatives.
+//! the speeds that constraints make depend on others, and derivatives of the port-Hamiltonian form.
 
 mod compiler;
 mod library;
@@ -11,7 +11,8 @@ use super::args::Args;
 use crate::output::{Failure, tell};
 use compiler::Compiler;
 use hamel::compiled::Compiled;
-use hamel::integrate::Form;
+use hamel::dynamics::ForwardDerivatives;
+use hamel::integrate::{Form, Scheme};
 use hamel::mechanism::Mechanism;
 use hamel_codegen::scene::functions::Kind;
 use hamel_codegen::scene::{Error, Language, Module};
@@ -19,9 +20,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The functions that simulations of a form call.
-const fn functions(form: Form) -> &'static [Kind] {
+/// The functions that simulations of a form call by a scheme.
+const fn functions(form: Form, scheme: Scheme) -> &'static [Kind] {
     match form {
+        Form::Lagrangian if scheme.takes_derivatives() => {
+            &[Kind::ForwardDynamics, Kind::ForwardDerivatives]
+        }
         Form::Lagrangian => &[Kind::ForwardDynamics],
         Form::Hamiltonian => &[
             Kind::Momenta,
@@ -44,19 +48,29 @@ pub struct Equations {
     pub told: String,
 }
 
-/// The equations of the scene of `args`, which has that mechanism, for simulations of a form.
+/// The equations of the scene of `args`, which has that mechanism, for simulations of a form by a scheme.
 ///
 /// # Errors
 /// A scene that the scene compiler refuses; no C compiler; one that fails; a folder for temporary files that cannot be written.
-pub fn compiled(args: &Args, mechanism: &Arc<Mechanism>, form: Form) -> Result<Equations, Failure> {
+pub fn compiled(
+    args: &Args,
+    mechanism: &Arc<Mechanism>,
+    form: Form,
+    scheme: Scheme,
+) -> Result<Equations, Failure> {
     let compiler = Compiler::find()?;
     let start = Instant::now();
     let progress = Progress::new(args.quiet, &compiler);
-    let module = module(args, form)?;
+    let module = module(args, functions(form, scheme))?;
     let folder = tempfile::tempdir().map_err(temporary)?;
     let built = compiler.build(folder.path(), NAME, &module)?;
     let layout = mechanism.layout();
-    let sizes = [layout.configuration, layout.freedoms, layout.speeds];
+    let sizes = [
+        layout.configuration,
+        layout.freedoms,
+        layout.speeds,
+        ForwardDerivatives::entries(mechanism),
+    ];
     let equations = library::load(&built, NAME, sizes)?;
     let dynamics = Compiled::new(Arc::clone(mechanism), equations);
     let dynamics = dynamics.map_err(|error| Failure::Refused(error.to_string()))?;
@@ -69,7 +83,7 @@ pub fn compiled(args: &Args, mechanism: &Arc<Mechanism>, form: Form) -> Result<E
 }
 
 /// The scene in C. Functions that would be too long are left out, and told: the tree computes them.
-fn module(args: &Args, form: Form) -> Result<Module, Failure> {
+fn module(args: &Args, functions: &[Kind]) -> Result<Module, Failure> {
     let mut build = hamel_codegen::scene(&args.scene)
         .library(hamel_joints::specs())
         .language(Language::C99)
@@ -78,7 +92,7 @@ fn module(args: &Args, form: Form) -> Result<Module, Failure> {
         build = build.floating_base();
     }
     let label = args.scene.file_name().unwrap_or_default().to_string_lossy();
-    let mut functions = functions(form).to_vec();
+    let mut functions = functions.to_vec();
     loop {
         let build = build.clone().functions(functions.iter().copied());
         match build.module(&label) {

@@ -8,6 +8,62 @@ use num_traits::Zero;
 /// M̄ as a full matrix, with zeros where no path of the tree connects two speeds.
 pub type Matrix = Vec<Vec<Sym>>;
 
+/// `M̄ = LᵀDL`, which fills no zero of the tree.
+pub(super) struct Factors {
+    /// DL, in the lower triangle.
+    matrix: Matrix,
+    /// D⁻¹.
+    inverses: Vec<Sym>,
+    carriers: Vec<Vec<usize>>,
+    sections: Vec<u32>,
+}
+
+impl Factors {
+    /// `M̄⁻¹ b`, with a name for what that is.
+    pub(super) fn solve(&self, mut right: Vec<Sym>, sought: &'static str) -> Vec<Sym> {
+        self.inward(&mut right);
+        for k in 0..right.len() {
+            right[k] = self.outward(&right, k).named(sought);
+        }
+        right
+    }
+
+    /// M̄⁻¹; half of its entries are found, since it is symmetric.
+    pub(super) fn inverse(&self) -> Matrix {
+        let size = self.inverses.len();
+        let mut inverse = vec![vec![Sym::zero(); size]; size];
+        for unit in 0..size {
+            let mut column = vec![Sym::zero(); size];
+            column[unit] = Sym::Number(1.0);
+            self.inward(&mut column);
+            for k in 0..=unit {
+                column[k] = self.outward(&column, k);
+                (inverse[k][unit], inverse[unit][k]) = (column[k], column[k]);
+            }
+        }
+        inverse
+    }
+
+    /// `L⁻ᵀ b`, in place.
+    fn inward(&self, right: &mut [Sym]) {
+        for k in (0..right.len()).rev() {
+            section(self.sections[k], "load");
+            for &i in &self.carriers[k] {
+                let less = self.matrix[k][i] * self.inverses[k] * right[k];
+                right[i] -= less;
+            }
+        }
+    }
+
+    /// Entry k of `(DL)⁻¹ x`, where those of its carriers are known.
+    fn outward(&self, x: &[Sym], k: usize) -> Sym {
+        section(self.sections[k], "response");
+        let carriers = self.carriers[k].iter();
+        let carried: Sym = carriers.map(|&i| self.matrix[k][i] * x[i]).sum();
+        (x[k] - carried) * self.inverses[k]
+    }
+}
+
 impl Tree<'_> {
     /// M̄(Q).
     pub fn mass_matrix(&self) -> Matrix {
@@ -101,10 +157,15 @@ impl Tree<'_> {
         sought: &'static str,
     ) -> Vec<Sym> {
         self.prescribe(&mut matrix, &mut right, given);
+        self.factorised(matrix).solve(right, sought)
+    }
+
+    /// `M̄ = LᵀDL`.
+    pub(super) fn factorised(&self, mut matrix: Matrix) -> Factors {
         let carriers = self.carriers();
         let sections = self.sections();
-        let mut inverses = vec![Sym::zero(); right.len()];
-        for k in (0..right.len()).rev() {
+        let mut inverses = vec![Sym::zero(); matrix.len()];
+        for k in (0..matrix.len()).rev() {
             section(sections[k], "factor");
             inverses[k] = Sym::Number(1.0) / matrix[k][k];
             for (place, &i) in carriers[k].iter().enumerate() {
@@ -114,20 +175,18 @@ impl Tree<'_> {
                     matrix[i][j] -= less;
                     matrix[j][i] = matrix[i][j];
                 }
-                let less = factor * right[k];
-                right[i] -= less;
             }
         }
-        for k in 0..right.len() {
-            section(sections[k], sought);
-            let carried: Sym = carriers[k].iter().map(|&i| matrix[k][i] * right[i]).sum();
-            right[k] = ((right[k] - carried) * inverses[k]).named(sought);
+        Factors {
+            matrix,
+            inverses,
+            carriers,
+            sections,
         }
-        right
     }
 
     /// Makes the rates of driven joints known: what they take of the others moves to the right-hand side.
-    fn prescribe(&self, matrix: &mut Matrix, right: &mut [Sym], argument: Argument) {
+    pub(super) fn prescribe(&self, matrix: &mut Matrix, right: &mut [Sym], argument: Argument) {
         for (index, body) in self.bodies.iter().enumerate() {
             let Some(given) = self.prescribed(index, argument) else {
                 continue;
@@ -136,10 +195,8 @@ impl Tree<'_> {
                 section(number(index), "prescribed motion");
                 for (row, right) in right.iter_mut().enumerate() {
                     *right -= matrix[row][place] * rate;
-                    matrix[row][place] = Sym::zero();
-                    matrix[place][row] = Sym::zero();
                 }
-                matrix[place][place] = Sym::Number(1.0);
+                hold(matrix, place);
                 right[place] = rate;
             }
         }
@@ -171,4 +228,13 @@ impl Tree<'_> {
             .flat_map(|(index, body)| body.share.speeds.clone().map(move |_| number(index)))
             .collect()
     }
+}
+
+/// Makes a speed's rate its own right-hand side, which no other feels.
+pub(super) fn hold(matrix: &mut Matrix, place: usize) {
+    for row in matrix.iter_mut() {
+        row[place] = Sym::zero();
+    }
+    matrix[place].fill(Sym::zero());
+    matrix[place][place] = Sym::Number(1.0);
 }

@@ -118,14 +118,22 @@ impl Tree<'_> {
         self.coupling().is_some()
     }
 
+    /// v̄ with the dependent speeds that the others make, in place of the argument's.
+    pub(super) fn completed_speeds(&self) -> Vec<Sym> {
+        let own = |speed| Sym::input(Argument::Speeds, speed);
+        match self.coupling() {
+            None => (0..self.model.sizes()[2]).map(own).collect(),
+            Some(coupling) => {
+                let independent = coupling.independent.iter();
+                coupling.expand(&independent.map(|&speed| own(speed)).collect::<Vec<_>>())
+            }
+        }
+    }
+
     /// Whether the joint of each independent speed is driven.
     fn driven(&self, coupling: &Coupling) -> Vec<bool> {
-        let is_driven = |speed: &usize| {
-            let bodies = self.bodies.iter().zip(&self.model.bodies);
-            let mut driven = bodies.filter(|(_, body)| body.driven);
-            driven.any(|(placed, _)| placed.share.speeds.contains(speed))
-        };
-        coupling.independent.iter().map(is_driven).collect()
+        let independent = coupling.independent.iter();
+        independent.map(|&speed| self.is_driven(speed)).collect()
     }
 
     /// `S̄ᵀ M S̄`.

@@ -1,7 +1,7 @@
 //! What springs and rotors at joints exert.
 
 use super::{Tree, number};
-use crate::scene::graph::{Argument, Sym, section};
+use crate::scene::graph::{Sym, section};
 use crate::scene::joint::Joint;
 use crate::scene::spatial::{Mat3, Twist, Vec3, Wrench, dot, product};
 use hamel::elements::{JointSpring, RotationSpring};
@@ -44,7 +44,7 @@ impl Tree<'_> {
         let turned = elements.rotation_springs.iter().map(|spring| {
             section(number(spring.body), "spring");
             let back = spring.rest.transpose().map(Sym::from);
-            let (_, joint) = self.joint(spring.body);
+            let joint = self.joint_at(spring.body, &[]);
             // (3 − tr R)/2 loses digits near rest; ¼ |R − 1|² is the same and keeps them.
             let away = product(&joint.rotation(), &back) - Mat3::identity();
             let squares = away.iter().map(|&entry| entry * entry);
@@ -59,7 +59,7 @@ impl Tree<'_> {
 
     /// ϕ of a spring and Kϕ.
     fn stretch(&self, spring: &JointSpring) -> Stretch<'_> {
-        let (q, _) = self.joint(spring.body);
+        let q = self.coordinates(spring.body);
         let body = &self.model.bodies[spring.body];
         let rest: Vec<Sym> = spring.rest.iter().copied().map(Sym::from).collect();
         let rest = Joint::new(&body.joint, &body.parameters, &rest, &[]);
@@ -71,7 +71,7 @@ impl Tree<'_> {
 
     /// `τ = −S₀⁻ᵀ D⁻ᵀ K ϕ`.
     fn joint_spring(&self, index: usize, spring: &JointSpring) -> Vec<Sym> {
-        let (_, joint) = self.joint(index);
+        let joint = self.joint_at(index, &[]);
         let Stretch { rest, phi, load } = self.stretch(spring);
         let rates = joint.velocity_map_inverse();
         let effort = |column: &Vec<Sym>| {
@@ -87,7 +87,7 @@ impl Tree<'_> {
 
     /// `−k vee(½(R − Rᵀ))` on the rotation R from rest, by X or by X^c, whichever depends less on the configuration.
     fn rotation_spring(&self, index: usize, spring: &RotationSpring) -> Vec<Sym> {
-        let (_, joint) = self.joint(index);
+        let joint = self.joint_at(index, &[]);
         let rotation = joint.rotation();
         let back = spring.rest.transpose().map(Sym::from);
         let (parent, child) = (joint.freedoms_in_parent(), joint.freedoms());
@@ -118,28 +118,15 @@ impl Tree<'_> {
         let armature = &self.model.bodies[index].armature;
         let momenta = armature.iter().zip(speeds);
         let momenta: Vec<Sym> = momenta.map(|(&a, &v)| Sym::from(a) * v).collect();
-        let (_, joint) = self.joint(index);
+        let joint = self.joint_at(index, &[]);
         let force = |row: &Vec<Sym>| row.iter().zip(&momenta).map(|(&g, &p)| g * p).sum();
         joint.gamma(speeds).iter().map(force).collect()
     }
 
     /// `Ẋ̄ᵀ h` of a body's joint, one a speed.
     pub(super) fn bias_momentum(&self, index: usize, momentum: &Wrench) -> Vec<Sym> {
-        let body = &self.model.bodies[index];
-        let (q, _) = self.joint(index);
         let speeds = &self.bodies[index].speeds;
-        Joint::new(&body.joint, &body.parameters, &q, speeds).bias_momentum(momentum)
-    }
-
-    /// The Q of a body's joint, and the joint there.
-    fn joint(&self, index: usize) -> (Vec<Sym>, Joint<'_>) {
-        let body = &self.model.bodies[index];
-        let places = self.bodies[index].share.configuration.clone();
-        let q: Vec<Sym> = places
-            .map(|place| Sym::input(Argument::Configuration, place))
-            .collect();
-        let joint = Joint::new(&body.joint, &body.parameters, &q, &[]);
-        (q, joint)
+        self.joint_at(index, speeds).bias_momentum(momentum)
     }
 }
 

@@ -154,7 +154,7 @@ impl Tree<'_> {
         let mut wrenches = self.loads();
         if let Some(coupling) = coupling {
             for (body, weighted) in self.coupling_wrenches(coupling, &self.tree_momenta()) {
-                wrenches[body] = wrenches[body].plus(&bracket_dual(&twists[body], &weighted));
+                wrenches[body] = wrenches[body].plus(&twists[body].bracket_dual(&weighted));
                 momenta[body] = momenta[body].plus(&weighted.times(Sym::Number(-1.0)));
             }
         }
@@ -162,7 +162,7 @@ impl Tree<'_> {
         for (index, body) in self.bodies.iter().enumerate().rev() {
             let efforts = self.efforts(index, Some(Argument::Efforts));
             section(number(index), "momentum rate");
-            let turned = wrenches[index].plus(&bracket_dual(&twists[index], &momenta[index]));
+            let turned = wrenches[index].plus(&twists[index].bracket_dual(&momenta[index]));
             let moved = self.bias_momentum(index, &momenta[index]);
             for (j, place) in body.share.speeds.clone().enumerate() {
                 rates[place] = efforts[j] + body.columns[j].dot(&turned) + moved[j];
@@ -196,13 +196,5 @@ impl Tree<'_> {
             down.push(gravity);
         }
         loads
-    }
-}
-
-/// `ad_Vᵀ h`.
-fn bracket_dual(twist: &Twist, momentum: &Wrench) -> Wrench {
-    Wrench {
-        moment: -cross(&twist.angular, &momentum.moment) - cross(&twist.linear, &momentum.force),
-        force: -cross(&twist.angular, &momentum.force),
     }
 }

@@ -7,12 +7,15 @@
 pub mod articulated;
 mod composite;
 mod coupling;
+mod derivatives;
 mod elements;
 mod energy;
 mod external;
+mod forward_derivatives;
 mod kinematics;
 mod newton_euler;
 mod solve;
+mod variation;
 
 pub use articulated::Bias;
 
@@ -76,6 +79,21 @@ impl<'a> Tree<'a> {
             links,
             bodies,
         }
+    }
+
+    /// The Q of a body's joint.
+    fn coordinates(&self, index: usize) -> Vec<Sym> {
+        let places = self.bodies[index].share.configuration.clone();
+        places
+            .map(|place| Sym::input(Argument::Configuration, place))
+            .collect()
+    }
+
+    /// A body's joint at its Q and at some v̄ of it, empty for kernels that do not read it.
+    fn joint_at(&self, index: usize, speeds: &[Sym]) -> Joint<'_> {
+        let body = &self.model.bodies[index];
+        let q = self.coordinates(index);
+        Joint::new(&body.joint, &body.parameters, &q, speeds)
     }
 
     /// Acceleration of the world that stands for gravity.
@@ -228,6 +246,12 @@ fn placed(body: &Body, link: &Link, speeds: &[Sym], share: Share) -> Placed {
 /// A vector from the parent's axes to the child's.
 fn to_child(steps: &[Step], a: &Vec3) -> Vec3 {
     steps.iter().fold(*a, |a, step| step.to_child(&a))
+}
+
+/// A vector from the child's axes to the parent's.
+fn to_parent(steps: &[Step], a: &Vec3) -> Vec3 {
+    let steps = steps.iter().rev();
+    steps.fold(*a, |a, step| step.to_parent(&a))
 }
 
 /// A wrench from child to parent.

@@ -37,6 +37,14 @@ impl Spin {
         apply(&self.matrix, point)
     }
 
+    /// V̇ of a body whose origin moves at `v` and is accelerated by `a`: what is left of it without `ω × v`.
+    pub fn rate(&self, a: &Vec3, v: &Vec3) -> Twist {
+        Twist {
+            angular: self.alpha,
+            linear: a - cross(&self.omega, v),
+        }
+    }
+
     /// What it takes to move a body so, with its origin accelerated by `a`.
     pub fn wrench(&self, inertia: &Rigid, a: &Vec3) -> Wrench {
         let gyroscopic = cross(&self.omega, &apply(&inertia.second, &self.omega));
@@ -125,7 +133,7 @@ impl Tree<'_> {
     }
 
     /// τ̄ from the wrench of each body.
-    fn efforts_of(&self, mut wrenches: Vec<Wrench>, rates: Option<&[Sym]>) -> Vec<Sym> {
+    pub(super) fn efforts_of(&self, mut wrenches: Vec<Wrench>, rates: Option<&[Sym]>) -> Vec<Sym> {
         let mut efforts = vec![Sym::zero(); self.model.sizes()[2]];
         let mut seen: Vec<Vec<Wrench>> = self.bodies.iter().map(|_| vec![]).collect();
         for (index, body) in self.bodies.iter().enumerate().rev() {

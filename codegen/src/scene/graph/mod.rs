@@ -6,9 +6,11 @@
 
 mod count;
 pub mod known;
+mod slope;
 mod sym;
 
 pub use count::Operations;
+pub use slope::Slopes;
 pub use sym::{Sym, atan2, call, primitive, sin_cos};
 
 use crate::derived::Primitive;

@@ -86,7 +86,7 @@ fn value(graph: &mut Graph, sym: Sym) -> Value {
     }
 }
 
-fn make(operation: Operation) -> Sym {
+pub(super) fn make(operation: Operation) -> Sym {
     CURRENT.with_borrow_mut(|graph| {
         Sym::Node(Value {
             node: graph.node(operation),

@@ -1,8 +1,10 @@
 //! Vectors, placements and inertias of the graph, as few operations as their structure allows.
 
+mod coriolis;
 mod inertia;
 mod step;
 
+pub use coriolis::Coriolis;
 pub use inertia::{Articulated, Rigid};
 pub use step::{Step, simplified};
 
@@ -109,6 +111,23 @@ impl Twist {
     /// Power of a wrench on it.
     pub fn dot(&self, wrench: &Wrench) -> Sym {
         dot(&self.angular, &wrench.moment) + dot(&self.linear, &wrench.force)
+    }
+
+    /// `ad_V U`.
+    #[must_use]
+    pub fn bracket(&self, other: &Self) -> Self {
+        Self {
+            angular: cross(&self.angular, &other.angular),
+            linear: cross(&self.angular, &other.linear) + cross(&self.linear, &other.angular),
+        }
+    }
+
+    /// `ad_Vᵀ h`.
+    pub fn bracket_dual(&self, momentum: &Wrench) -> Wrench {
+        Wrench {
+            moment: -cross(&self.angular, &momentum.moment) - cross(&self.linear, &momentum.force),
+            force: -cross(&self.angular, &momentum.force),
+        }
     }
 
     /// The one entry that is not 0, if it is 1.

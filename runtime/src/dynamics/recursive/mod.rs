@@ -323,4 +323,24 @@ impl Dynamics for Recursive {
         self.forces = speeds;
         energy
     }
+
+    fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError> {
+        Self::forward_dynamics_derivatives(self, q, speeds, efforts, out)
+    }
+
+    fn hamiltonian_derivatives(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &[f64],
+        out: &mut HamiltonianDerivatives,
+    ) -> Result<(), DynamicsError> {
+        Self::hamiltonian_derivatives(self, q, momenta, efforts, out)
+    }
 }

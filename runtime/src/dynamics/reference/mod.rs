@@ -13,7 +13,7 @@ mod tree;
 
 pub use expansion::Expansion;
 
-use super::{Dynamics, DynamicsError};
+use super::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive};
 use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
 use alloc::sync::Arc;
 use alloc::vec;
@@ -203,5 +203,27 @@ impl Dynamics for Reference {
         let elements = ElementForces::new(&self.mechanism, &expansion, q, whole.as_slice())?;
         let kinetic = 0.5 * reduced.dot(&(expansion.reduced_mass_matrix() * &reduced));
         Ok(kinetic + expansion.potential + elements.energy)
+    }
+
+    fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError> {
+        Recursive::new(Arc::clone(&self.mechanism))
+            .forward_dynamics_derivatives(q, speeds, efforts, out)
+    }
+
+    fn hamiltonian_derivatives(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &[f64],
+        out: &mut HamiltonianDerivatives,
+    ) -> Result<(), DynamicsError> {
+        Recursive::new(Arc::clone(&self.mechanism))
+            .hamiltonian_derivatives(q, momenta, efforts, out)
     }
 }

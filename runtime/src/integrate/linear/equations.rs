@@ -1,7 +1,7 @@
 //! The equations of motion of one form in a linearised step.
 
 use crate::dynamics::{
-    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive, Sensitivity,
+    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Sensitivity,
 };
 use crate::integrate::Form;
 use crate::integrate::flow::Rates;
@@ -38,7 +38,7 @@ impl Equations {
     /// v̄ and ẏ at (q, y, τ), and the derivatives for [`Equations::differentiate`].
     pub(in crate::integrate) fn evaluate(
         &mut self,
-        dynamics: &mut Recursive,
+        dynamics: &mut dyn Dynamics,
         (q, y, efforts): (&[f64], &[f64], &[f64]),
         rates: &mut Rates,
     ) -> Result<(), DynamicsError> {

@@ -2,7 +2,9 @@
 //!
 //! In the body's frame `V = X^c v` and `h = G V`; then `M v̇ = τ − X^cᵀ(G c − ad_Vᵀ h)` and `ṗ = τ + X^cᵀ ad_Vᵀ h + Ẋ^cᵀ h`.
 
-use hamel::dynamics::{Dynamics, DynamicsError};
+use hamel::dynamics::{
+    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive,
+};
 use hamel::mechanism::{Body, Mechanism};
 use hamel::nalgebra::{Cholesky, SMatrix, SVector, Vector6};
 use hamel::spatial::bracket_dual_product;
@@ -137,5 +139,27 @@ impl<const K: usize> Dynamics for OneBody<K> {
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
         let p = vector::<K>(momenta);
         Ok(0.5 * p.dot(&self.terms(q).factors.solve(&p)))
+    }
+
+    fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError> {
+        Recursive::new(Arc::clone(&self.mechanism))
+            .forward_dynamics_derivatives(q, speeds, efforts, out)
+    }
+
+    fn hamiltonian_derivatives(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &[f64],
+        out: &mut HamiltonianDerivatives,
+    ) -> Result<(), DynamicsError> {
+        Recursive::new(Arc::clone(&self.mechanism))
+            .hamiltonian_derivatives(q, momenta, efforts, out)
     }
 }

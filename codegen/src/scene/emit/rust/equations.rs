@@ -28,6 +28,11 @@ pub fn equations(model: &Model, functions: &[Function], lanes: bool) -> TokenStr
     let one = |kind| some(of(kind).map(one_state));
     let (forward, inverse) = (one(Kind::ForwardDynamics), one(Kind::InverseDynamics));
     // A row without numbers is no row.
+    let rows = |kind| some(of(kind).map(rows_of_state));
+    let (forward_slopes, inverse_slopes) = (
+        rows(Kind::ForwardDerivatives),
+        rows(Kind::InverseDerivatives),
+    );
     let lanes = lanes && model.sizes().iter().all(|&size| size > 0);
     let many = |kind| some(of(kind).filter(|_| lanes).map(many_states));
     let (forward_lanes, inverse_lanes) = (many(Kind::ForwardDynamics), many(Kind::InverseDynamics));
@@ -45,6 +50,8 @@ pub fn equations(model: &Model, functions: &[Function], lanes: bool) -> TokenStr
             speeds: #speeds,
             forward_dynamics: #forward,
             inverse_dynamics: #inverse,
+            forward_dynamics_derivatives: #forward_slopes,
+            inverse_dynamics_derivatives: #inverse_slopes,
             in_lanes: ::hamel::compiled::InLanes {
                 forward_dynamics: #forward_lanes,
                 inverse_dynamics: #inverse_lanes,
@@ -64,6 +71,25 @@ fn one_state(function: &Function) -> TokenStream {
                 (q.first_chunk(), v.first_chunk(), u.first_chunk(), results.first_chunk_mut())
             {
                 *results = #name::<f64>(q, v, u);
+            }
+        }
+    }
+}
+
+/// The same with results in rows, one after the other.
+fn rows_of_state(function: &Function) -> TokenStream {
+    let name = Ident::new(function.name, Span::call_site());
+    let count = Literal::usize_unsuffixed(function.outputs.len());
+    let entries = match function.columns {
+        1 => quote! { as_slice },
+        _ => quote! { as_flattened },
+    };
+    quote! {
+        |q, v, u, results| {
+            if let (Some(q), Some(v), Some(u), Some(results)) =
+                (q.first_chunk(), v.first_chunk(), u.first_chunk(), results.get_mut(..#count))
+            {
+                results.copy_from_slice(#name::<f64>(q, v, u).#entries());
             }
         }
     }

@@ -93,6 +93,18 @@ impl ForwardDerivatives {
         }
     }
 
+    /// How many numbers a compiled module writes for the derivatives of `mechanism` ([`Equations`](crate::compiled::Equations::forward_dynamics_derivatives)): for each speed
+    /// the rows of all matrices, and its rate.
+    pub fn entries(mechanism: &Mechanism) -> usize {
+        let layout = mechanism.layout();
+        let state = layout.freedoms + layout.speeds;
+        let completed = match mechanism.constraints() {
+            [] => 0,
+            _ => state,
+        };
+        layout.speeds * (state + layout.freedoms + 1 + completed)
+    }
+
     /// v̄̇.
     pub fn rates(&self) -> &[f64] {
         &self.rates
@@ -118,6 +130,37 @@ impl ForwardDerivatives {
     pub fn completed_speeds(&self) -> Option<[&Sensitivity; 2]> {
         let coupled = self.coupled.as_ref()?;
         Some(coupled.completed.each_ref())
+    }
+
+    /// Takes all of them over from rows that hold them side by side, one a speed: `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄`, `∂v̄̇/∂τ`, v̄̇, and then those of
+    /// [`ForwardDerivatives::completed_speeds`], where there are any.
+    ///
+    /// # Errors
+    /// Rows for another mechanism.
+    pub(crate) fn read(&mut self, rows: &[f64]) -> Result<(), DynamicsError> {
+        let own = [&self.by_local, &self.by_speeds, &self.by_efforts];
+        let completed = self.completed_speeds().into_iter().flatten();
+        let widths = own.into_iter().chain(completed).map(Sensitivity::columns);
+        let width = 1 + widths.sum::<usize>();
+        if rows.len() != self.rates.len() * width {
+            return Err(DynamicsError::ForeignResults);
+        }
+        for (i, row) in rows.chunks_exact(width).enumerate() {
+            let mut rest = row;
+            for part in [
+                &mut self.by_local,
+                &mut self.by_speeds,
+                &mut self.by_efforts,
+            ] {
+                rest = part.read_row(i, rest);
+            }
+            self.rates[i] = rest[0];
+            rest = &rest[1..];
+            for part in self.coupled.iter_mut().flat_map(|own| &mut own.completed) {
+                rest = part.read_row(i, rest);
+            }
+        }
+        Ok(())
     }
 }
 

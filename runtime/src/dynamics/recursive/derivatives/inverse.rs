@@ -81,6 +81,22 @@ impl InverseDerivatives {
     pub const fn by_speeds(&self) -> &Sensitivity {
         &self.by_speeds
     }
+
+    /// Takes both over from rows that hold them side by side, one a speed.
+    ///
+    /// # Errors
+    /// Rows for another mechanism.
+    pub(crate) fn read(&mut self, rows: &[f64]) -> Result<(), DynamicsError> {
+        let width = self.by_local.columns() + self.by_speeds.columns();
+        if rows.len() != self.by_local.rows() * width {
+            return Err(DynamicsError::ForeignResults);
+        }
+        for (i, row) in rows.chunks_exact(width.max(1)).enumerate() {
+            let rest = self.by_local.read_row(i, row);
+            self.by_speeds.read_row(i, rest);
+        }
+        Ok(())
+    }
 }
 
 impl Recursive {

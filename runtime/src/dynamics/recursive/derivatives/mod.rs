@@ -112,6 +112,13 @@ impl Sensitivity {
         &self.entries[row * self.columns..(row + 1) * self.columns]
     }
 
+    /// The first of `rest` as a row; what is left of it.
+    fn read_row<'a>(&mut self, row: usize, rest: &'a [f64]) -> &'a [f64] {
+        let (own, rest) = rest.split_at(self.columns);
+        self.row_mut(row).copy_from_slice(own);
+        rest
+    }
+
     fn copy_column(&self, column: usize, into: &mut [f64]) {
         for (row, entry) in into.iter_mut().enumerate() {
             *entry = self.entry(row, column);

@@ -10,7 +10,7 @@
 mod residual;
 
 use super::Recursive;
-use crate::dynamics::{Dynamics, DynamicsError};
+use crate::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives};
 use crate::mechanism::Mechanism;
 use crate::scalar::Extended;
 use crate::spatial::shift_wrench;
@@ -229,5 +229,26 @@ impl Dynamics for Refined {
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
         self.tree.hamiltonian(q, momenta)
+    }
+
+    fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError> {
+        self.tree
+            .forward_dynamics_derivatives(q, speeds, efforts, out)
+    }
+
+    fn hamiltonian_derivatives(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &[f64],
+        out: &mut HamiltonianDerivatives,
+    ) -> Result<(), DynamicsError> {
+        self.tree.hamiltonian_derivatives(q, momenta, efforts, out)
     }
 }
