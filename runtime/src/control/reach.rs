@@ -6,7 +6,7 @@
 
 use super::scales;
 use crate::eigen::eigenvalues;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector};
 
 /// Regularity of `A − μ` that passes for none, of rows and columns of norm 1: some hundred roundings, times 1e4 for the conditioning of coordinates.
 const SINGULAR: f64 = 1e-10;
@@ -70,8 +70,8 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
 fn lasts(a: &DMatrix<f64>, value: Complex<f64>, time: Time) -> bool {
     let nearest = match time {
         Time::Continuous if value.re < 0.0 => Complex::new(0.0, value.im),
-        Time::Discrete if value.norm() == 0.0 => return false,
-        Time::Discrete if value.norm() < 1.0 => value / value.norm(),
+        Time::Discrete if value.modulus() == 0.0 => return false,
+        Time::Discrete if value.modulus() < 1.0 => value.unscale(value.modulus()),
         _ => return true,
     };
     let none = DMatrix::zeros(a.nrows(), 0);
@@ -117,6 +117,6 @@ fn faint((whole, sizes): (DMatrix<Complex<f64>>, DVector<f64>), least: f64) -> O
         .min_by(|left, right| left.1.total_cmp(right.1))
         .filter(|(_, found)| **found <= least)?;
     let direction = found.u?;
-    let part = |state: usize| direction[(state, place)].norm() / sizes[state];
+    let part = |state: usize| direction[(state, place)].modulus() / sizes[state];
     (0..sizes.len()).max_by(|&i, &j| part(i).total_cmp(&part(j)))
 }

@@ -12,6 +12,7 @@ use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use nalgebra::{Complex, DMatrix, DVector};
+use num_traits::Float;
 
 /// One motion `e^{λt}` of the linearised equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +26,7 @@ pub struct Mode {
 impl Mode {
     /// |λ|, 1/s.
     pub fn rate(&self) -> f64 {
-        self.growth.hypot(self.frequency)
+        Float::hypot(self.growth, self.frequency)
     }
 
     /// Whether it fades within half a radian of its oscillation or so, and with it all that a step can get wrong of its phase.
