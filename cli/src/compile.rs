@@ -11,9 +11,11 @@ use std::path::{Path, PathBuf};
 const EXAMPLES: &str = "\
 Examples:
   hamel compile panda.urdf -o panda.rs
-      writes forward and inverse dynamics, their derivatives, mass matrix, the port-Hamiltonian form, energies and poses as functions
+      writes forward and inverse dynamics, mass matrix, the port-Hamiltonian form, energies and poses as functions
   hamel compile anymal.urdf --floating-base --function forward-dynamics -o anymal.rs
       one function alone
+  hamel compile panda.urdf --function forward-dynamics --function forward-dynamics-derivatives -o panda.rs
+      what implicit methods of integration and regulators take
   hamel compile panda.urdf -o panda.c
       the same in C99, for controllers that are not in Rust: panda.c and panda.h, whose functions begin with panda_
   hamel compile scenes/plate_cart_arm.toml --explain
@@ -41,7 +43,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Write this function; may be given several times [default: all that are not too long]
+    /// Write this function; may be given several times [default: all but derivatives, those that are not too long]
     #[arg(long = "function", value_name = "NAME")]
     pub functions: Vec<FunctionName>,
 
@@ -124,7 +126,11 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let build = build(args, &asked);
     if args.explain {
         let model = build.model().map_err(refused)?;
-        let kinds: &[Kind] = if asked.is_empty() { &Kind::ALL } else { &asked };
+        let kinds: &[Kind] = if asked.is_empty() {
+            &Kind::BY_DEFAULT
+        } else {
+            &asked
+        };
         return output::print(&explain(&model, kinds));
     }
     let label = args.scene.file_name().unwrap_or_default().to_string_lossy();

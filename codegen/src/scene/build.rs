@@ -110,7 +110,8 @@ impl std::fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Compiles the scene file (TOML) or robot (URDF) at `path`, relative to the crate's manifest, with all functions that are not too long.
+/// Compiles the scene file (TOML) or robot (URDF) at `path`, relative to the crate's manifest, with the functions of
+/// [`Kind::BY_DEFAULT`] that are not too long.
 pub fn scene(path: impl Into<PathBuf>) -> Build {
     Build {
         scene: path.into(),
@@ -156,7 +157,7 @@ impl Build {
         self
     }
 
-    /// The functions to be written; without this all that are not too long.
+    /// The functions to be written; without this those of [`Kind::BY_DEFAULT`] that are not too long.
     #[must_use]
     pub fn functions(mut self, functions: impl IntoIterator<Item = Kind>) -> Self {
         self.functions = Some(functions.into_iter().collect());
@@ -218,7 +219,7 @@ impl Build {
     /// Those of [`Build::compile`].
     pub fn module(&self, label: &str) -> Result<Module, Error> {
         let model = self.model()?;
-        let kinds = self.functions.as_deref().unwrap_or(&Kind::ALL);
+        let kinds = self.functions.as_deref().unwrap_or(&Kind::BY_DEFAULT);
         let (mut functions, mut left_out) = (vec![], vec![]);
         for &kind in kinds {
             match functions::compile(&model, kind, self.loops(kind)) {

@@ -53,6 +53,20 @@ impl Kind {
         Self::InverseDerivatives,
     ];
 
+    /// Those of a module for which none are named: all but the derivatives, which are longer than all others together.
+    pub const BY_DEFAULT: [Self; 10] = [
+        Self::ForwardDynamics,
+        Self::InverseDynamics,
+        Self::MassMatrix,
+        Self::BiasForces,
+        Self::MomentumRates,
+        Self::Momenta,
+        Self::Speeds,
+        Self::Hamiltonian,
+        Self::Energies,
+        Self::Poses,
+    ];
+
     /// Its name, in emitted code as well.
     pub const fn name(self) -> &'static str {
         match self {

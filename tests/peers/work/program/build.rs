@@ -17,12 +17,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         } else {
             scenes.join(format!("{name}.toml"))
         };
-        let build = hamel_codegen::scene(scene)
-            .library(hamel_joints::specs())
-            .functions([Kind::ForwardDynamics]);
-        match build.module(&format!("{name}.toml")) {
-            Ok(module) => {
-                std::fs::write(out.join(format!("{name}.rs")), module.text)?;
+        match module(&scene, &name) {
+            Ok(text) => {
+                std::fs::write(out.join(format!("{name}.rs")), text)?;
                 let file = format!("concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")");
                 writeln!(modules, "mod {name} {{ include!({file}); }}")?;
                 writeln!(arms, "        {name:?} => Some(&{name}::EQUATIONS),")?;
@@ -34,6 +31,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let list = format!("{modules}\n{find}{arms}        _ => None,\n    }}\n}}\n");
     std::fs::write(out.join("scenes.rs"), list)?;
     Ok(())
+}
+
+/// The most speeds for which implicit methods take derivatives from the equations, and not from the tree.
+const SMALL: usize = 15;
+
+/// The module of one scene, with derivatives where methods take them.
+fn module(scene: &Path, name: &str) -> Result<String, hamel_codegen::scene::Error> {
+    let build = hamel_codegen::scene(scene).library(hamel_joints::specs());
+    let [_, _, speeds] = build.model()?.sizes();
+    let mut kinds = vec![Kind::ForwardDynamics];
+    if speeds <= SMALL {
+        kinds.push(Kind::ForwardDerivatives);
+    }
+    let module = build.functions(kinds).module(&format!("{name}.toml"))?;
+    Ok(module.text)
 }
 
 /// Scenes that have a reference.
