@@ -118,14 +118,74 @@ impl Compiled {
             forward(&q, &speeds, &efforts, &mut found);
             self.close(&found, &expected)?;
         }
-        if let Some(momentum_rates) = self.equations.momentum_rates {
-            let mut momenta = vec![0.0; speeds.len()];
-            self.tree.momenta(&q, &speeds, &mut momenta)?;
-            let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&efforts);
-            self.tree
-                .momentum_rates(&q, &momenta, &mut given, &mut speeds, &mut expected)?;
-            momentum_rates(&q, &momenta, &efforts, &mut speeds, &mut found);
+        self.compare_derivatives(&q, &speeds, &efforts)?;
+        self.compare_momenta(&q, &mut speeds, &efforts)
+    }
+
+    /// The same of the port-Hamiltonian form.
+    fn compare_momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &mut [f64],
+        efforts: &[f64],
+    ) -> Result<(), CompiledError> {
+        let Equations {
+            momenta: by_speeds,
+            speeds_from_momenta: by_momenta,
+            momentum_rates,
+            ..
+        } = *self.equations;
+        let [mut momenta, mut found, mut expected] = [(); 3].map(|()| vec![0.0; speeds.len()]);
+        self.tree.momenta(q, speeds, &mut momenta)?;
+        if let Some(map) = by_speeds {
+            map(q, speeds, &mut found);
+            self.close(&found, &momenta)?;
+        }
+        if let Some(map) = by_momenta {
+            self.tree.speeds(q, &momenta, &mut expected)?;
+            map(q, &momenta, &mut found);
             self.close(&found, &expected)?;
+        }
+        if let Some(momentum_rates) = momentum_rates {
+            let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
+            self.tree
+                .momentum_rates(q, &momenta, &mut given, speeds, &mut expected)?;
+            momentum_rates(q, &momenta, efforts, speeds, &mut found);
+            self.close(&found, &expected)?;
+        }
+        Ok(())
+    }
+
+    /// The same of the derivatives: of forward dynamics the rates that come with them, of inverse dynamics how efforts change as all of ϕ and v̄ grow alike.
+    fn compare_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        inputs: &[f64],
+    ) -> Result<(), CompiledError> {
+        let mechanism = Arc::clone(self.tree.mechanism());
+        if self.equations.forward_dynamics_derivatives.is_some() {
+            let mut found = ForwardDerivatives::new(&mechanism);
+            let mut expected = vec![0.0; speeds.len()];
+            self.tree.accelerations(q, speeds, inputs, &mut expected)?;
+            self.forward_dynamics_derivatives(q, speeds, inputs, &mut found)?;
+            self.close(found.rates(), &expected)?;
+        }
+        if self.equations.inverse_dynamics_derivatives.is_some() {
+            let [mut found, mut expected] = [(); 2].map(|()| InverseDerivatives::new(&mechanism));
+            self.tree
+                .inverse_dynamics_derivatives(q, speeds, speeds, &mut expected)?;
+            self.inverse_dynamics_derivatives(q, speeds, speeds, &mut found)?;
+            // Beside the efforts themselves, so that what is 0 but for rounding is nothing.
+            let mut efforts = vec![0.0; speeds.len()];
+            let given = self.tree.inverse_dynamics(q, speeds, speeds, &mut efforts);
+            given.map_err(DynamicsError::from)?;
+            let changed = |by: &InverseDerivatives| -> vec::Vec<f64> {
+                let rows = efforts.iter().enumerate();
+                rows.map(|(row, effort)| effort + by.sum_of_row(row))
+                    .collect()
+            };
+            self.close(&changed(&found), &changed(&expected))?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! MPC: each period an optimum over a short horizon, with inputs within limits.
 
 mod program;
+mod stability;
 
 use super::error::{positive, require, size};
 use super::reach::Time;
@@ -8,7 +9,7 @@ use super::regulator::{Equilibrium, Weights};
 use super::riccati::{self, Optimum, Weighting};
 use super::state::check_sizes;
 use super::{ControlError, Controller, DEVIATIONS, Measure};
-use crate::integrate::{Form, LinearStep, Spectrum, State, Tableau};
+use crate::integrate::{Form, LinearStep, Spectrum, Tableau};
 use crate::mechanism::Mechanism;
 use alloc::sync::Arc;
 use core::fmt;
@@ -20,9 +21,6 @@ const FIRST_PROGRAMS: usize = 30;
 
 /// How often a change that makes the plan worse is halved: a program sees motions to first order.
 const MOST_HALVINGS: i32 = 8;
-
-/// The product of step and rate up to which Kutta's method of order 4 is stable: on the real axis; on the imaginary one it is 2.83.
-const STABLE: f64 = 2.785;
 
 /// Holds an equilibrium with efforts within limits, by the optimum over a horizon of some periods, found anew in each period.
 ///
@@ -109,7 +107,7 @@ impl PredictiveRegulator {
         let (a, b) = equilibrium.linearized()?;
         riccati::solvable(&a, &b, &state, Time::Continuous)
             .map_err(|cause| equilibrium.locate(cause))?;
-        foreseeable(&equilibrium, period)?;
+        foreseeable(&equilibrium, &a, period)?;
         let mut step = LinearStep::new(mechanism, Form::Lagrangian, &Tableau::RK4);
         let still = vec![0.0; mechanism.layout().speeds];
         step.linearize(equilibrium.goal(), &still, equilibrium.efforts(), period)?;
@@ -304,26 +302,25 @@ impl PredictiveRegulator {
     }
 }
 
-/// Whether steps of a period are stable for all that does not grow by itself; mechanisms that are too large to look are believed.
-fn foreseeable(equilibrium: &Equilibrium, period: f64) -> Result<(), ControlError> {
-    let mechanism = equilibrium.mechanism();
-    let rest = State {
-        time: 0.0,
-        configuration: equilibrium.goal().to_vec(),
-        speeds: vec![0.0; mechanism.layout().speeds],
-    };
-    let Ok(Some(spectrum)) = Spectrum::at(mechanism, &rest) else {
+/// Whether steps of a period are stable for all motions of `ẋ = a x` that do not grow by themselves; where these cannot be found it is believed.
+fn foreseeable(
+    equilibrium: &Equilibrium,
+    a: &DMatrix<f64>,
+    period: f64,
+) -> Result<(), ControlError> {
+    let Some(spectrum) = Spectrum::of(equilibrium.mechanism(), a.clone()) else {
         return Ok(());
     };
-    let mut modes = spectrum.modes().iter();
-    match modes.find(|mode| !mode.is_growing()) {
-        Some(mode) if period * mode.rate() > STABLE => Err(ControlError::PeriodTooLong {
+    let modes = spectrum.modes().iter().filter(|mode| !mode.is_growing());
+    let mut limits = modes.map(|mode| (mode, stability::limit(mode)));
+    match limits.find(|(mode, limit)| period * mode.rate() > *limit) {
+        Some((mode, limit)) => Err(ControlError::PeriodTooLong {
             joint: spectrum.joint(mode).into(),
             period,
             rate: mode.rate(),
-            limit: STABLE,
+            limit,
         }),
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 

@@ -26,6 +26,9 @@ const IMPLICIT: f64 = 10.0;
 const ORDER_8: f64 = 3e-6;
 const ORDER_9: f64 = 1e-12;
 
+/// The most speeds for which the exponential method is tried: its first steps take a second or so there, and each that it saves costs as much as hundreds.
+const MOST_TRIED: usize = 32;
+
 /// What is asked of an integration.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
@@ -202,7 +205,13 @@ impl Wanted {
         if self.is_bound {
             return Err("followed, as the exponential method goes with no inputs, prescribed motions, coupled joints, dense output or events".into());
         }
-        let speeds = stiff.spectrum.speeds() as f64;
+        let speeds = stiff.spectrum.speeds();
+        if speeds > MOST_TRIED {
+            return Err(format!(
+                "followed, as the exponential method is for {MOST_TRIED} speeds at most, and there are {speeds}"
+            ));
+        }
+        let speeds = speeds as f64;
         // Functions of a matrix of 2n rows against n bodies.
         let work = IMPLICIT + 0.5 * speeds * speeds;
         let held = self.span * stiff.fastest.rate() / STABLE;

@@ -135,9 +135,11 @@ impl Phi {
             ..
         } = self;
         let last = COUNT - 1;
-        whole[last].fill(0.0);
+        work.fill(0.0);
         for group in (0..GROUPS).rev() {
-            fourth.mul_to(&whole[last], work);
+            if group + 1 < GROUPS {
+                fourth.mul_to(&whole[last], work);
+            }
             let first = last + 4 * group;
             for (term, power) in [&*matrix, square, third].into_iter().enumerate() {
                 let weight = 1.0 / factorial(first + term + 1);

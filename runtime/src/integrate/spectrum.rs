@@ -67,23 +67,26 @@ impl Spectrum {
             cause: Box::new(cause),
             near: Near(None),
         })?;
+        Ok(Self::of(mechanism, matrix))
+    }
+
+    /// The modes of `ẋ = matrix · x`, x = (ϕ, v̄) of `mechanism`. `None` where the eigenvalues cannot be found.
+    pub(crate) fn of(mechanism: &Arc<Mechanism>, matrix: DMatrix<f64>) -> Option<Self> {
         let mut balanced = matrix.clone();
-        let values = balance(&mut balanced).and_then(|_| eigenvalues(balanced));
-        Ok(values.map(|values| {
-            let mut modes: Vec<Mode> = values
-                .into_iter()
-                .map(|value| Mode {
-                    growth: value.re,
-                    frequency: value.im,
-                })
-                .collect();
-            modes.sort_by(|a, b| b.rate().total_cmp(&a.rate()));
-            Self {
-                mechanism: Arc::clone(mechanism),
-                matrix,
-                modes,
-            }
-        }))
+        let values = balance(&mut balanced).and_then(|_| eigenvalues(balanced))?;
+        let mut modes: Vec<Mode> = values
+            .into_iter()
+            .map(|value| Mode {
+                growth: value.re,
+                frequency: value.im,
+            })
+            .collect();
+        modes.sort_by(|a, b| b.rate().total_cmp(&a.rate()));
+        Some(Self {
+            mechanism: Arc::clone(mechanism),
+            matrix,
+            modes,
+        })
     }
 
     /// All modes, the fastest first; one for each pair of conjugates.

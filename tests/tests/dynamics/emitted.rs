@@ -267,9 +267,55 @@ fn another_mechanism_is_refused() {
 
     let text = std::fs::read_to_string(folder().join("../scenes/plate_cart_arm.toml"))
         .expect("a file of the project");
-    let heavier = text.replacen("mass = 12.0", "mass = 13.0", 1);
+    let heavier = text.replacen("mass = 1.7", "mass = 1.8", 1);
     let heavier = Scene::parse(&heavier, "heavier", &hamel_joints::registry());
     let heavier = heavier.unwrap_or_else(|errors| panic!("{errors}"));
-    let error = Compiled::new(heavier.mechanism, &module::EQUATIONS).expect_err("a mass differs");
-    assert!(matches!(error, CompiledError::Other { .. }), "{error}");
+    let all: [&'static Equations; 6] = [
+        &module::EQUATIONS,
+        &ONLY_FORWARD_DERIVATIVES,
+        &ONLY_INVERSE_DERIVATIVES,
+        &ONLY_MOMENTA,
+        &ONLY_SPEEDS,
+        &ONLY_MOMENTUM_RATES,
+    ];
+    for equations in all {
+        let own = Arc::clone(&scenes::load("plate_cart_arm").mechanism);
+        Compiled::new(own, equations).expect("its scene");
+        let error = Compiled::new(Arc::clone(&heavier.mechanism), equations);
+        let error = error.expect_err("a mass differs");
+        assert!(matches!(error, CompiledError::Other { .. }), "{error}");
+    }
 }
+
+/// A module that was compiled without any function.
+const NONE: Equations = Equations {
+    forward_dynamics: None,
+    inverse_dynamics: None,
+    momenta: None,
+    speeds_from_momenta: None,
+    momentum_rates: None,
+    hamiltonian: None,
+    forward_dynamics_derivatives: None,
+    inverse_dynamics_derivatives: None,
+    ..module::EQUATIONS
+};
+static ONLY_FORWARD_DERIVATIVES: Equations = Equations {
+    forward_dynamics_derivatives: module::EQUATIONS.forward_dynamics_derivatives,
+    ..NONE
+};
+static ONLY_INVERSE_DERIVATIVES: Equations = Equations {
+    inverse_dynamics_derivatives: module::EQUATIONS.inverse_dynamics_derivatives,
+    ..NONE
+};
+static ONLY_MOMENTA: Equations = Equations {
+    momenta: module::EQUATIONS.momenta,
+    ..NONE
+};
+static ONLY_SPEEDS: Equations = Equations {
+    speeds_from_momenta: module::EQUATIONS.speeds_from_momenta,
+    ..NONE
+};
+static ONLY_MOMENTUM_RATES: Equations = Equations {
+    momentum_rates: module::EQUATIONS.momentum_rates,
+    ..NONE
+};

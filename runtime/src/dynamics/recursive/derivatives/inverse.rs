@@ -82,6 +82,15 @@ impl InverseDerivatives {
         &self.by_speeds
     }
 
+    /// How one effort changes as all of ϕ and v̄ grow alike.
+    pub(crate) fn sum_of_row(&self, row: usize) -> f64 {
+        let of = |part: &Sensitivity| -> f64 {
+            let columns = 0..part.columns();
+            columns.map(|column| part.entry(row, column)).sum()
+        };
+        of(&self.by_local) + of(&self.by_speeds)
+    }
+
     /// Takes both over from rows that hold them side by side, one a speed.
     ///
     /// # Errors
