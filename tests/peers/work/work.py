@@ -143,7 +143,7 @@ def rounds(scene, chosen, count):
     least = {}
     for _ in range(count):
         for label, p in chosen.items():
-            again = Point(p.program, scene, p.method, p.value, max(1, min(20, int(0.02 / p.least))), 2 + 4 * p.least)
+            again = Point(p.program, scene, p.method, p.value, max(1, min(2000, int(0.02 / p.least))), 2 + 4 * p.least)
             least[label] = min(least.get(label, p.least), again.least if not again.failure else math.inf)
     return least
 
