@@ -76,6 +76,24 @@ fn what_fades_is_accepted_beside_any_stiffness() {
     }
 }
 
+/// The second joint has no input and creeps back to its rest, beside one that an input moves and nothing holds: that one's zeros are not of the creeping one.
+#[test]
+fn what_creeps_is_accepted_beside_what_is_free() {
+    let mut random = Random::new(35);
+    for damping in [3.0, 10.0, 1e3] {
+        for _ in 0..TRIES {
+            let linear = Linear {
+                mass: diagonal([1.0, 1.0]),
+                damping: diagonal([0.0, damping]),
+                stiffness: diagonal([0.0, 1.0]),
+                inputs: &[0],
+            };
+            let found = linear.optimum(&mut random);
+            assert!(found.is_ok(), "{damping}: {found:?}");
+        }
+    }
+}
+
 /// A pendulum upright, and on it another one of a part of its mass: any of the joints with an input reaches both motions.
 #[test]
 fn light_joints_reach_heavy_ones() {

@@ -15,6 +15,9 @@ const SINGULAR: f64 = 1e-10;
 /// scaled until both are alike.
 const FAINT: f64 = 2e-8;
 
+/// Part of the distance from μ to an eigenvalue within which another one is much nearer.
+const NEARER: f64 = 0.1;
+
 /// Sweeps that make norms of rows and columns alike, to a factor of two or so.
 const SWEEPS: usize = 8;
 
@@ -54,9 +57,11 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
     }
     // The same motions in states of like size: units of states and inputs must not decide.
     let (balanced, reach) = scales::balanced(a, b)?;
-    let values = eigenvalues(balanced.clone())?.into_iter();
-    let mut lasting = values.filter(|value| lasts(&balanced, *value, time));
-    lasting.find_map(|value| {
+    let values = eigenvalues(balanced.clone())?;
+    let mut lasting = values
+        .iter()
+        .filter(|value| lasts(&balanced, **value, &values, time));
+    lasting.find_map(|&value| {
         let state = faint(pencil(&balanced, value, &reach), FAINT)?;
         Some(Motion {
             state,
@@ -66,14 +71,22 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
 }
 
 /// Whether the motion of an eigenvalue does not fade, or might not but for rounding: whether `A − μ` is regular at the nearest μ that does not.
-/// Nearby eigenvalues are each far less certain than that, by the root of a rounding where two are one.
-fn lasts(a: &DMatrix<f64>, value: Complex<f64>, time: Time) -> bool {
+/// Nearby eigenvalues are each far less certain than that, by the root of a rounding where two are one; those into which rounding parts one that is double lie
+/// around it at like distances, so that one much nearer to μ tells of another motion.
+fn lasts(a: &DMatrix<f64>, value: Complex<f64>, all: &[Complex<f64>], time: Time) -> bool {
     let nearest = match time {
         Time::Continuous if value.re < 0.0 => Complex::new(0.0, value.im),
         Time::Discrete if value.modulus() == 0.0 => return false,
         Time::Discrete if value.modulus() < 1.0 => value.unscale(value.modulus()),
         _ => return true,
     };
+    let distance = (value - nearest).modulus();
+    if all
+        .iter()
+        .any(|other| (other - nearest).modulus() < NEARER * distance)
+    {
+        return false;
+    }
     let none = DMatrix::zeros(a.nrows(), 0);
     faint(pencil(a, nearest, &none), SINGULAR).is_some()
 }
