@@ -15,6 +15,7 @@ use hamel_tests::peers::Reference;
 use hamel_tests::{compiled, random, scenes};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -298,9 +299,8 @@ fn bare(case: random::Case) -> Point {
 #[test]
 fn random_trees_agree() {
     let kinds = random::library();
-    for case in random::cases(&kinds, 40, 200) {
-        bare(case).agrees();
-    }
+    let cases: Vec<random::Case> = random::cases(&kinds, 40, 200).collect();
+    cases.into_par_iter().for_each(|case| bare(case).agrees());
 }
 
 /// A random tree with elements of all kinds, of odd seeds with driven joints, of every third with constraints that couple joints.
@@ -329,9 +329,10 @@ fn with_elements(case: random::Case) -> Point {
 #[test]
 fn random_trees_with_elements_agree() {
     let kinds = random::library();
-    for case in random::cases(&kinds, 20, 100) {
-        with_elements(case).agrees();
-    }
+    let cases: Vec<random::Case> = random::cases(&kinds, 20, 100).collect();
+    cases
+        .into_par_iter()
+        .for_each(|case| with_elements(case).agrees());
 }
 
 fn flops(model: &Model, kind: Kind) -> usize {
