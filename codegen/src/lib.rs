@@ -26,4 +26,4 @@ pub mod spec;
 pub use build::{Build, BuildError, GENERATE_VARIABLE};
 pub use pipeline::{WORK_LIMIT, derive};
 #[cfg(feature = "scene")]
-pub use scene::scene;
+pub use scene::{scene, scene_of};

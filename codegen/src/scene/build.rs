@@ -40,10 +40,29 @@ impl Language {
     }
 }
 
+/// Where a scene is said.
+#[derive(Clone, Debug)]
+enum Source {
+    /// In a file.
+    File(PathBuf),
+    /// By the program itself, under a name.
+    Described(String, Box<SceneDescription>),
+}
+
+impl Source {
+    /// The file, or the name where there is none.
+    fn path(&self) -> &Path {
+        match self {
+            Self::File(path) => path,
+            Self::Described(name, _) => Path::new(name),
+        }
+    }
+}
+
 /// Compiles a scene in a build script.
 #[derive(Clone, Debug)]
 pub struct Build {
-    scene: PathBuf,
+    source: Source,
     name: Option<String>,
     language: Language,
     folders: Vec<PathBuf>,
@@ -113,19 +132,28 @@ impl std::error::Error for Error {}
 /// Compiles the scene file (TOML) or robot (URDF) at `path`, relative to the crate's manifest, with the functions of
 /// [`Kind::BY_DEFAULT`] that are not too long.
 pub fn scene(path: impl Into<PathBuf>) -> Build {
-    Build {
-        scene: path.into(),
-        name: None,
-        language: Language::default(),
-        folders: vec![],
-        texts: BTreeMap::new(),
-        functions: None,
-        floating_base: false,
-        lanes: false,
-    }
+    Build::new(Source::File(path.into()))
+}
+
+/// As [`scene`], with a scene that the program has in its memory, and a name for it.
+pub fn scene_of(name: impl Into<String>, description: SceneDescription) -> Build {
+    Build::new(Source::Described(name.into(), Box::new(description)))
 }
 
 impl Build {
+    fn new(source: Source) -> Self {
+        Self {
+            source,
+            name: None,
+            language: Language::default(),
+            folders: vec![],
+            texts: BTreeMap::new(),
+            functions: None,
+            floating_base: false,
+            lanes: false,
+        }
+    }
+
     /// A folder of specs in which joint types are looked up, relative to the crate's manifest.
     #[must_use]
     pub fn specs(mut self, folder: impl Into<PathBuf>) -> Self {
@@ -185,20 +213,23 @@ impl Build {
     /// # Errors
     /// All mistakes of the scene; joint types without a spec; what the compiler does not write; files that cannot be read or written.
     pub fn compile(&self) -> Result<(), Error> {
-        let name = self.scene.file_name().unwrap_or_default();
+        let path = self.source.path();
+        let name = path.file_name().unwrap_or_default();
         let out = std::env::var_os("OUT_DIR")
             .map(PathBuf::from)
             .ok_or_else(|| {
                 let reason = "it is not set: call this from a build script";
                 Error::File("OUT_DIR".into(), std::io::Error::other(reason))
             })?;
-        println!("cargo::rerun-if-changed={}", self.scene.display());
+        if let Source::File(path) = &self.source {
+            println!("cargo::rerun-if-changed={}", path.display());
+        }
         for folder in &self.folders {
             println!("cargo::rerun-if-changed={}", folder.display());
         }
         let module = self.module(&name.to_string_lossy())?;
         for left_out in module.left_out {
-            println!("cargo::warning={}: {left_out}", self.scene.display());
+            println!("cargo::warning={}: {left_out}", path.display());
         }
         let target = out.join(format!("{}.{}", self.module_name(), self.language.ending()));
         if let Some(header) = &module.header {
@@ -208,7 +239,7 @@ impl Build {
     }
 
     fn module_name(&self) -> String {
-        let stem = || self.scene.file_stem().unwrap_or_default();
+        let stem = || self.source.path().file_stem().unwrap_or_default();
         let named = self.name.clone();
         named.unwrap_or_else(|| stem().to_string_lossy().into_owned())
     }
@@ -291,18 +322,22 @@ impl Build {
 
     fn description(&self) -> Result<SceneDescription, Error> {
         let failed = |errors| Error::Scene(Box::new(errors));
-        let ending = self.scene.extension().unwrap_or_default();
+        let path = match &self.source {
+            Source::File(path) => path,
+            Source::Described(_, description) => return Ok((**description).clone()),
+        };
+        let ending = path.extension().unwrap_or_default();
         if ending.eq_ignore_ascii_case("urdf") {
             let options = urdf::Options {
                 floating_base: self.floating_base,
                 ..urdf::Options::default()
             };
-            return urdf::load(&self.scene, &options)
+            return urdf::load(path, &options)
                 .map(|import| import.scene)
                 .map_err(failed);
         }
-        let text = read(&self.scene)?;
-        Scene::from_toml(&text, &self.scene.display().to_string()).map_err(failed)
+        let text = read(path)?;
+        Scene::from_toml(&text, &path.display().to_string()).map_err(failed)
     }
 
     /// A joint type, from the first place that has its spec.

@@ -36,6 +36,6 @@ pub mod model;
 pub mod prune;
 mod spatial;
 
-pub use build::{Build, Error, Language, Module, scene};
+pub use build::{Build, Error, Language, Module, scene, scene_of};
 pub use describe::Refused;
 pub use explain::explain;
