@@ -3,6 +3,7 @@
 //! Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood.
 
 mod compile;
+mod compiled;
 mod import;
 mod input;
 mod joints;

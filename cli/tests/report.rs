@@ -30,7 +30,22 @@ fn a_report_measures_each_curve_once() {
     let work = fs::read_to_string(folder.join("work.csv")).expect("a file");
     let rows: Vec<&str> = work.lines().skip(1).collect();
     // Two methods: matrices in both forms, quaternions and Euler angles in one, at eleven tolerances each.
-    assert_eq!(rows.len(), 2 * 4 * 11);
+    let is_compiled = |row: &&&str| row.contains(",compiled,");
+    assert_eq!(
+        rows.iter().filter(|row| !is_compiled(row)).count(),
+        2 * 4 * 11
+    );
+    // Where there is a C compiler, matrices compiled in the Lagrangian form.
+    let compiled = fs::read_to_string(folder.join("compiled.csv"));
+    match compiled {
+        Ok(costs) => {
+            assert_eq!(costs.lines().count(), 2);
+            let mut own = rows.iter().copied().filter(|row| is_compiled(&row));
+            assert_eq!(own.clone().count(), 2 * 11);
+            assert!(own.all(|row| row.contains(",matrix,compiled,")));
+        }
+        Err(_) => assert!(!rows.iter().any(|row| is_compiled(&row))),
+    }
     let euler: Vec<&&str> = rows.iter().filter(|row| row.contains(",euler,")).collect();
     let failed = |row: &&&&str| {
         let reasons = ["singular", "of run time", "not run"];

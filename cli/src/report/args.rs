@@ -7,7 +7,7 @@ Examples:
   hamel report --short
       a minute: some scenes and methods, to report/index.html and CSV files beside it
   hamel report
-      everything: each scene, form, method, representation and tolerance; an hour or two. What has been measured stays in the CSV files:
+      everything: each scene, form, method, representation, implementation and tolerance; two to four hours. What has been measured stays in the CSV files:
       stopped and called again, it goes on where it was
   hamel report --scenes heavy_top,torsion_1e8 --methods verner9,exponential,radau5 -o stiff
       these scenes and methods alone, to the folder `stiff`
@@ -19,12 +19,13 @@ max(1, size), against references of 24 digits and more. `final` is at the last s
 one rounding of its initial state grows to: max(1, conditioning, frequency × time) × 1.1e-16. No method in doubles can be expected below it.
 
 Representations: `matrix` and `quaternion` are this library's ball joints, `euler` its gimbal, the classic that they replace; `declared` is
-the joint that the scene names. A run that fails is a row with its reason, and a cross at the upper edge of its plot.
+the joint that the scene names. Implementations: `tree`, recursions over the bodies, and `compiled`, what the scene compiler writes for the scene, built by the
+C compiler of this machine (CC, else cc, gcc, clang); a short report has the latter for the methods that the page compares. A run that fails is a row with its reason, and a cross at the upper edge of its plot.
 
 Run times are those of the thread on its processor: what else the machine does is not in them. A measurement that was stopped, one with --fresh too, goes on
 where it was when the same is asked for without --fresh.
 
-work.csv, drift.csv and stability.csv hold the figures; docs/report.md tells their columns.
+work.csv, drift.csv, stability.csv and compiled.csv hold the figures; docs/report.md tells their columns.
 
 Exit codes: 0 success, also where runs failed; 1 a file that cannot be read or written; 2 wrong options.";
 

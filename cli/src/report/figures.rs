@@ -2,7 +2,7 @@
 
 use super::build_cost::{self, Cost};
 use super::machine::Machine;
-use super::row::{Drift, Row, Stability, Work};
+use super::row::{Build, Drift, Row, Stability, Work};
 use super::store::read;
 use crate::output::Failure;
 use itertools::Itertools;
@@ -16,6 +16,8 @@ pub struct Figures {
     pub drift: Vec<Drift>,
     pub stability: Vec<Stability>,
     pub costs: Vec<Cost>,
+    /// What compiled scenes cost.
+    pub builds: Vec<Build>,
     pub machine: Machine,
     /// Machines and versions whose rows are left out.
     pub others: Vec<String>,
@@ -30,6 +32,7 @@ impl Figures {
         let mut work = read::<Work>(folder)?;
         let mut drift = read::<Drift>(folder)?;
         let mut stability = read::<Stability>(folder)?;
+        let mut builds = read::<Build>(folder)?;
         let this = Machine::this().line();
         // The last one first.
         let rows = work.iter().rev().map(Row::machine);
@@ -45,6 +48,7 @@ impl Figures {
         work.retain(|row| row.machine == shown);
         drift.retain(|row| row.machine == shown);
         stability.retain(|row| row.machine == shown);
+        builds.retain(|row| row.machine == shown);
         Ok(Self {
             work: longest(work, |row| {
                 let Work {
@@ -52,10 +56,11 @@ impl Figures {
                     form,
                     method,
                     representation,
+                    implementation,
                     ..
                 } = row;
                 (
-                    format!("{scene} {form} {method} {representation}"),
+                    format!("{scene} {form} {method} {representation} {implementation}"),
                     &row.budget,
                 )
             }),
@@ -70,6 +75,7 @@ impl Figures {
             }),
             stability,
             costs: build_cost::costs()?,
+            builds,
             machine: Machine::of(&shown),
             others: machines,
         })

@@ -4,6 +4,7 @@ use super::case::Reference;
 use super::row::STOPPED;
 use super::score::{Errors, errors};
 use super::watch::Watch;
+use hamel::dynamics::Dynamics;
 use hamel::integrate::{Form, Method, Options, Solution, Statistics, Step, integrate, no_inputs};
 use hamel_scene::Scene;
 use std::time::Duration;
@@ -69,9 +70,20 @@ pub struct Failed {
     pub is_slow: bool,
 }
 
+impl Failed {
+    /// What was not even begun, for the first line of a reason.
+    pub fn at_once(reason: &str) -> Self {
+        Self {
+            reason: reason.lines().next().unwrap_or_default().to_owned(),
+            seconds: 0.0,
+            is_slow: false,
+        }
+    }
+}
+
 /// The motion of a scene to the samples of its reference, as often as the budget says.
 pub fn point(
-    scene: &Scene,
+    (scene, dynamics): (&Scene, &mut (dyn Dynamics + '_)),
     reference: &Reference,
     form: Form,
     method: Method,
@@ -79,7 +91,7 @@ pub fn point(
 ) -> Result<Point, Failed> {
     let samples: Vec<f64> = reference.samples.iter().map(|sample| sample.t).collect();
     let start = Watch::start();
-    let (solution, first) = run(scene, form, method, &samples, budget.run)?;
+    let (solution, first) = run((scene, dynamics), form, method, &samples, budget.run)?;
     let errors = errors(&scene.mechanism, reference, &solution);
     let errors = errors.filter(|errors| errors.worst.is_finite());
     let errors = errors.ok_or_else(|| Failed {
@@ -89,7 +101,7 @@ pub fn point(
     })?;
     let mut seconds = vec![first];
     while seconds.len() < budget.repetitions && start.elapsed() < budget.point {
-        seconds.push(run(scene, form, method, &samples, budget.run)?.1);
+        seconds.push(run((scene, dynamics), form, method, &samples, budget.run)?.1);
     }
     Ok(Point {
         errors,
@@ -111,7 +123,7 @@ fn times(mut seconds: Vec<f64>) -> Times {
 
 /// One run to the last of the sample times, and its run time, s: integration alone, without construction.
 pub fn run(
-    scene: &Scene,
+    (scene, dynamics): (&Scene, &mut (dyn Dynamics + '_)),
     form: Form,
     method: Method,
     samples: &[f64],
@@ -124,16 +136,9 @@ pub fn run(
         samples: samples.to_vec(),
     };
     let initial = scene.start();
-    let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
     let start = Watch::start();
     let mut observer = |step: &Step<'_>| start.allows(limit, step);
-    let result = integrate(
-        &mut *dynamics,
-        &initial,
-        &options,
-        &mut no_inputs,
-        &mut observer,
-    );
+    let result = integrate(dynamics, &initial, &options, &mut no_inputs, &mut observer);
     let seconds = start.seconds();
     match result {
         Ok(solution) if !solution.stopped => Ok((solution, seconds)),

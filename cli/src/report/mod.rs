@@ -17,6 +17,7 @@ mod run;
 mod score;
 mod stability;
 mod store;
+mod subject;
 mod watch;
 mod work;
 

@@ -2,8 +2,9 @@
 
 use super::case::Case;
 use super::figures::Figures;
+use super::plan::COMPARED;
 use super::plots;
-use super::row::Work;
+use super::row::{Build, Work};
 use crate::output::Failure;
 use itertools::Itertools;
 use serde::Serialize;
@@ -11,8 +12,6 @@ use tera::{Context, Tera};
 
 const TEMPLATE: &str = include_str!("page.html");
 
-/// Methods whose representations are compared: one for usual and one for tight tolerances.
-const COMPARED: [&str; 2] = ["dopri5", "verner9"];
 /// Accuracies that run times are told for.
 const ASKED: [f64; 2] = [1e-6, 1e-9];
 
@@ -28,6 +27,8 @@ struct Section {
     forms: String,
     /// That of the representations; empty where there is one.
     representations: String,
+    /// That of the tree and of compiled equations; empty where there is one.
+    implementations: String,
     best: Vec<Best>,
     failures: Vec<Failing>,
 }
@@ -37,6 +38,7 @@ struct Section {
 struct Best {
     method: String,
     form: String,
+    implementation: String,
     error: String,
     floors: String,
     /// Least run times, ms, at the accuracies asked.
@@ -49,6 +51,16 @@ struct Failing {
     curve: String,
     accuracies: String,
     reason: String,
+}
+
+/// A line of the table of compiled scenes.
+#[derive(Serialize)]
+struct Built<'a> {
+    row: &'a Build,
+    generation_ms: String,
+    compilation_ms: String,
+    text_kb: String,
+    library_kb: String,
 }
 
 #[derive(Serialize)]
@@ -96,12 +108,25 @@ pub fn render(figures: &Figures) -> Result<String, Failure> {
         &drawings(&figures.stability, |row| &row.scene, plots::stability)?,
     );
     context.insert("costs", &figures.costs);
+    context.insert("builds", &builds(&figures.builds));
     context.insert("points", &figures.work.len());
     let mut tera = Tera::new();
     let name = "page.html";
     let added = tera.add_raw_template(name, TEMPLATE);
     let page = added.and_then(|()| tera.render(name, &context));
     page.map_err(|error| Failure::Page(error.to_string()))
+}
+
+/// What compiled scenes cost, in units for readers.
+fn builds(rows: &[Build]) -> Vec<Built<'_>> {
+    let rows = rows.iter().map(|row| Built {
+        row,
+        generation_ms: format!("{:.0}", 1e3 * row.generation_s),
+        compilation_ms: format!("{:.0}", 1e3 * row.compilation_s),
+        text_kb: format!("{:.1}", row.text_bytes as f64 / 1e3),
+        library_kb: format!("{:.1}", row.library_bytes as f64 / 1e3),
+    });
+    rows.collect()
 }
 
 fn drawings<R>(
@@ -132,21 +157,19 @@ fn sections(rows: &[Work]) -> Result<Vec<Section>, Failure> {
 fn section(name: String, rows: &[&Work]) -> Result<Section, Failure> {
     let (description, source) = told(&name)?;
     let first = rows.first().map(|row| row.representation.clone());
-    let main: Vec<&Work> = rows
+    let all = rows.iter().copied();
+    let own = all
+        .clone()
+        .filter(|row| Some(&row.representation) == first.as_ref());
+    let own: Vec<&Work> = own.collect();
+    let main: Vec<&Work> = own.iter().copied().filter(|row| is_tree(row)).collect();
+    let in_others = all.filter(|row| is_tree(row) && is_compared(row, 2));
+    let in_others: Vec<&Work> = in_others.collect();
+    let ways = own
         .iter()
         .copied()
-        .filter(|row| Some(&row.representation) == first.as_ref())
-        .collect();
-    let compared: Vec<&Work> = rows
-        .iter()
-        .copied()
-        .filter(|row| row.form == "lagrangian" && COMPARED.contains(&row.method.as_str()))
-        .collect();
-    let several = !compared.iter().map(|row| &row.representation).all_equal();
-    let representations = match several {
-        true => plots::representations(&compared)?,
-        false => String::new(),
-    };
+        .filter(|row| is_compared(row, COMPARED.len()));
+    let ways: Vec<&Work> = ways.collect();
     Ok(Section {
         floor: rows
             .first()
@@ -155,13 +178,40 @@ fn section(name: String, rows: &[&Work]) -> Result<Section, Failure> {
             .first()
             .map_or(String::new(), |row| format!("{:.1e}", row.conditioning)),
         forms: plots::forms(&main)?,
-        representations,
-        best: best(&main),
+        representations: drawn(
+            &in_others,
+            |row| &row.representation,
+            plots::representations,
+        )?,
+        implementations: drawn(&ways, |row| &row.implementation, plots::implementations)?,
+        best: best(&own),
         failures: failures(rows),
         name,
         description,
         source,
     })
+}
+
+fn is_tree(row: &Work) -> bool {
+    row.implementation == "tree"
+}
+
+/// Whether a row is of the first so many methods whose representations and implementations are compared.
+fn is_compared(row: &Work, count: usize) -> bool {
+    let mut names = COMPARED.iter().take(count).map(|scheme| scheme.name());
+    row.form == "lagrangian" && names.any(|name| name == row.method)
+}
+
+/// A figure of rows that differ in something; nothing where they do not.
+fn drawn(
+    rows: &[&Work],
+    what: impl Fn(&Work) -> &String,
+    draw: impl Fn(&[&Work]) -> Result<String, Failure>,
+) -> Result<String, Failure> {
+    match rows.iter().map(|row| what(row)).all_equal() {
+        true => Ok(String::new()),
+        false => draw(rows),
+    }
 }
 
 /// What a scene shows, and where its reference is from; empty where this program does not know the scene.
@@ -175,7 +225,16 @@ fn told(name: &str) -> Result<(String, String), Failure> {
 
 /// The curves of some rows, each with its rows.
 fn curves<'a>(rows: &[&'a Work]) -> Vec<(String, Vec<&'a Work>)> {
-    let label = |row: &Work| format!("{} {} {}", row.method, row.form, row.representation);
+    let label = |row: &Work| {
+        let Work {
+            method,
+            form,
+            representation,
+            implementation,
+            ..
+        } = row;
+        format!("{method} {form} {representation} {implementation}")
+    };
     let mut curves: Vec<(String, Vec<&Work>)> = Vec::new();
     for row in rows {
         let label = label(row);
@@ -205,6 +264,7 @@ fn best(rows: &[&Work]) -> Vec<Best> {
         Best {
             method: curve[0].method.clone(),
             form: curve[0].form.clone(),
+            implementation: curve[0].implementation.clone(),
             error: error.map_or("fails".into(), |error| format!("{error:.1e}")),
             floors: error.map_or("—".into(), |error| multiple(error / curve[0].floor)),
             times: ASKED.map(within).to_vec(),

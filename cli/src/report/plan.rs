@@ -3,8 +3,11 @@
 use super::args::Args;
 use super::case::{Case, schemes};
 use super::measure::Budget;
+use super::representation::Representation;
 use super::row::Row;
-use crate::output::Failure;
+use super::subject::Implementation;
+use crate::compiled::Compiler;
+use crate::output::{Failure, tell};
 use hamel::integrate::{Form, Scheme};
 
 /// Scenes of the short report: one of each kind.
@@ -24,6 +27,8 @@ const SHORT_SCHEMES: [Scheme; 6] = [
     Scheme::Radau5,
     Scheme::Exponential,
 ];
+/// Methods whose implementations and representations the page compares: two explicit ones, for usual and for tight tolerances, and one for stiff scenes.
+pub const COMPARED: [Scheme; 3] = [Scheme::DormandPrince, Scheme::Verner9, Scheme::Radau5];
 
 /// Tolerances of the diagrams.
 pub const TOLERANCES: [f64; 11] = [
@@ -38,6 +43,8 @@ pub struct Plan {
     pub budget: Budget,
     /// As rows name the budget.
     pub budget_name: &'static str,
+    /// What compiles scenes, where the machine has it.
+    pub compiler: Option<Compiler>,
     /// Which energies are followed, and how far.
     pub drift: Drift,
     /// Scenes of the stability maps, with the least inertia that their springs turn, kg m².
@@ -96,6 +103,14 @@ impl Plan {
             ));
         }
         let step = if args.short { 2 } else { 1 };
+        let compiler = match Compiler::find() {
+            _ if args.page_only => None,
+            Ok(compiler) => Some(compiler),
+            Err(none) => {
+                tell(&[format!("{none}; without one they are not measured")]);
+                None
+            }
+        };
         let wanted = |name: &str| args.scenes.is_empty() || args.scenes.iter().any(|n| n == name);
         Ok(Self {
             cases,
@@ -106,6 +121,7 @@ impl Plan {
                 Budget::FULL
             },
             budget_name: if args.short { "short" } else { "full" },
+            compiler,
             drift: Drift::new(args.short, wanted),
             stiff: STIFF.into_iter().filter(|(name, _)| wanted(name)).collect(),
             stiffnesses: (0..=12).step_by(step).map(|i| 10.0_f64.powi(i)).collect(),
@@ -119,11 +135,34 @@ impl Plan {
         machine: &str,
         mut scenes: impl Iterator<Item = &'a str>,
     ) -> bool {
-        let (scene, method) = row.curve();
+        let of_scheme = |method| self.schemes.iter().any(|scheme| scheme.name() == method);
         row.machine() == machine
             && row.budget().is_none_or(|budget| budget == self.budget_name)
-            && scenes.any(|name| name == scene)
-            && self.schemes.iter().any(|scheme| scheme.name() == method)
+            && scenes.any(|name| name == row.scene())
+            && row.method().is_none_or(of_scheme)
+    }
+
+    /// Forms in which a scheme is measured on a scene: both in the library's own representation, the Lagrangian one in others. A short report takes compiled
+    /// equations where the page compares them, and no further.
+    pub fn forms_of(
+        &self,
+        scheme: Scheme,
+        representation: Representation,
+        implementation: Implementation,
+    ) -> &'static [Form] {
+        let forms = self.forms(scheme);
+        let is_short = self.budget_name != "full";
+        match implementation {
+            Implementation::Compiled if self.compiler.is_none() => &[],
+            Implementation::Compiled
+                if is_short && !(representation.is_first() && COMPARED.contains(&scheme)) =>
+            {
+                &[]
+            }
+            Implementation::Compiled if is_short => &forms[..1],
+            _ if representation.is_first() => forms,
+            _ => &forms[..1],
+        }
     }
 
     /// Forms in which a scheme is measured.

@@ -29,6 +29,11 @@ impl Representation {
         }
     }
 
+    /// Whether it is the library's own, the first of [`Representation::of`].
+    pub const fn is_first(self) -> bool {
+        matches!(self, Self::Declared | Self::Matrix)
+    }
+
     /// Those that make sense for a scene, the one of the library first.
     pub fn of(scene: &SceneDescription) -> Vec<Self> {
         let mut kinds = scene.bodies.iter().map(|body| &body.joint.kind.value);

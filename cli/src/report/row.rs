@@ -22,8 +22,11 @@ pub trait Row: Serialize + for<'a> Deserialize<'a> + Clone {
     /// On what.
     fn machine(&self) -> &str;
 
-    /// The scene and the method.
-    fn curve(&self) -> (&str, &str);
+    /// On which scene.
+    fn scene(&self) -> &str;
+
+    /// With which method, of what depends on it.
+    fn method(&self) -> Option<&str>;
 
     /// How long was measured, of what is measured for longer or shorter.
     fn budget(&self) -> Option<&str>;
@@ -94,12 +97,65 @@ impl Row for Work {
         &self.machine
     }
 
-    fn curve(&self) -> (&str, &str) {
-        (&self.scene, &self.method)
+    fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    fn method(&self) -> Option<&str> {
+        Some(&self.method)
     }
 
     fn budget(&self) -> Option<&str> {
         Some(&self.budget)
+    }
+}
+
+/// What a compiled scene cost, once.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Build {
+    pub scene: String,
+    pub representation: String,
+    /// Of the module, by their names.
+    pub functions: String,
+    /// From the scene to its text.
+    pub generation_s: f64,
+    /// From the text to the library.
+    pub compilation_s: f64,
+    pub text_bytes: usize,
+    pub library_bytes: u64,
+    pub compiler: String,
+    /// Processor, system, compiler of this program, flags and version, in one line.
+    pub machine: String,
+}
+
+impl Row for Build {
+    const FILE: &'static str = "compiled";
+
+    fn key(&self) -> String {
+        let Self {
+            scene,
+            representation,
+            functions,
+            compiler,
+            ..
+        } = self;
+        format!("{scene} {representation} {functions} {compiler}")
+    }
+
+    fn machine(&self) -> &str {
+        &self.machine
+    }
+
+    fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    fn method(&self) -> Option<&str> {
+        None
+    }
+
+    fn budget(&self) -> Option<&str> {
+        None
     }
 }
 
@@ -135,8 +191,12 @@ impl Row for Drift {
         &self.machine
     }
 
-    fn curve(&self) -> (&str, &str) {
-        (&self.scene, &self.method)
+    fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    fn method(&self) -> Option<&str> {
+        Some(&self.method)
     }
 
     fn budget(&self) -> Option<&str> {
@@ -177,8 +237,12 @@ impl Row for Stability {
         &self.machine
     }
 
-    fn curve(&self) -> (&str, &str) {
-        (&self.scene, &self.method)
+    fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    fn method(&self) -> Option<&str> {
+        Some(&self.method)
     }
 
     fn budget(&self) -> Option<&str> {

@@ -5,8 +5,9 @@ use super::figures::Figures;
 use super::machine::Machine;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::row::{Drift, Stability, Work};
+use super::row::{Build, Drift, Stability, Work};
 use super::store::{Store, set_aside};
+use super::work::Stores;
 use super::{drift, page, stability, work};
 use crate::output::{self, Failure};
 use hamel::registry::JointRegistry;
@@ -74,8 +75,11 @@ fn measure(
     if args.fresh {
         begin_anew(folder, plan, machine)?;
     }
-    let mut store = Store::open(folder, machine)?;
-    work::measure(plan, registry, machine, &mut store, tick)?;
+    let mut stores = Stores {
+        work: Store::open(folder, machine)?,
+        build: Store::open(folder, machine)?,
+    };
+    work::measure(plan, registry, machine, &mut stores, tick)?;
     let mut store = Store::open(folder, machine)?;
     stability::measure(plan, registry, machine, &mut store, tick)?;
     let mut store = Store::open(folder, machine)?;
@@ -90,6 +94,7 @@ fn begin_anew(folder: &Path, plan: &Plan, machine: &str) -> Result<(), Failure> 
     let stability = || plan.stiff.iter().map(|(name, _)| *name);
     let drift = || plan.drift.scenes.iter().copied();
     set_aside::<Work>(folder, |row| plan.covers(row, machine, work()))?;
+    set_aside::<Build>(folder, |row| plan.covers(row, machine, work()))?;
     set_aside::<Stability>(folder, |row| plan.covers(row, machine, stability()))?;
     set_aside::<Drift>(folder, |row| plan.covers(row, machine, drift()))
 }

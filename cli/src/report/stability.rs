@@ -128,7 +128,9 @@ fn stays(scene: &Scene, scheme: Scheme, form: Form, dt: f64) -> bool {
     let end = dt * STEPS as f64;
     let samples: Vec<f64> = (1..=4).map(|i| 0.25 * f64::from(i) * end).collect();
     let limit = Duration::from_secs(5);
-    let run = measure::run(scene, form, Method::fixed(scheme, dt), &samples, limit);
+    let mut tree = scene.settings.arithmetic.dynamics(&scene.mechanism);
+    let method = Method::fixed(scheme, dt);
+    let run = measure::run((scene, &mut *tree), form, method, &samples, limit);
     run.is_ok_and(|(solution, _)| {
         let mut states = solution.samples.iter();
         states.all(|state| energy(&state.configuration, &state.speeds) <= BOUND * start)

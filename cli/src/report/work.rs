@@ -4,12 +4,14 @@ use super::case::{Case, Reference, accuracy};
 use super::measure::{self, Failed, Point};
 use super::plan::{Plan, TOLERANCES};
 use super::representation::Representation;
-use super::row::{NOT_RUN, Row, Work, form_name};
+use super::row::{Build, NOT_RUN, Row, Work, form_name};
 use super::store::Store;
+use super::subject::{Implementation, Subject};
 use crate::output::Failure;
 use hamel::integrate::{Form, Method, Scheme};
 use hamel::registry::JointRegistry;
 use hamel_scene::SceneDescription;
+use itertools::Itertools;
 
 /// Steps of a method without step control, from that at which the scene is resolved coarsely to this power of two below it.
 const HALVINGS: i32 = 9;
@@ -22,14 +24,22 @@ const STEP: &str = "step_s";
 
 /// One curve to be measured.
 #[derive(Clone, Copy, Debug)]
-struct Curve<'a> {
-    case: &'a Case,
-    form: Form,
-    scheme: Scheme,
+struct Curve {
+    scene: &'static str,
     representation: Representation,
+    implementation: Implementation,
+    scheme: Scheme,
+    form: Form,
 }
 
-/// Measures what the store has not.
+/// What the figures go to.
+#[derive(Debug)]
+pub struct Stores {
+    pub work: Store<Work>,
+    pub build: Store<Build>,
+}
+
+/// Measures what the stores have not.
 ///
 /// # Errors
 /// Scenes or references that cannot be read; a file that cannot be written.
@@ -37,44 +47,59 @@ pub fn measure(
     plan: &Plan,
     registry: &JointRegistry,
     machine: &str,
-    store: &mut Store<Work>,
+    stores: &mut Stores,
     mut tick: impl FnMut(&str),
 ) -> Result<(), Failure> {
     for case in &plan.cases {
         let (description, reference) = (case.description()?, case.reference()?);
-        let coarse = match begun_at(store, case, plan) {
+        let coarse = match begun_at(&stores.work, case, plan) {
             Some(step) => step,
             None => coarse_step(&description, &reference, registry, plan),
         };
+        let mut subject: Option<Subject> = None;
         for curve in curves(plan, case, &description) {
-            tick(&format!("{} {}", case.name, curve.scheme.name()));
-            let scene = curve.representation.apply(&description).build(registry);
-            // From coarse to fine: what follows runs that were stopped would be stopped as well.
-            let mut slow = 0;
-            for method in methods(curve.scheme, coarse) {
-                let empty = row(plan, &curve, method, &reference, machine);
-                if let Some(row) = store.find(&empty.key()) {
-                    slow = if row.is_slow() { slow + 1 } else { 0 };
-                    continue;
-                }
-                let measured = match (&scene, slow) {
-                    (Ok(_), SLOW..) => Err(not_run()),
-                    (Ok(scene), _) => {
-                        measure::point(scene, &reference, curve.form, method, plan.budget)
-                    }
-                    (Err(errors), _) => Err(Failed {
-                        reason: first_line(&errors.to_string()),
-                        seconds: 0.0,
-                        is_slow: false,
-                    }),
-                };
-                match &measured {
-                    Err(failed) if failed.is_slow => slow += 1,
-                    _ => slow = 0,
-                }
-                store.add(&[filled(empty, measured)])?;
+            tick(&format!("{} {}", curve.scene, curve.scheme.name()));
+            let kind = (curve.representation, curve.implementation);
+            if subject.as_ref().is_none_or(|known| known.kind != kind) {
+                // The one before goes first: its compiled equations make room for others.
+                drop(subject.take());
             }
+            let subject = subject
+                .get_or_insert_with(|| Subject::new(curve.scene, &description, kind, registry));
+            follow(plan, &curve, subject, (&reference, coarse), machine, stores)?;
         }
+    }
+    Ok(())
+}
+
+/// The points of one curve that are not known, from coarse to fine: what follows runs that were stopped would be stopped as well.
+fn follow(
+    plan: &Plan,
+    curve: &Curve,
+    subject: &mut Subject,
+    (reference, coarse): (&Reference, f64),
+    machine: &str,
+    stores: &mut Stores,
+) -> Result<(), Failure> {
+    let mut slow = 0;
+    for method in methods(curve.scheme, coarse) {
+        let empty = row(plan, curve, method, reference, machine);
+        if let Some(row) = stores.work.find(&empty.key()) {
+            slow = if row.is_slow() { slow + 1 } else { 0 };
+            continue;
+        }
+        let measured = match slow {
+            SLOW.. => Err(not_run()),
+            _ => match subject.parts(plan, machine, &mut stores.build)? {
+                Ok(parts) => measure::point(parts, reference, curve.form, method, plan.budget),
+                Err(failed) => Err(failed),
+            },
+        };
+        match &measured {
+            Err(failed) if failed.is_slow => slow += 1,
+            _ => slow = 0,
+        }
+        stores.work.add(&[filled(empty, measured)])?;
     }
     Ok(())
 }
@@ -91,22 +116,25 @@ pub fn count(plan: &Plan) -> Result<usize, Failure> {
     counts.sum()
 }
 
-/// Both forms in the first representation, the Lagrangian one in the others.
-fn curves<'a>(plan: &Plan, case: &'a Case, scene: &SceneDescription) -> Vec<Curve<'a>> {
-    let representations = Representation::of(scene);
-    let mut curves = Vec::new();
-    for &scheme in &plan.schemes {
-        for (i, &representation) in representations.iter().enumerate() {
-            let forms = plan.forms(scheme).iter();
-            curves.extend(forms.take(if i == 0 { 2 } else { 1 }).map(|&form| Curve {
-                case,
-                form,
-                scheme,
+/// Those of one representation and implementation one after the other: of compiled equations there is one set at a time.
+fn curves(plan: &Plan, case: &Case, scene: &SceneDescription) -> Vec<Curve> {
+    let representations = Representation::of(scene).into_iter();
+    let implementations = [Implementation::Tree, Implementation::Compiled];
+    let kinds = representations.cartesian_product(implementations);
+    let curves = kinds
+        .cartesian_product(&plan.schemes)
+        .flat_map(|(kind, &scheme)| {
+            let (representation, implementation) = kind;
+            let forms = plan.forms_of(scheme, representation, implementation);
+            forms.iter().map(move |&form| Curve {
+                scene: case.name,
                 representation,
-            }));
-        }
-    }
-    curves
+                implementation,
+                scheme,
+                form,
+            })
+        });
+    curves.collect()
 }
 
 /// A tolerance each, or a step each.
@@ -142,7 +170,9 @@ fn coarse_step(
     let samples: Vec<f64> = reference.samples.iter().map(|sample| sample.t).collect();
     let steps = [Scheme::DormandPrince, Scheme::Radau5].map(|scheme| {
         let method = Method::controlled(scheme, 1e-4);
-        let run = measure::run(&scene, Form::Lagrangian, method, &samples, plan.budget.run);
+        let mut tree = scene.settings.arithmetic.dynamics(&scene.mechanism);
+        let parts = (&scene, &mut *tree);
+        let run = measure::run(parts, Form::Lagrangian, method, &samples, plan.budget.run);
         run.map_or(0.0, |(solution, _)| {
             reference.end() / solution.statistics.steps as f64
         })
@@ -161,23 +191,13 @@ fn not_run() -> Failed {
     }
 }
 
-fn first_line(text: &str) -> String {
-    text.lines().next().unwrap_or_default().to_owned()
-}
-
-fn row(
-    plan: &Plan,
-    curve: &Curve<'_>,
-    method: Method,
-    reference: &Reference,
-    machine: &str,
-) -> Work {
+fn row(plan: &Plan, curve: &Curve, method: Method, reference: &Reference, machine: &str) -> Work {
     Work {
-        scene: curve.case.name.into(),
+        scene: curve.scene.into(),
         form: form_name(curve.form).into(),
         method: curve.scheme.name().into(),
         representation: curve.representation.name().into(),
-        implementation: "tree".into(),
+        implementation: curve.implementation.name().into(),
         knob: match method {
             Method::Fixed { .. } => STEP.into(),
             Method::Controlled { .. } => "tolerance".into(),

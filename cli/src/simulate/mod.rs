@@ -2,7 +2,7 @@
 
 mod args;
 mod choose;
-mod compiled;
+mod compile;
 mod control;
 mod csv;
 mod json;

@@ -1,6 +1,8 @@
-//! The progress bar on stderr; nothing where stderr is no terminal.
+//! Progress on stderr; nothing where stderr is no terminal.
 
+use crate::compiled::Compiler;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::Duration;
 
 /// Ticks of the whole bar.
 const LENGTH: u64 = 1000;
@@ -14,12 +16,7 @@ pub struct Progress {
 impl Progress {
     /// A bar from 0 to `t_end`, hidden if `quiet`.
     pub fn new(t_end: f64, quiet: bool) -> Self {
-        let target = if quiet {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr()
-        };
-        let bar = ProgressBar::with_draw_target(Some(LENGTH), target);
+        let bar = ProgressBar::with_draw_target(Some(LENGTH), target(quiet));
         let template = "{wide_bar} {percent:>3} %  t = {msg}  {elapsed} spent, {eta} to go";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
@@ -39,5 +36,20 @@ impl Progress {
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// What is shown while a compiler works, which does not tell how far it is.
+pub fn compiling(quiet: bool, compiler: &Compiler) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, target(quiet));
+    bar.set_message(format!("compiling the scene, with {compiler}"));
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}
+
+fn target(quiet: bool) -> ProgressDrawTarget {
+    match quiet {
+        true => ProgressDrawTarget::hidden(),
+        false => ProgressDrawTarget::stderr(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::args::Args;
 use super::choose;
-use super::compiled::compiled;
+use super::compile;
 use super::control::{Loop, Outcome};
 use super::csv::Trajectory;
 use super::json::{self, Report, Statistics};
@@ -17,7 +17,6 @@ use hamel::dynamics::Dynamics;
 use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State, Step};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
-use hamel_scene::Arithmetic;
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -28,9 +27,20 @@ use std::time::Instant;
 /// Mistakes in the scene or the options; a simulation that stops early; output that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let plan = Plan::new(args, registry)?;
-    let (mut dynamics, equations) = equations(args, &plan)?;
-    let mut run = simulate(&plan, &mut *dynamics, args.quiet)?;
-    run.equations = equations;
+    let run = match args.compiled {
+        true => {
+            let mut equations = compile::equations(args, &plan)?;
+            let run = simulate(&plan, &mut equations.dynamics, args.quiet)?;
+            Run {
+                equations: Some(compile::told(&equations)),
+                ..run
+            }
+        }
+        false => {
+            let mut tree = plan.settings.arithmetic.dynamics(&plan.scene.mechanism);
+            simulate(&plan, &mut *tree, args.quiet)?
+        }
+    };
     if args.json {
         return print_json(&plan, &run);
     }
@@ -38,22 +48,6 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         return Ok(());
     }
     print_summary(&plan, &run)
-}
-
-/// The equations of motion: the tree, or what is compiled of the scene, with what it took.
-fn equations(args: &Args, plan: &Plan) -> Result<(Box<dyn Dynamics>, Option<String>), Failure> {
-    let mechanism = &plan.scene.mechanism;
-    if !args.compiled {
-        return Ok((plan.settings.arithmetic.dynamics(mechanism), None));
-    }
-    if plan.settings.arithmetic != Arithmetic::Doubles {
-        return Err(Failure::Options(
-            "compiled equations are reckoned in doubles, and the scene asks for others: with `--compiled` say `--arithmetic doubles`".into(),
-        ));
-    }
-    let (form, scheme) = (plan.settings.form, *plan.settings.method.scheme());
-    let compiled = compiled(args, mechanism, form, scheme)?;
-    Ok((Box::new(compiled.dynamics), Some(compiled.told)))
 }
 
 /// What a simulation came to.

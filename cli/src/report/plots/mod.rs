@@ -8,7 +8,7 @@ mod work;
 
 pub use drift::drawing as drift;
 pub use stability::drawing as stability;
-pub use work::{forms, representations};
+pub use work::{forms, implementations, representations};
 
 use crate::output::Failure;
 

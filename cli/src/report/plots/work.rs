@@ -21,7 +21,7 @@ const AXES: [Axis; 2] = [
     }),
 ];
 
-/// Both forms of one scene in its first representation: the worst error against run time and against evaluations.
+/// Both forms of one scene in its first representation, by the tree: the worst error against run time and against evaluations.
 pub fn forms(rows: &[&Work]) -> Result<String, Failure> {
     let key = |row: &Work| (row.method.clone(), row.form.clone());
     let look = |row: &Work| Look {
@@ -48,6 +48,17 @@ pub fn representations(rows: &[&Work]) -> Result<String, Failure> {
         ..style::numbered(3 + place(row).unwrap_or_default())
     };
     let label = |row: &Work| format!("{} {}", row.representation, row.method);
+    panels(rows, key, label, look)
+}
+
+/// Some methods on the tree and on compiled equations.
+pub fn implementations(rows: &[&Work]) -> Result<String, Failure> {
+    let key = |row: &Work| (row.method.clone(), row.implementation.clone());
+    let look = |row: &Work| Look {
+        dashed: row.implementation == "compiled",
+        ..style::method(&row.method)
+    };
+    let label = |row: &Work| format!("{} {}", row.method, row.implementation);
     panels(rows, key, label, look)
 }
 

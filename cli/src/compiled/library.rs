@@ -1,6 +1,6 @@
 //! The library, loaded, behind the functions that [`hamel::compiled::Compiled`] calls.
 //!
-//! Those are plain functions without data, so what they call stands in a static: one scene a run of the program.
+//! Those are plain functions without data, so what they call stands in a static: one scene at a time.
 
 #![allow(
     unsafe_code,
@@ -9,18 +9,24 @@
 
 use crate::output::Failure;
 use hamel::compiled::{Equations, InLanes};
-use libloading::Library;
 use std::cell::RefCell;
 use std::path::Path;
-use std::sync::OnceLock;
+use std::ptr;
+use std::sync::atomic::{AtomicPtr, Ordering};
 
 /// A function of two arrays.
 type Two = unsafe extern "C" fn(*const f64, *const f64, *mut f64);
 /// A function of three arrays.
 type Three = unsafe extern "C" fn(*const f64, *const f64, *const f64, *mut f64);
 
-/// What was loaded; it stays to the end of the program.
-static LOADED: OnceLock<Loaded> = OnceLock::new();
+/// What is in use, or null. What was loaded stays in memory to the end of the program, so that a call of it can never meet nothing.
+static IN_USE: AtomicPtr<Loaded> = AtomicPtr::new(ptr::null_mut());
+
+/// A library in use: while this stands, its [`Equations`] call it.
+#[derive(Debug)]
+pub struct Library {
+    equations: &'static Equations,
+}
 
 /// The functions of a library, and the sizes for which they were written.
 struct Loaded {
@@ -37,24 +43,55 @@ struct Loaded {
     hamiltonian: Option<Two>,
     equations: Equations,
     /// Keeps the functions where they are.
-    _library: Library,
+    _library: libloading::Library,
 }
 
-/// The equations of the library at `path`, which was built of the module `name` of a scene with these stored scalars, freedoms and speeds, and so
-/// many numbers in its derivatives of forward dynamics.
-///
-/// # Errors
-/// A file that cannot be loaded; a second library.
-pub fn load(
+impl Library {
+    /// The library at `path`, which was built of the module `name` of a scene with these stored scalars, freedoms and speeds, and so many numbers in its
+    /// derivatives of forward dynamics.
+    ///
+    /// # Errors
+    /// A file that cannot be loaded; another library in use.
+    pub fn load(path: &Path, name: &str, sizes: [usize; 4]) -> Result<Self, Failure> {
+        let loaded = Box::leak(Box::new(loaded(path, name, sizes)?));
+        let equations = &raw const loaded.equations;
+        IN_USE
+            .compare_exchange(ptr::null_mut(), loaded, Ordering::AcqRel, Ordering::Acquire)
+            .map_err(|_| failed(&"those of another one are in use"))?;
+        // SAFETY: what it points to is never freed and never written again.
+        let equations = unsafe { &*equations };
+        Ok(Self { equations })
+    }
+
+    /// Functions that call it.
+    pub const fn equations(&self) -> &'static Equations {
+        self.equations
+    }
+}
+
+impl Drop for Library {
+    fn drop(&mut self) {
+        IN_USE.store(ptr::null_mut(), Ordering::Release);
+    }
+}
+
+/// What is in use.
+fn in_use() -> Option<&'static Loaded> {
+    // SAFETY: null, or what `Library::load` has leaked.
+    unsafe { IN_USE.load(Ordering::Acquire).as_ref() }
+}
+
+fn failed(error: &dyn std::fmt::Display) -> Failure {
+    Failure::Refused(format!("the compiled scene cannot be loaded: {error}"))
+}
+
+fn loaded(
     path: &Path,
     name: &str,
     [configuration, freedoms, speeds, entries]: [usize; 4],
-) -> Result<&'static Equations, Failure> {
-    let failed = |error: &dyn std::fmt::Display| {
-        Failure::Refused(format!("the compiled scene cannot be loaded: {error}"))
-    };
+) -> Result<Loaded, Failure> {
     // SAFETY: the library was built of a module that this program wrote, which has no code that runs when it is loaded.
-    let library = unsafe { Library::new(path) }.map_err(|error| failed(&error))?;
+    let library = unsafe { libloading::Library::new(path) }.map_err(|error| failed(&error))?;
     let two = |function: &str| {
         let symbol = format!("{name}_{function}");
         // SAFETY: every function of a module has the type that its arguments tell; `momenta`, `speeds_from_momenta` and `hamiltonian` take two.
@@ -71,7 +108,7 @@ pub fn load(
     let speeds_from_momenta = two("speeds_from_momenta").ok();
     let momentum_rates = three("momentum_rates").ok();
     let hamiltonian = two("hamiltonian").ok();
-    let loaded = Loaded {
+    Ok(Loaded {
         configuration,
         freedoms,
         speeds,
@@ -101,14 +138,7 @@ pub fn load(
         momentum_rates,
         hamiltonian,
         _library: library,
-    };
-    LOADED
-        .set(loaded)
-        .map_err(|_| failed(&"another one is loaded"))?;
-    LOADED
-        .get()
-        .map(|loaded| &loaded.equations)
-        .ok_or_else(|| failed(&"it is gone"))
+    })
 }
 
 impl Loaded {
@@ -150,25 +180,25 @@ impl Loaded {
 }
 
 fn call_forward_dynamics(q: &[f64], v: &[f64], tau: &[f64], rates: &mut [f64]) {
-    if let Some(loaded) = LOADED.get() {
+    if let Some(loaded) = in_use() {
         loaded.three(loaded.forward_dynamics, q, v, tau, (rates, loaded.speeds));
     }
 }
 
 fn call_derivatives(q: &[f64], v: &[f64], tau: &[f64], rows: &mut [f64]) {
-    if let Some(loaded) = LOADED.get() {
+    if let Some(loaded) = in_use() {
         loaded.three(loaded.derivatives, q, v, tau, (rows, loaded.entries));
     }
 }
 
 fn call_momenta(q: &[f64], v: &[f64], p: &mut [f64]) {
-    if let Some(loaded) = LOADED.get() {
+    if let Some(loaded) = in_use() {
         loaded.two(loaded.momenta, q, v, (p, loaded.speeds));
     }
 }
 
 fn call_speeds(q: &[f64], p: &[f64], v: &mut [f64]) {
-    if let Some(loaded) = LOADED.get() {
+    if let Some(loaded) = in_use() {
         loaded.two(loaded.speeds_from_momenta, q, p, (v, loaded.speeds));
     }
 }
@@ -179,7 +209,7 @@ thread_local! {
 }
 
 fn call_momentum_rates(q: &[f64], p: &[f64], tau: &[f64], v: &mut [f64], rates: &mut [f64]) {
-    let Some(loaded) = LOADED.get() else {
+    let Some(loaded) = in_use() else {
         return;
     };
     BOTH.with_borrow_mut(|both| {
@@ -198,7 +228,7 @@ fn call_momentum_rates(q: &[f64], p: &[f64], tau: &[f64], v: &mut [f64], rates: 
 
 fn call_hamiltonian(q: &[f64], p: &[f64]) -> f64 {
     let mut energy = [f64::NAN];
-    if let Some(loaded) = LOADED.get() {
+    if let Some(loaded) = in_use() {
         loaded.two(loaded.hamiltonian, q, p, (&mut energy, 1));
     }
     energy[0]

@@ -46,7 +46,7 @@ impl Compiler {
             };
             return named.answers().map(|()| named.clone()).map_err(|error| {
                 Failure::Options(format!(
-                    "--compiled needs a C compiler, and `{program}`, which the variable {VARIABLE} names, cannot be run: {error}"
+                    "compiled equations need a C compiler, and `{program}`, which the variable {VARIABLE} names, cannot be run: {error}"
                 ))
             });
         }
@@ -58,7 +58,7 @@ impl Compiler {
         there.next().ok_or_else(|| {
             let names = NAMES.map(|name| format!("`{name}`")).join(", ");
             Failure::Options(format!(
-                "--compiled needs a C compiler, and none of {names} can be run: install one, or name it in the variable {VARIABLE}"
+                "compiled equations need a C compiler, and none of {names} can be run: install one, or name it in the variable {VARIABLE}"
             ))
         })
     }

@@ -1,0 +1,40 @@
+//! `--compiled`: a simulation on equations that are compiled for its scene.
+
+use super::args::Args;
+use super::plan::Plan;
+use super::progress;
+use crate::compiled::{self, Compiler, Equations, compiled};
+use crate::output::{Failure, tell};
+use hamel_scene::Arithmetic;
+
+/// The equations of the scene of `args`, for simulations in its form by its method.
+///
+/// # Errors
+/// A scene in other arithmetic than that of compiled equations, and those of [`compiled`]; no C compiler.
+pub fn equations(args: &Args, plan: &Plan) -> Result<Equations, Failure> {
+    if plan.settings.arithmetic != Arithmetic::Doubles {
+        return Err(Failure::Options(
+            "compiled equations are reckoned in doubles, and the scene asks for others: with `--compiled` say `--arithmetic doubles`".into(),
+        ));
+    }
+    let compiler = Compiler::find()?;
+    let progress = progress::compiling(args.quiet, &compiler);
+    let mut build = hamel_codegen::scene(&args.scene);
+    if args.floating_base {
+        build = build.floating_base();
+    }
+    let label = args.scene.file_name().unwrap_or_default().to_string_lossy();
+    let kinds = compiled::functions(plan.settings.form, *plan.settings.method.scheme());
+    let equations = compiled(build, &label, kinds, &compiler, &plan.scene.mechanism)?;
+    progress.finish_and_clear();
+    if !args.quiet {
+        tell(&equations.left_out);
+    }
+    Ok(equations)
+}
+
+/// For the summary.
+pub fn told(equations: &Equations) -> String {
+    let seconds = equations.cost.generation + equations.cost.compilation;
+    format!("compiled by {} in {seconds:.2} s", equations.compiler)
+}
