@@ -137,16 +137,23 @@ impl<const Q: usize, const V: usize, const U: usize> Rows<'_, Q, V, U> {
         let count = count.min(self.q.len()).min(self.v.len()).min(self.u.len());
         let mut start = 0;
         while start < count {
-            let q = side_by_side(by, self.q, start);
-            let v = side_by_side(by, self.v, start);
-            let u = side_by_side(by, self.u, start);
-            let mut results = [[0.0; LANES]; V];
-            eight::<F, FUSED, Q, V, U>(&q, &v, &u, &mut results);
-            apart(by, &results, &mut self.results[start..count]);
+            let q = Lines(side_by_side(by, self.q, start));
+            let v = Lines(side_by_side(by, self.v, start));
+            let u = Lines(side_by_side(by, self.u, start));
+            let mut results = Lines([[0.0; LANES]; V]);
+            eight::<F, FUSED, Q, V, U>(&q.0, &v.0, &u.0, &mut results.0);
+            apart(by, &results.0, &mut self.results[start..count]);
             start += LANES;
         }
     }
 }
+
+/// Lanes in whole cache lines.
+///
+/// This also aligns the frame of the function and with it what registers do not hold: without it each such load and store of eight doubles would touch two lines, but
+/// for one place of the stack in four.
+#[repr(align(64))]
+struct Lines<const N: usize>([[f64; LANES]; N]);
 
 /// Eight states: the loop that is vectorised. Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
 #[inline(always)]
