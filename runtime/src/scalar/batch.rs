@@ -1,14 +1,20 @@
 //! Sines and cosines of many angles at once, in a loop without branches that the compiler turns into SIMD code.
 //!
-//! Reduction to |r| ≤ π/4 by multiples of π/2 in three parts of 33 bits (Cody and Waite), then the polynomials of degrees 13 and 14 of
-//! FDLIBM (Sun Microsystems 1993, `k_sin.c`, `k_cos.c`: below one unit in the last place). Angles beyond `LIMIT`, and what is not
-//! finite, go to the standard functions one by one.
+//! Reduction to |r| ≤ π/4 by multiples of π/2 in parts (Cody and Waite), then the polynomials of degrees 13 and 14 of
+//! FDLIBM (Sun Microsystems 1993, `k_sin.c`, `k_cos.c`). Where the machine fuses multiply–adds, parts are whole doubles and r is one; where it does not,
+//! parts have 33 bits and r a second double. Angles beyond `LIMIT`, and what is not finite, go to the standard functions one by one.
 
 use num_traits::Float;
 
 /// Largest angle of the fast path, rad: multiples of π/2 up to 2¹⁹ times a part of 33 bits are exact.
 const LIMIT: f64 = 8.0e5;
 
+/// π/2 in three doubles.
+const WHOLE_PARTS: [f64; 3] = [
+    core::f64::consts::FRAC_PI_2,
+    6.123_233_995_736_766e-17,
+    -1.497_384_904_859_183_3e-33,
+];
 /// π/2 in parts of 33 bits, and what is left.
 const PARTS: [f64; 3] = [
     1.570_796_326_734_125_6,
@@ -96,15 +102,7 @@ fn reduced<const FUSED: bool>(x: f64) -> (f64, f64) {
     let shifted = multiply_add::<FUSED>(x, core::f64::consts::FRAC_2_PI, ROUND);
     let k = shifted - ROUND;
     let quadrant = shifted.to_bits();
-    // Exact: k has 20 bits, the parts 33.
-    let first = x - k * PARTS[0];
-    let less = k * PARTS[1];
-    let second = first - less;
-    let lost = (first - second) - less;
-    let tail = lost - (k * PARTS[2] + k * REST);
-    let r = second + tail;
-    let low = (second - r) + tail;
-    let (sine, cosine) = (sine::<FUSED>(r, low), cosine::<FUSED>(r, low));
+    let (sine, cosine) = if FUSED { fused(x, k) } else { in_steps(x, k) };
     let swapped = quadrant & 1 == 1;
     let (s, c) = (
         if swapped { cosine } else { sine },
@@ -117,36 +115,68 @@ fn reduced<const FUSED: bool>(x: f64) -> (f64, f64) {
     )
 }
 
-/// Of r + low, |r| ≤ π/4.
+/// Of x − k π/2, by fused multiply–adds.
 #[inline(always)]
-fn sine<const FUSED: bool>(r: f64, low: f64) -> f64 {
+fn fused(x: f64, k: f64) -> (f64, f64) {
+    let [first, second, third] = WHOLE_PARTS;
+    // Exact: x and k times the first part are multiples of 2⁻⁵³, and their difference is below 1.
+    let r = Float::mul_add(-k, first, x);
+    let r = Float::mul_add(-k, second, r);
+    let r = Float::mul_add(-k, third, r);
     let z = r * r;
-    let cube = z * r;
-    let rest = polynomial::<FUSED>(z, &SINE[1..]);
-    let correction = z * (0.5 * low - cube * rest) - low;
-    r - (correction - cube * SINE[0])
+    let half = Float::mul_add(z, polynomial::<true, _>(z, COSINE), -0.5);
+    (
+        Float::mul_add(z * r, polynomial::<true, _>(z, SINE), r),
+        Float::mul_add(z, half, 1.0),
+    )
+}
+
+/// Of x − k π/2, where products are rounded.
+#[inline(always)]
+fn in_steps(x: f64, k: f64) -> (f64, f64) {
+    // Exact: k has 20 bits, the parts 33.
+    let first = x - k * PARTS[0];
+    let less = k * PARTS[1];
+    let second = first - less;
+    let lost = (first - second) - less;
+    let tail = lost - (k * PARTS[2] + k * REST);
+    let r = second + tail;
+    let low = (second - r) + tail;
+    (sine(r, low), cosine(r, low))
 }
 
 /// Of r + low, |r| ≤ π/4.
 #[inline(always)]
-fn cosine<const FUSED: bool>(r: f64, low: f64) -> f64 {
+fn sine(r: f64, low: f64) -> f64 {
+    let [leading, rest @ ..] = SINE;
+    let z = r * r;
+    let cube = z * r;
+    let correction = z * (0.5 * low - cube * polynomial::<false, _>(z, rest)) - low;
+    r - (correction - cube * leading)
+}
+
+/// Of r + low, |r| ≤ π/4.
+#[inline(always)]
+fn cosine(r: f64, low: f64) -> f64 {
     let z = r * r;
     let half = 0.5 * z;
     let w = 1.0 - half;
-    w + (((1.0 - w) - half) + (z * (z * polynomial::<FUSED>(z, &COSINE)) - r * low))
+    w + (((1.0 - w) - half) + (z * (z * polynomial::<false, _>(z, COSINE)) - r * low))
 }
 
 /// Coefficients from the lowest.
 #[inline(always)]
-fn polynomial<const FUSED: bool>(z: f64, coefficients: &[f64]) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, &coefficient| {
-        multiply_add::<FUSED>(sum, z, coefficient)
-    })
+fn polynomial<const FUSED: bool, const N: usize>(z: f64, coefficients: [f64; N]) -> f64 {
+    let mut sum = coefficients[N - 1];
+    for &coefficient in coefficients[..N - 1].iter().rev() {
+        sum = multiply_add::<FUSED>(sum, z, coefficient);
+    }
+    sum
 }
 
 #[cfg(test)]
 mod tests {
-    use super::sin_cos_all;
+    use super::{LIMIT, reduced, sin_cos_all};
 
     /// Units in the last place between a value and the standard function, which is within 0.6 of the true one.
     fn ulps(value: f64, standard: f64) -> f64 {
@@ -166,13 +196,30 @@ mod tests {
         near.chain(spread).chain(small)
     }
 
-    #[test]
-    fn every_value_is_within_the_bound_of_the_standard_functions() {
-        for x in angles() {
-            let ([sine, _], [cosine, _]) = sin_cos_all(&[x, 0.5]);
+    fn check(values: impl Fn(f64) -> (f64, f64)) {
+        for x in angles().filter(|x| x.abs() <= LIMIT) {
+            let (sine, cosine) = values(x);
             // The bound of the documentation, and the error of the standard functions.
             assert!(ulps(sine, x.sin()) <= 2.0, "sin {x:e}: {sine:e}");
             assert!(ulps(cosine, x.cos()) <= 2.0, "cos {x:e}: {cosine:e}");
+        }
+    }
+
+    #[test]
+    fn every_value_is_within_the_bound_of_the_standard_functions() {
+        check(reduced::<false>);
+        check(reduced::<true>);
+    }
+
+    /// The doubles below the limit that are nearest to multiples of π/2, of which nothing but the last part is left.
+    #[test]
+    fn next_to_zeros_no_digit_is_lost() {
+        let next_to_zeros = (1..500_000_u32).map(|k| f64::from(k) * core::f64::consts::FRAC_PI_2);
+        for x in next_to_zeros.filter(|x| *x <= LIMIT) {
+            for (sine, cosine) in [reduced::<false>(x), reduced::<true>(x)] {
+                assert!(ulps(sine, x.sin()) <= 2.0, "sin {x:e}: {sine:e}");
+                assert!(ulps(cosine, x.cos()) <= 2.0, "cos {x:e}: {cosine:e}");
+            }
         }
     }
 
