@@ -28,16 +28,13 @@ pub fn relative(body: &BodyDescription) -> Result<Relative, Unsupported> {
     let zero = Vector::zeros();
     let up = Vector::z();
     let (angular, linear) = match body.joint.kind.value.as_str() {
-        "ball" | "ball_quaternion" => (triple(&speeds(3)?), zero),
-        "ball_child" | "ball_quaternion_child" => match &body.initial.motion {
-            Motion::Twist(twist) => {
-                let angular = vector(&twist.value.twist.fixed_rows::<3>(0).into_owned());
-                match twist.value.frame {
-                    TwistFrame::Child => (axes * angular, zero),
-                    TwistFrame::Parent => (angular, zero),
-                }
-            }
-            _ => (axes * triple(&speeds(3)?), zero),
+        "ball" | "ball_quaternion" => match turning(body, &axes) {
+            Some(angular) => (angular, zero),
+            None => (triple(&speeds(3)?), zero),
+        },
+        "ball_child" | "ball_quaternion_child" => match turning(body, &axes) {
+            Some(angular) => (angular, zero),
+            None => (axes * triple(&speeds(3)?), zero),
         },
         "free" => {
             let speeds = speeds(6)?;
@@ -67,6 +64,18 @@ pub fn relative(body: &BodyDescription) -> Result<Relative, Unsupported> {
         origin,
         angular,
         linear,
+    })
+}
+
+/// The angular velocity of a motion that is given as a twist, in parent axes.
+fn turning(body: &BodyDescription, axes: &Matrix) -> Option<Vector> {
+    let Motion::Twist(twist) = &body.initial.motion else {
+        return None;
+    };
+    let angular = vector(&twist.value.twist.fixed_rows::<3>(0).into_owned());
+    Some(match twist.value.frame {
+        TwistFrame::Child => axes * angular,
+        TwistFrame::Parent => angular,
     })
 }
 
