@@ -5138,6 +5138,52 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
 #[must_use]
 pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T; 60] {
     let n = T::from_f64;
+    // link_1: force (14 additions, 20 multiplications)
+    let link_1_force = v[2]
+        .mul_add(n(0.00041000000000000005), v[0] * n(0.30950000000000016));
+    let link_1_force_2 = v[1] * n(0.30944000000000016);
+    let link_1_force_3 = v[2]
+        .mul_add(n(0.00023999999999999976), v[0] * n(0.00041000000000000005));
+    let link_1_force_4 = (-v[2])
+        .mul_add(
+            link_1_force_2,
+            q[7]
+                .mul_add(
+                    n(15.303600000000007),
+                    a[2]
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            a[0].mul_add(n(0.30950000000000016), v[1] * link_1_force_3),
+                        ),
+                ),
+        );
+    let link_1_force_5 = (-q[8])
+        .mul_add(
+            n(0.039240000000000004),
+            (-q[6])
+                .mul_add(
+                    n(15.303600000000007),
+                    (-v[0])
+                        .mul_add(
+                            link_1_force_3,
+                            a[1].mul_add(n(0.30944000000000016), v[2] * link_1_force),
+                        ),
+                ),
+        );
+    let link_1_force_6 = (-v[1])
+        .mul_add(
+            link_1_force,
+            q[7]
+                .mul_add(
+                    n(0.039240000000000004),
+                    a[2]
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            a[0]
+                                .mul_add(n(0.00041000000000000005), v[0] * link_1_force_2),
+                        ),
+                ),
+        );
     // link_2: angular velocity (9 additions, 9 multiplications)
     let link_2_angular_velocity = v[2].mul_add(q[15], v[1].mul_add(q[12], v[0] * q[9]));
     let link_2_angular_velocity_2 = v[2]
@@ -5147,264 +5193,6 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_2_rate_x = v[3] + link_2_angular_velocity;
     let link_2_rate_y = v[4] + link_2_angular_velocity_2;
     let link_2_rate_z = v[5] + link_2_angular_velocity_3;
-    // link_3: angular velocity (9 additions, 9 multiplications)
-    let link_3_angular_velocity = q[24]
-        .mul_add(link_2_rate_z, q[21].mul_add(link_2_rate_y, q[18] * link_2_rate_x));
-    let link_3_angular_velocity_2 = q[25]
-        .mul_add(link_2_rate_z, q[22].mul_add(link_2_rate_y, q[19] * link_2_rate_x));
-    let link_3_angular_velocity_3 = q[26]
-        .mul_add(link_2_rate_z, q[23].mul_add(link_2_rate_y, q[20] * link_2_rate_x));
-    let link_3_rate_x = v[6] + link_3_angular_velocity;
-    let link_3_rate_y = v[7] + link_3_angular_velocity_2;
-    let link_3_rate_z = v[8] + link_3_angular_velocity_3;
-    // link_4: angular velocity (9 additions, 9 multiplications)
-    let link_4_angular_velocity = q[33]
-        .mul_add(link_3_rate_z, q[30].mul_add(link_3_rate_y, q[27] * link_3_rate_x));
-    let link_4_angular_velocity_2 = q[34]
-        .mul_add(link_3_rate_z, q[31].mul_add(link_3_rate_y, q[28] * link_3_rate_x));
-    let link_4_angular_velocity_3 = q[35]
-        .mul_add(link_3_rate_z, q[32].mul_add(link_3_rate_y, q[29] * link_3_rate_x));
-    let link_4_rate_x = v[9] + link_4_angular_velocity;
-    let link_4_rate_y = v[10] + link_4_angular_velocity_2;
-    let link_4_rate_z = v[11] + link_4_angular_velocity_3;
-    // link_5: angular velocity (9 additions, 9 multiplications)
-    let link_5_angular_velocity = q[42]
-        .mul_add(link_4_rate_z, q[39].mul_add(link_4_rate_y, q[36] * link_4_rate_x));
-    let link_5_angular_velocity_2 = q[43]
-        .mul_add(link_4_rate_z, q[40].mul_add(link_4_rate_y, q[37] * link_4_rate_x));
-    let link_5_angular_velocity_3 = q[44]
-        .mul_add(link_4_rate_z, q[41].mul_add(link_4_rate_y, q[38] * link_4_rate_x));
-    let link_5_rate_x = v[12] + link_5_angular_velocity;
-    let link_5_rate_y = v[13] + link_5_angular_velocity_2;
-    let link_5_rate_z = v[14] + link_5_angular_velocity_3;
-    // link_6: angular velocity (9 additions, 9 multiplications)
-    let link_6_angular_velocity = q[51]
-        .mul_add(link_5_rate_z, q[48].mul_add(link_5_rate_y, q[45] * link_5_rate_x));
-    let link_6_angular_velocity_2 = q[52]
-        .mul_add(link_5_rate_z, q[49].mul_add(link_5_rate_y, q[46] * link_5_rate_x));
-    let link_6_angular_velocity_3 = q[53]
-        .mul_add(link_5_rate_z, q[50].mul_add(link_5_rate_y, q[47] * link_5_rate_x));
-    let link_6_rate_x = v[15] + link_6_angular_velocity;
-    let link_6_rate_y = v[16] + link_6_angular_velocity_2;
-    let link_6_rate_z = v[17] + link_6_angular_velocity_3;
-    // link_7: angular velocity (9 additions, 9 multiplications)
-    let link_7_angular_velocity = q[60]
-        .mul_add(link_6_rate_z, q[57].mul_add(link_6_rate_y, q[54] * link_6_rate_x));
-    let link_7_angular_velocity_2 = q[61]
-        .mul_add(link_6_rate_z, q[58].mul_add(link_6_rate_y, q[55] * link_6_rate_x));
-    let link_7_angular_velocity_3 = q[62]
-        .mul_add(link_6_rate_z, q[59].mul_add(link_6_rate_y, q[56] * link_6_rate_x));
-    let link_7_rate_x = v[18] + link_7_angular_velocity;
-    let link_7_rate_y = v[19] + link_7_angular_velocity_2;
-    let link_7_rate_z = v[20] + link_7_angular_velocity_3;
-    // link_8: angular velocity (9 additions, 9 multiplications)
-    let link_8_angular_velocity = q[69]
-        .mul_add(link_7_rate_z, q[66].mul_add(link_7_rate_y, q[63] * link_7_rate_x));
-    let link_8_angular_velocity_2 = q[70]
-        .mul_add(link_7_rate_z, q[67].mul_add(link_7_rate_y, q[64] * link_7_rate_x));
-    let link_8_angular_velocity_3 = q[71]
-        .mul_add(link_7_rate_z, q[68].mul_add(link_7_rate_y, q[65] * link_7_rate_x));
-    let link_8_rate_x = v[21] + link_8_angular_velocity;
-    let link_8_rate_y = v[22] + link_8_angular_velocity_2;
-    let link_8_rate_z = v[23] + link_8_angular_velocity_3;
-    // link_9: angular velocity (9 additions, 9 multiplications)
-    let link_9_angular_velocity = q[78]
-        .mul_add(link_8_rate_z, q[75].mul_add(link_8_rate_y, q[72] * link_8_rate_x));
-    let link_9_angular_velocity_2 = q[79]
-        .mul_add(link_8_rate_z, q[76].mul_add(link_8_rate_y, q[73] * link_8_rate_x));
-    let link_9_angular_velocity_3 = q[80]
-        .mul_add(link_8_rate_z, q[77].mul_add(link_8_rate_y, q[74] * link_8_rate_x));
-    let link_9_rate_x = v[24] + link_9_angular_velocity;
-    let link_9_rate_y = v[25] + link_9_angular_velocity_2;
-    let link_9_rate_z = v[26] + link_9_angular_velocity_3;
-    // link_10: angular velocity (9 additions, 9 multiplications)
-    let link_10_angular_velocity = q[87]
-        .mul_add(link_9_rate_z, q[84].mul_add(link_9_rate_y, q[81] * link_9_rate_x));
-    let link_10_angular_velocity_2 = q[88]
-        .mul_add(link_9_rate_z, q[85].mul_add(link_9_rate_y, q[82] * link_9_rate_x));
-    let link_10_angular_velocity_3 = q[89]
-        .mul_add(link_9_rate_z, q[86].mul_add(link_9_rate_y, q[83] * link_9_rate_x));
-    let link_10_rate_x = v[27] + link_10_angular_velocity;
-    let link_10_rate_y = v[28] + link_10_angular_velocity_2;
-    let link_10_rate_z = v[29] + link_10_angular_velocity_3;
-    // link_11: angular velocity (9 additions, 9 multiplications)
-    let link_11_angular_velocity = q[96]
-        .mul_add(link_10_rate_z, q[93].mul_add(link_10_rate_y, q[90] * link_10_rate_x));
-    let link_11_angular_velocity_2 = q[97]
-        .mul_add(link_10_rate_z, q[94].mul_add(link_10_rate_y, q[91] * link_10_rate_x));
-    let link_11_angular_velocity_3 = q[98]
-        .mul_add(link_10_rate_z, q[95].mul_add(link_10_rate_y, q[92] * link_10_rate_x));
-    let link_11_rate_x = v[30] + link_11_angular_velocity;
-    let link_11_rate_y = v[31] + link_11_angular_velocity_2;
-    let link_11_rate_z = v[32] + link_11_angular_velocity_3;
-    // link_12: angular velocity (9 additions, 9 multiplications)
-    let link_12_angular_velocity = q[105]
-        .mul_add(link_11_rate_z, q[102].mul_add(link_11_rate_y, q[99] * link_11_rate_x));
-    let link_12_angular_velocity_2 = q[106]
-        .mul_add(
-            link_11_rate_z,
-            q[103].mul_add(link_11_rate_y, q[100] * link_11_rate_x),
-        );
-    let link_12_angular_velocity_3 = q[107]
-        .mul_add(
-            link_11_rate_z,
-            q[104].mul_add(link_11_rate_y, q[101] * link_11_rate_x),
-        );
-    let link_12_rate_x = v[33] + link_12_angular_velocity;
-    let link_12_rate_y = v[34] + link_12_angular_velocity_2;
-    let link_12_rate_z = v[35] + link_12_angular_velocity_3;
-    // link_13: angular velocity (9 additions, 9 multiplications)
-    let link_13_angular_velocity = q[114]
-        .mul_add(
-            link_12_rate_z,
-            q[111].mul_add(link_12_rate_y, q[108] * link_12_rate_x),
-        );
-    let link_13_angular_velocity_2 = q[115]
-        .mul_add(
-            link_12_rate_z,
-            q[112].mul_add(link_12_rate_y, q[109] * link_12_rate_x),
-        );
-    let link_13_angular_velocity_3 = q[116]
-        .mul_add(
-            link_12_rate_z,
-            q[113].mul_add(link_12_rate_y, q[110] * link_12_rate_x),
-        );
-    let link_13_rate_x = v[36] + link_13_angular_velocity;
-    let link_13_rate_y = v[37] + link_13_angular_velocity_2;
-    let link_13_rate_z = v[38] + link_13_angular_velocity_3;
-    // link_14: angular velocity (9 additions, 9 multiplications)
-    let link_14_angular_velocity = q[123]
-        .mul_add(
-            link_13_rate_z,
-            q[120].mul_add(link_13_rate_y, q[117] * link_13_rate_x),
-        );
-    let link_14_angular_velocity_2 = q[124]
-        .mul_add(
-            link_13_rate_z,
-            q[121].mul_add(link_13_rate_y, q[118] * link_13_rate_x),
-        );
-    let link_14_angular_velocity_3 = q[125]
-        .mul_add(
-            link_13_rate_z,
-            q[122].mul_add(link_13_rate_y, q[119] * link_13_rate_x),
-        );
-    let link_14_rate_x = v[39] + link_14_angular_velocity;
-    let link_14_rate_y = v[40] + link_14_angular_velocity_2;
-    let link_14_rate_z = v[41] + link_14_angular_velocity_3;
-    // link_15: angular velocity (9 additions, 9 multiplications)
-    let link_15_angular_velocity = q[132]
-        .mul_add(
-            link_14_rate_z,
-            q[129].mul_add(link_14_rate_y, q[126] * link_14_rate_x),
-        );
-    let link_15_angular_velocity_2 = q[133]
-        .mul_add(
-            link_14_rate_z,
-            q[130].mul_add(link_14_rate_y, q[127] * link_14_rate_x),
-        );
-    let link_15_angular_velocity_3 = q[134]
-        .mul_add(
-            link_14_rate_z,
-            q[131].mul_add(link_14_rate_y, q[128] * link_14_rate_x),
-        );
-    let link_15_rate_x = v[42] + link_15_angular_velocity;
-    let link_15_rate_y = v[43] + link_15_angular_velocity_2;
-    let link_15_rate_z = v[44] + link_15_angular_velocity_3;
-    // link_16: angular velocity (9 additions, 9 multiplications)
-    let link_16_angular_velocity = q[141]
-        .mul_add(
-            link_15_rate_z,
-            q[138].mul_add(link_15_rate_y, q[135] * link_15_rate_x),
-        );
-    let link_16_angular_velocity_2 = q[142]
-        .mul_add(
-            link_15_rate_z,
-            q[139].mul_add(link_15_rate_y, q[136] * link_15_rate_x),
-        );
-    let link_16_angular_velocity_3 = q[143]
-        .mul_add(
-            link_15_rate_z,
-            q[140].mul_add(link_15_rate_y, q[137] * link_15_rate_x),
-        );
-    let link_16_rate_x = v[45] + link_16_angular_velocity;
-    let link_16_rate_y = v[46] + link_16_angular_velocity_2;
-    let link_16_rate_z = v[47] + link_16_angular_velocity_3;
-    // link_17: angular velocity (9 additions, 9 multiplications)
-    let link_17_angular_velocity = q[150]
-        .mul_add(
-            link_16_rate_z,
-            q[147].mul_add(link_16_rate_y, q[144] * link_16_rate_x),
-        );
-    let link_17_angular_velocity_2 = q[151]
-        .mul_add(
-            link_16_rate_z,
-            q[148].mul_add(link_16_rate_y, q[145] * link_16_rate_x),
-        );
-    let link_17_angular_velocity_3 = q[152]
-        .mul_add(
-            link_16_rate_z,
-            q[149].mul_add(link_16_rate_y, q[146] * link_16_rate_x),
-        );
-    let link_17_rate_x = v[48] + link_17_angular_velocity;
-    let link_17_rate_y = v[49] + link_17_angular_velocity_2;
-    let link_17_rate_z = v[50] + link_17_angular_velocity_3;
-    // link_18: angular velocity (9 additions, 9 multiplications)
-    let link_18_angular_velocity = q[159]
-        .mul_add(
-            link_17_rate_z,
-            q[156].mul_add(link_17_rate_y, q[153] * link_17_rate_x),
-        );
-    let link_18_angular_velocity_2 = q[160]
-        .mul_add(
-            link_17_rate_z,
-            q[157].mul_add(link_17_rate_y, q[154] * link_17_rate_x),
-        );
-    let link_18_angular_velocity_3 = q[161]
-        .mul_add(
-            link_17_rate_z,
-            q[158].mul_add(link_17_rate_y, q[155] * link_17_rate_x),
-        );
-    let link_18_rate_x = v[51] + link_18_angular_velocity;
-    let link_18_rate_y = v[52] + link_18_angular_velocity_2;
-    let link_18_rate_z = v[53] + link_18_angular_velocity_3;
-    // link_19: angular velocity (9 additions, 9 multiplications)
-    let link_19_angular_velocity = q[168]
-        .mul_add(
-            link_18_rate_z,
-            q[165].mul_add(link_18_rate_y, q[162] * link_18_rate_x),
-        );
-    let link_19_angular_velocity_2 = q[169]
-        .mul_add(
-            link_18_rate_z,
-            q[166].mul_add(link_18_rate_y, q[163] * link_18_rate_x),
-        );
-    let link_19_angular_velocity_3 = q[170]
-        .mul_add(
-            link_18_rate_z,
-            q[167].mul_add(link_18_rate_y, q[164] * link_18_rate_x),
-        );
-    let link_19_rate_x = v[54] + link_19_angular_velocity;
-    let link_19_rate_y = v[55] + link_19_angular_velocity_2;
-    let link_19_rate_z = v[56] + link_19_angular_velocity_3;
-    // link_20: angular velocity (9 additions, 9 multiplications)
-    let link_20_angular_velocity = q[177]
-        .mul_add(
-            link_19_rate_z,
-            q[174].mul_add(link_19_rate_y, q[171] * link_19_rate_x),
-        );
-    let link_20_angular_velocity_2 = q[178]
-        .mul_add(
-            link_19_rate_z,
-            q[175].mul_add(link_19_rate_y, q[172] * link_19_rate_x),
-        );
-    let link_20_angular_velocity_3 = q[179]
-        .mul_add(
-            link_19_rate_z,
-            q[176].mul_add(link_19_rate_y, q[173] * link_19_rate_x),
-        );
-    let link_20_rate_x = v[57] + link_20_angular_velocity;
-    let link_20_rate_y = v[58] + link_20_angular_velocity_2;
-    let link_20_rate_z = v[59] + link_20_angular_velocity_3;
     // link_2: acceleration (30 additions, 33 multiplications)
     let link_2_acceleration = (-(v[0].mul_add(v[2], a[1])))
         .mul_add(n(0.2), q[6] * n(9.81));
@@ -5482,6 +5270,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_2_rate_z, link_2_acceleration_7);
     let link_2_acceleration_14 = link_2_rate_x
         .mul_add(link_2_rate_x, link_2_acceleration_11);
+    // link_2: force (17 additions, 26 multiplications)
+    let link_2_force = link_2_rate_z
+        .mul_add(n(0.00041000000000000005), link_2_rate_x * n(0.29350000000000015));
+    let link_2_force_2 = link_2_rate_y * n(0.29344000000000015);
+    let link_2_force_3 = link_2_rate_z
+        .mul_add(n(0.00023999999999999976), link_2_rate_x * n(0.00041000000000000005));
+    let link_2_force_4 = (-link_2_rate_z)
+        .mul_add(
+            link_2_force_2,
+            link_2_acceleration_5
+                .mul_add(
+                    n(1.4800000000000004),
+                    link_2_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_2_acceleration_7
+                                .mul_add(
+                                    n(0.29350000000000015),
+                                    link_2_rate_y * link_2_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_2_force_5 = (-link_2_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_2_acceleration_4)
+                .mul_add(
+                    n(1.4800000000000004),
+                    (-link_2_rate_x)
+                        .mul_add(
+                            link_2_force_3,
+                            link_2_acceleration_8
+                                .mul_add(
+                                    n(0.29344000000000015),
+                                    link_2_rate_z * link_2_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_2_force_6 = (-link_2_rate_y)
+        .mul_add(
+            link_2_force,
+            link_2_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_2_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_2_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_2_rate_x * link_2_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_3: angular velocity (9 additions, 9 multiplications)
+    let link_3_angular_velocity = q[24]
+        .mul_add(link_2_rate_z, q[21].mul_add(link_2_rate_y, q[18] * link_2_rate_x));
+    let link_3_angular_velocity_2 = q[25]
+        .mul_add(link_2_rate_z, q[22].mul_add(link_2_rate_y, q[19] * link_2_rate_x));
+    let link_3_angular_velocity_3 = q[26]
+        .mul_add(link_2_rate_z, q[23].mul_add(link_2_rate_y, q[20] * link_2_rate_x));
+    let link_3_rate_x = v[6] + link_3_angular_velocity;
+    let link_3_rate_y = v[7] + link_3_angular_velocity_2;
+    let link_3_rate_z = v[8] + link_3_angular_velocity_3;
     // link_3: acceleration (30 additions, 33 multiplications)
     let link_3_acceleration = (-link_2_acceleration_12)
         .mul_add(n(0.2), link_2_acceleration_4);
@@ -5562,6 +5417,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_3_rate_z, link_3_acceleration_7);
     let link_3_acceleration_14 = link_3_rate_x
         .mul_add(link_3_rate_x, link_3_acceleration_11);
+    // link_3: force (17 additions, 26 multiplications)
+    let link_3_force = link_3_rate_z
+        .mul_add(n(0.00041000000000000005), link_3_rate_x * n(0.27750000000000014));
+    let link_3_force_2 = link_3_rate_y * n(0.27744000000000013);
+    let link_3_force_3 = link_3_rate_z
+        .mul_add(n(0.00023999999999999976), link_3_rate_x * n(0.00041000000000000005));
+    let link_3_force_4 = (-link_3_rate_z)
+        .mul_add(
+            link_3_force_2,
+            link_3_acceleration_5
+                .mul_add(
+                    n(1.4000000000000004),
+                    link_3_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_3_acceleration_7
+                                .mul_add(
+                                    n(0.27750000000000014),
+                                    link_3_rate_y * link_3_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_3_force_5 = (-link_3_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_3_acceleration_4)
+                .mul_add(
+                    n(1.4000000000000004),
+                    (-link_3_rate_x)
+                        .mul_add(
+                            link_3_force_3,
+                            link_3_acceleration_8
+                                .mul_add(
+                                    n(0.27744000000000013),
+                                    link_3_rate_z * link_3_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_3_force_6 = (-link_3_rate_y)
+        .mul_add(
+            link_3_force,
+            link_3_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_3_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_3_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_3_rate_x * link_3_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_4: angular velocity (9 additions, 9 multiplications)
+    let link_4_angular_velocity = q[33]
+        .mul_add(link_3_rate_z, q[30].mul_add(link_3_rate_y, q[27] * link_3_rate_x));
+    let link_4_angular_velocity_2 = q[34]
+        .mul_add(link_3_rate_z, q[31].mul_add(link_3_rate_y, q[28] * link_3_rate_x));
+    let link_4_angular_velocity_3 = q[35]
+        .mul_add(link_3_rate_z, q[32].mul_add(link_3_rate_y, q[29] * link_3_rate_x));
+    let link_4_rate_x = v[9] + link_4_angular_velocity;
+    let link_4_rate_y = v[10] + link_4_angular_velocity_2;
+    let link_4_rate_z = v[11] + link_4_angular_velocity_3;
     // link_4: acceleration (30 additions, 33 multiplications)
     let link_4_acceleration = (-link_3_acceleration_12)
         .mul_add(n(0.2), link_3_acceleration_4);
@@ -5642,6 +5564,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_4_rate_z, link_4_acceleration_7);
     let link_4_acceleration_14 = link_4_rate_x
         .mul_add(link_4_rate_x, link_4_acceleration_11);
+    // link_4: force (17 additions, 26 multiplications)
+    let link_4_force = link_4_rate_z
+        .mul_add(n(0.00041000000000000005), link_4_rate_x * n(0.2615000000000001));
+    let link_4_force_2 = link_4_rate_y * n(0.2614400000000001);
+    let link_4_force_3 = link_4_rate_z
+        .mul_add(n(0.00023999999999999976), link_4_rate_x * n(0.00041000000000000005));
+    let link_4_force_4 = (-link_4_rate_z)
+        .mul_add(
+            link_4_force_2,
+            link_4_acceleration_5
+                .mul_add(
+                    n(1.3200000000000003),
+                    link_4_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_4_acceleration_7
+                                .mul_add(
+                                    n(0.2615000000000001),
+                                    link_4_rate_y * link_4_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_4_force_5 = (-link_4_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_4_acceleration_4)
+                .mul_add(
+                    n(1.3200000000000003),
+                    (-link_4_rate_x)
+                        .mul_add(
+                            link_4_force_3,
+                            link_4_acceleration_8
+                                .mul_add(
+                                    n(0.2614400000000001),
+                                    link_4_rate_z * link_4_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_4_force_6 = (-link_4_rate_y)
+        .mul_add(
+            link_4_force,
+            link_4_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_4_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_4_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_4_rate_x * link_4_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_5: angular velocity (9 additions, 9 multiplications)
+    let link_5_angular_velocity = q[42]
+        .mul_add(link_4_rate_z, q[39].mul_add(link_4_rate_y, q[36] * link_4_rate_x));
+    let link_5_angular_velocity_2 = q[43]
+        .mul_add(link_4_rate_z, q[40].mul_add(link_4_rate_y, q[37] * link_4_rate_x));
+    let link_5_angular_velocity_3 = q[44]
+        .mul_add(link_4_rate_z, q[41].mul_add(link_4_rate_y, q[38] * link_4_rate_x));
+    let link_5_rate_x = v[12] + link_5_angular_velocity;
+    let link_5_rate_y = v[13] + link_5_angular_velocity_2;
+    let link_5_rate_z = v[14] + link_5_angular_velocity_3;
     // link_5: acceleration (30 additions, 33 multiplications)
     let link_5_acceleration = (-link_4_acceleration_12)
         .mul_add(n(0.2), link_4_acceleration_4);
@@ -5722,6 +5711,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_5_rate_z, link_5_acceleration_7);
     let link_5_acceleration_14 = link_5_rate_x
         .mul_add(link_5_rate_x, link_5_acceleration_11);
+    // link_5: force (17 additions, 26 multiplications)
+    let link_5_force = link_5_rate_z
+        .mul_add(n(0.00041000000000000005), link_5_rate_x * n(0.24550000000000008));
+    let link_5_force_2 = link_5_rate_y * n(0.24544000000000007);
+    let link_5_force_3 = link_5_rate_z
+        .mul_add(n(0.00023999999999999976), link_5_rate_x * n(0.00041000000000000005));
+    let link_5_force_4 = (-link_5_rate_z)
+        .mul_add(
+            link_5_force_2,
+            link_5_acceleration_5
+                .mul_add(
+                    n(1.2400000000000002),
+                    link_5_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_5_acceleration_7
+                                .mul_add(
+                                    n(0.24550000000000008),
+                                    link_5_rate_y * link_5_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_5_force_5 = (-link_5_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_5_acceleration_4)
+                .mul_add(
+                    n(1.2400000000000002),
+                    (-link_5_rate_x)
+                        .mul_add(
+                            link_5_force_3,
+                            link_5_acceleration_8
+                                .mul_add(
+                                    n(0.24544000000000007),
+                                    link_5_rate_z * link_5_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_5_force_6 = (-link_5_rate_y)
+        .mul_add(
+            link_5_force,
+            link_5_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_5_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_5_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_5_rate_x * link_5_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_6: angular velocity (9 additions, 9 multiplications)
+    let link_6_angular_velocity = q[51]
+        .mul_add(link_5_rate_z, q[48].mul_add(link_5_rate_y, q[45] * link_5_rate_x));
+    let link_6_angular_velocity_2 = q[52]
+        .mul_add(link_5_rate_z, q[49].mul_add(link_5_rate_y, q[46] * link_5_rate_x));
+    let link_6_angular_velocity_3 = q[53]
+        .mul_add(link_5_rate_z, q[50].mul_add(link_5_rate_y, q[47] * link_5_rate_x));
+    let link_6_rate_x = v[15] + link_6_angular_velocity;
+    let link_6_rate_y = v[16] + link_6_angular_velocity_2;
+    let link_6_rate_z = v[17] + link_6_angular_velocity_3;
     // link_6: acceleration (30 additions, 33 multiplications)
     let link_6_acceleration = (-link_5_acceleration_12)
         .mul_add(n(0.2), link_5_acceleration_4);
@@ -5802,6 +5858,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_6_rate_z, link_6_acceleration_7);
     let link_6_acceleration_14 = link_6_rate_x
         .mul_add(link_6_rate_x, link_6_acceleration_11);
+    // link_6: force (17 additions, 26 multiplications)
+    let link_6_force = link_6_rate_z
+        .mul_add(n(0.00041000000000000005), link_6_rate_x * n(0.22950000000000007));
+    let link_6_force_2 = link_6_rate_y * n(0.22944000000000006);
+    let link_6_force_3 = link_6_rate_z
+        .mul_add(n(0.00023999999999999976), link_6_rate_x * n(0.00041000000000000005));
+    let link_6_force_4 = (-link_6_rate_z)
+        .mul_add(
+            link_6_force_2,
+            link_6_acceleration_5
+                .mul_add(
+                    n(1.1600000000000001),
+                    link_6_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_6_acceleration_7
+                                .mul_add(
+                                    n(0.22950000000000007),
+                                    link_6_rate_y * link_6_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_6_force_5 = (-link_6_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_6_acceleration_4)
+                .mul_add(
+                    n(1.1600000000000001),
+                    (-link_6_rate_x)
+                        .mul_add(
+                            link_6_force_3,
+                            link_6_acceleration_8
+                                .mul_add(
+                                    n(0.22944000000000006),
+                                    link_6_rate_z * link_6_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_6_force_6 = (-link_6_rate_y)
+        .mul_add(
+            link_6_force,
+            link_6_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_6_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_6_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_6_rate_x * link_6_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_7: angular velocity (9 additions, 9 multiplications)
+    let link_7_angular_velocity = q[60]
+        .mul_add(link_6_rate_z, q[57].mul_add(link_6_rate_y, q[54] * link_6_rate_x));
+    let link_7_angular_velocity_2 = q[61]
+        .mul_add(link_6_rate_z, q[58].mul_add(link_6_rate_y, q[55] * link_6_rate_x));
+    let link_7_angular_velocity_3 = q[62]
+        .mul_add(link_6_rate_z, q[59].mul_add(link_6_rate_y, q[56] * link_6_rate_x));
+    let link_7_rate_x = v[18] + link_7_angular_velocity;
+    let link_7_rate_y = v[19] + link_7_angular_velocity_2;
+    let link_7_rate_z = v[20] + link_7_angular_velocity_3;
     // link_7: acceleration (30 additions, 33 multiplications)
     let link_7_acceleration = (-link_6_acceleration_12)
         .mul_add(n(0.2), link_6_acceleration_4);
@@ -5882,6 +6005,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_7_rate_z, link_7_acceleration_7);
     let link_7_acceleration_14 = link_7_rate_x
         .mul_add(link_7_rate_x, link_7_acceleration_11);
+    // link_7: force (17 additions, 26 multiplications)
+    let link_7_force = link_7_rate_z
+        .mul_add(n(0.00041000000000000005), link_7_rate_x * n(0.21350000000000005));
+    let link_7_force_2 = link_7_rate_y * n(0.21344000000000005);
+    let link_7_force_3 = link_7_rate_z
+        .mul_add(n(0.00023999999999999976), link_7_rate_x * n(0.00041000000000000005));
+    let link_7_force_4 = (-link_7_rate_z)
+        .mul_add(
+            link_7_force_2,
+            link_7_acceleration_5
+                .mul_add(
+                    n(1.08),
+                    link_7_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_7_acceleration_7
+                                .mul_add(
+                                    n(0.21350000000000005),
+                                    link_7_rate_y * link_7_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_7_force_5 = (-link_7_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_7_acceleration_4)
+                .mul_add(
+                    n(1.08),
+                    (-link_7_rate_x)
+                        .mul_add(
+                            link_7_force_3,
+                            link_7_acceleration_8
+                                .mul_add(
+                                    n(0.21344000000000005),
+                                    link_7_rate_z * link_7_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_7_force_6 = (-link_7_rate_y)
+        .mul_add(
+            link_7_force,
+            link_7_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_7_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_7_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_7_rate_x * link_7_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_8: angular velocity (9 additions, 9 multiplications)
+    let link_8_angular_velocity = q[69]
+        .mul_add(link_7_rate_z, q[66].mul_add(link_7_rate_y, q[63] * link_7_rate_x));
+    let link_8_angular_velocity_2 = q[70]
+        .mul_add(link_7_rate_z, q[67].mul_add(link_7_rate_y, q[64] * link_7_rate_x));
+    let link_8_angular_velocity_3 = q[71]
+        .mul_add(link_7_rate_z, q[68].mul_add(link_7_rate_y, q[65] * link_7_rate_x));
+    let link_8_rate_x = v[21] + link_8_angular_velocity;
+    let link_8_rate_y = v[22] + link_8_angular_velocity_2;
+    let link_8_rate_z = v[23] + link_8_angular_velocity_3;
     // link_8: acceleration (30 additions, 33 multiplications)
     let link_8_acceleration = (-link_7_acceleration_12)
         .mul_add(n(0.2), link_7_acceleration_4);
@@ -5962,6 +6152,65 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_8_rate_z, link_8_acceleration_7);
     let link_8_acceleration_14 = link_8_rate_x
         .mul_add(link_8_rate_x, link_8_acceleration_11);
+    // link_8: force (17 additions, 21 multiplications)
+    let link_8_force = link_8_rate_z
+        .mul_add(n(0.00041000000000000005), link_8_rate_x * n(0.19750000000000004));
+    let link_8_force_2 = link_8_rate_y * n(0.19744000000000003);
+    let link_8_force_3 = link_8_rate_z
+        .mul_add(n(0.00023999999999999976), link_8_rate_x * n(0.00041000000000000005));
+    let link_8_force_4 = (-link_8_rate_z)
+        .mul_add(
+            link_8_force_2,
+            link_8_acceleration_9
+                .mul_add(
+                    n(0.00041000000000000005),
+                    link_8_acceleration_7
+                        .mul_add(
+                            n(0.19750000000000004),
+                            link_8_rate_y.mul_add(link_8_force_3, link_8_acceleration_5),
+                        ),
+                ),
+        );
+    let link_8_force_5 = (-link_8_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_8_rate_x)
+                .mul_add(
+                    link_8_force_3,
+                    link_8_acceleration_8
+                        .mul_add(
+                            n(0.19744000000000003),
+                            link_8_rate_z.mul_add(link_8_force, -link_8_acceleration_4),
+                        ),
+                ),
+        );
+    let link_8_force_6 = (-link_8_rate_y)
+        .mul_add(
+            link_8_force,
+            link_8_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_8_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_8_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_8_rate_x * link_8_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_9: angular velocity (9 additions, 9 multiplications)
+    let link_9_angular_velocity = q[78]
+        .mul_add(link_8_rate_z, q[75].mul_add(link_8_rate_y, q[72] * link_8_rate_x));
+    let link_9_angular_velocity_2 = q[79]
+        .mul_add(link_8_rate_z, q[76].mul_add(link_8_rate_y, q[73] * link_8_rate_x));
+    let link_9_angular_velocity_3 = q[80]
+        .mul_add(link_8_rate_z, q[77].mul_add(link_8_rate_y, q[74] * link_8_rate_x));
+    let link_9_rate_x = v[24] + link_9_angular_velocity;
+    let link_9_rate_y = v[25] + link_9_angular_velocity_2;
+    let link_9_rate_z = v[26] + link_9_angular_velocity_3;
     // link_9: acceleration (30 additions, 33 multiplications)
     let link_9_acceleration = (-link_8_acceleration_12)
         .mul_add(n(0.2), link_8_acceleration_4);
@@ -6042,6 +6291,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_9_rate_z, link_9_acceleration_7);
     let link_9_acceleration_14 = link_9_rate_x
         .mul_add(link_9_rate_x, link_9_acceleration_11);
+    // link_9: force (17 additions, 26 multiplications)
+    let link_9_force = link_9_rate_z
+        .mul_add(n(0.00041000000000000005), link_9_rate_x * n(0.18150000000000002));
+    let link_9_force_2 = link_9_rate_y * n(0.18144000000000002);
+    let link_9_force_3 = link_9_rate_z
+        .mul_add(n(0.00023999999999999976), link_9_rate_x * n(0.00041000000000000005));
+    let link_9_force_4 = (-link_9_rate_z)
+        .mul_add(
+            link_9_force_2,
+            link_9_acceleration_5
+                .mul_add(
+                    n(0.9199999999999999),
+                    link_9_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_9_acceleration_7
+                                .mul_add(
+                                    n(0.18150000000000002),
+                                    link_9_rate_y * link_9_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_9_force_5 = (-link_9_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_9_acceleration_4)
+                .mul_add(
+                    n(0.9199999999999999),
+                    (-link_9_rate_x)
+                        .mul_add(
+                            link_9_force_3,
+                            link_9_acceleration_8
+                                .mul_add(
+                                    n(0.18144000000000002),
+                                    link_9_rate_z * link_9_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_9_force_6 = (-link_9_rate_y)
+        .mul_add(
+            link_9_force,
+            link_9_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_9_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_9_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_9_rate_x * link_9_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_10: angular velocity (9 additions, 9 multiplications)
+    let link_10_angular_velocity = q[87]
+        .mul_add(link_9_rate_z, q[84].mul_add(link_9_rate_y, q[81] * link_9_rate_x));
+    let link_10_angular_velocity_2 = q[88]
+        .mul_add(link_9_rate_z, q[85].mul_add(link_9_rate_y, q[82] * link_9_rate_x));
+    let link_10_angular_velocity_3 = q[89]
+        .mul_add(link_9_rate_z, q[86].mul_add(link_9_rate_y, q[83] * link_9_rate_x));
+    let link_10_rate_x = v[27] + link_10_angular_velocity;
+    let link_10_rate_y = v[28] + link_10_angular_velocity_2;
+    let link_10_rate_z = v[29] + link_10_angular_velocity_3;
     // link_10: acceleration (30 additions, 33 multiplications)
     let link_10_acceleration = (-link_9_acceleration_12)
         .mul_add(n(0.2), link_9_acceleration_4);
@@ -6122,6 +6438,67 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_10_rate_z, link_10_acceleration_7);
     let link_10_acceleration_14 = link_10_rate_x
         .mul_add(link_10_rate_x, link_10_acceleration_11);
+    // link_10: force (17 additions, 26 multiplications)
+    let link_10_force = link_10_rate_z
+        .mul_add(n(0.00041000000000000005), link_10_rate_x * n(0.1655));
+    let link_10_force_2 = link_10_rate_y * n(0.16544);
+    let link_10_force_3 = link_10_rate_z
+        .mul_add(n(0.00023999999999999976), link_10_rate_x * n(0.00041000000000000005));
+    let link_10_force_4 = (-link_10_rate_z)
+        .mul_add(
+            link_10_force_2,
+            link_10_acceleration_5
+                .mul_add(
+                    n(0.84),
+                    link_10_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_10_acceleration_7
+                                .mul_add(n(0.1655), link_10_rate_y * link_10_force_3),
+                        ),
+                ),
+        );
+    let link_10_force_5 = (-link_10_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_10_acceleration_4)
+                .mul_add(
+                    n(0.84),
+                    (-link_10_rate_x)
+                        .mul_add(
+                            link_10_force_3,
+                            link_10_acceleration_8
+                                .mul_add(n(0.16544), link_10_rate_z * link_10_force),
+                        ),
+                ),
+        );
+    let link_10_force_6 = (-link_10_rate_y)
+        .mul_add(
+            link_10_force,
+            link_10_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_10_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_10_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_10_rate_x * link_10_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_11: angular velocity (9 additions, 9 multiplications)
+    let link_11_angular_velocity = q[96]
+        .mul_add(link_10_rate_z, q[93].mul_add(link_10_rate_y, q[90] * link_10_rate_x));
+    let link_11_angular_velocity_2 = q[97]
+        .mul_add(link_10_rate_z, q[94].mul_add(link_10_rate_y, q[91] * link_10_rate_x));
+    let link_11_angular_velocity_3 = q[98]
+        .mul_add(link_10_rate_z, q[95].mul_add(link_10_rate_y, q[92] * link_10_rate_x));
+    let link_11_rate_x = v[30] + link_11_angular_velocity;
+    let link_11_rate_y = v[31] + link_11_angular_velocity_2;
+    let link_11_rate_z = v[32] + link_11_angular_velocity_3;
     // link_11: acceleration (30 additions, 33 multiplications)
     let link_11_acceleration = (-link_10_acceleration_12)
         .mul_add(n(0.2), link_10_acceleration_4);
@@ -6202,6 +6579,79 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_11_rate_z, link_11_acceleration_7);
     let link_11_acceleration_14 = link_11_rate_x
         .mul_add(link_11_rate_x, link_11_acceleration_11);
+    // link_11: force (17 additions, 26 multiplications)
+    let link_11_force = link_11_rate_z
+        .mul_add(n(0.00041000000000000005), link_11_rate_x * n(0.14950000000000002));
+    let link_11_force_2 = link_11_rate_y * n(0.14944000000000002);
+    let link_11_force_3 = link_11_rate_z
+        .mul_add(n(0.00023999999999999976), link_11_rate_x * n(0.00041000000000000005));
+    let link_11_force_4 = (-link_11_rate_z)
+        .mul_add(
+            link_11_force_2,
+            link_11_acceleration_5
+                .mul_add(
+                    n(0.76),
+                    link_11_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_11_acceleration_7
+                                .mul_add(
+                                    n(0.14950000000000002),
+                                    link_11_rate_y * link_11_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_11_force_5 = (-link_11_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_11_acceleration_4)
+                .mul_add(
+                    n(0.76),
+                    (-link_11_rate_x)
+                        .mul_add(
+                            link_11_force_3,
+                            link_11_acceleration_8
+                                .mul_add(
+                                    n(0.14944000000000002),
+                                    link_11_rate_z * link_11_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_11_force_6 = (-link_11_rate_y)
+        .mul_add(
+            link_11_force,
+            link_11_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_11_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_11_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_11_rate_x * link_11_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_12: angular velocity (9 additions, 9 multiplications)
+    let link_12_angular_velocity = q[105]
+        .mul_add(link_11_rate_z, q[102].mul_add(link_11_rate_y, q[99] * link_11_rate_x));
+    let link_12_angular_velocity_2 = q[106]
+        .mul_add(
+            link_11_rate_z,
+            q[103].mul_add(link_11_rate_y, q[100] * link_11_rate_x),
+        );
+    let link_12_angular_velocity_3 = q[107]
+        .mul_add(
+            link_11_rate_z,
+            q[104].mul_add(link_11_rate_y, q[101] * link_11_rate_x),
+        );
+    let link_12_rate_x = v[33] + link_12_angular_velocity;
+    let link_12_rate_y = v[34] + link_12_angular_velocity_2;
+    let link_12_rate_z = v[35] + link_12_angular_velocity_3;
     // link_12: acceleration (30 additions, 33 multiplications)
     let link_12_acceleration = (-link_11_acceleration_12)
         .mul_add(n(0.2), link_11_acceleration_4);
@@ -6282,6 +6732,76 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_12_rate_z, link_12_acceleration_7);
     let link_12_acceleration_14 = link_12_rate_x
         .mul_add(link_12_rate_x, link_12_acceleration_11);
+    // link_12: force (17 additions, 26 multiplications)
+    let link_12_force = link_12_rate_z
+        .mul_add(n(0.00041000000000000005), link_12_rate_x * n(0.1335));
+    let link_12_force_2 = link_12_rate_y * n(0.13344);
+    let link_12_force_3 = link_12_rate_z
+        .mul_add(n(0.00023999999999999976), link_12_rate_x * n(0.00041000000000000005));
+    let link_12_force_4 = (-link_12_rate_z)
+        .mul_add(
+            link_12_force_2,
+            link_12_acceleration_5
+                .mul_add(
+                    n(0.68),
+                    link_12_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_12_acceleration_7
+                                .mul_add(n(0.1335), link_12_rate_y * link_12_force_3),
+                        ),
+                ),
+        );
+    let link_12_force_5 = (-link_12_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_12_acceleration_4)
+                .mul_add(
+                    n(0.68),
+                    (-link_12_rate_x)
+                        .mul_add(
+                            link_12_force_3,
+                            link_12_acceleration_8
+                                .mul_add(n(0.13344), link_12_rate_z * link_12_force),
+                        ),
+                ),
+        );
+    let link_12_force_6 = (-link_12_rate_y)
+        .mul_add(
+            link_12_force,
+            link_12_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_12_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_12_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_12_rate_x * link_12_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_13: angular velocity (9 additions, 9 multiplications)
+    let link_13_angular_velocity = q[114]
+        .mul_add(
+            link_12_rate_z,
+            q[111].mul_add(link_12_rate_y, q[108] * link_12_rate_x),
+        );
+    let link_13_angular_velocity_2 = q[115]
+        .mul_add(
+            link_12_rate_z,
+            q[112].mul_add(link_12_rate_y, q[109] * link_12_rate_x),
+        );
+    let link_13_angular_velocity_3 = q[116]
+        .mul_add(
+            link_12_rate_z,
+            q[113].mul_add(link_12_rate_y, q[110] * link_12_rate_x),
+        );
+    let link_13_rate_x = v[36] + link_13_angular_velocity;
+    let link_13_rate_y = v[37] + link_13_angular_velocity_2;
+    let link_13_rate_z = v[38] + link_13_angular_velocity_3;
     // link_13: acceleration (30 additions, 33 multiplications)
     let link_13_acceleration = (-link_12_acceleration_12)
         .mul_add(n(0.2), link_12_acceleration_4);
@@ -6362,6 +6882,82 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_13_rate_z, link_13_acceleration_7);
     let link_13_acceleration_14 = link_13_rate_x
         .mul_add(link_13_rate_x, link_13_acceleration_11);
+    // link_13: force (17 additions, 26 multiplications)
+    let link_13_force = link_13_rate_z
+        .mul_add(n(0.00041000000000000005), link_13_rate_x * n(0.11750000000000002));
+    let link_13_force_2 = link_13_rate_y * n(0.11744000000000002);
+    let link_13_force_3 = link_13_rate_z
+        .mul_add(n(0.00023999999999999976), link_13_rate_x * n(0.00041000000000000005));
+    let link_13_force_4 = (-link_13_rate_z)
+        .mul_add(
+            link_13_force_2,
+            link_13_acceleration_5
+                .mul_add(
+                    n(0.6),
+                    link_13_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_13_acceleration_7
+                                .mul_add(
+                                    n(0.11750000000000002),
+                                    link_13_rate_y * link_13_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_13_force_5 = (-link_13_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_13_acceleration_4)
+                .mul_add(
+                    n(0.6),
+                    (-link_13_rate_x)
+                        .mul_add(
+                            link_13_force_3,
+                            link_13_acceleration_8
+                                .mul_add(
+                                    n(0.11744000000000002),
+                                    link_13_rate_z * link_13_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_13_force_6 = (-link_13_rate_y)
+        .mul_add(
+            link_13_force,
+            link_13_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_13_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_13_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_13_rate_x * link_13_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_14: angular velocity (9 additions, 9 multiplications)
+    let link_14_angular_velocity = q[123]
+        .mul_add(
+            link_13_rate_z,
+            q[120].mul_add(link_13_rate_y, q[117] * link_13_rate_x),
+        );
+    let link_14_angular_velocity_2 = q[124]
+        .mul_add(
+            link_13_rate_z,
+            q[121].mul_add(link_13_rate_y, q[118] * link_13_rate_x),
+        );
+    let link_14_angular_velocity_3 = q[125]
+        .mul_add(
+            link_13_rate_z,
+            q[122].mul_add(link_13_rate_y, q[119] * link_13_rate_x),
+        );
+    let link_14_rate_x = v[39] + link_14_angular_velocity;
+    let link_14_rate_y = v[40] + link_14_angular_velocity_2;
+    let link_14_rate_z = v[41] + link_14_angular_velocity_3;
     // link_14: acceleration (30 additions, 33 multiplications)
     let link_14_acceleration = (-link_13_acceleration_12)
         .mul_add(n(0.2), link_13_acceleration_4);
@@ -6442,6 +7038,82 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_14_rate_z, link_14_acceleration_7);
     let link_14_acceleration_14 = link_14_rate_x
         .mul_add(link_14_rate_x, link_14_acceleration_11);
+    // link_14: force (17 additions, 26 multiplications)
+    let link_14_force = link_14_rate_z
+        .mul_add(n(0.00041000000000000005), link_14_rate_x * n(0.10150000000000002));
+    let link_14_force_2 = link_14_rate_y * n(0.10144000000000002);
+    let link_14_force_3 = link_14_rate_z
+        .mul_add(n(0.00023999999999999976), link_14_rate_x * n(0.00041000000000000005));
+    let link_14_force_4 = (-link_14_rate_z)
+        .mul_add(
+            link_14_force_2,
+            link_14_acceleration_5
+                .mul_add(
+                    n(0.52),
+                    link_14_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_14_acceleration_7
+                                .mul_add(
+                                    n(0.10150000000000002),
+                                    link_14_rate_y * link_14_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_14_force_5 = (-link_14_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_14_acceleration_4)
+                .mul_add(
+                    n(0.52),
+                    (-link_14_rate_x)
+                        .mul_add(
+                            link_14_force_3,
+                            link_14_acceleration_8
+                                .mul_add(
+                                    n(0.10144000000000002),
+                                    link_14_rate_z * link_14_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_14_force_6 = (-link_14_rate_y)
+        .mul_add(
+            link_14_force,
+            link_14_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_14_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_14_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_14_rate_x * link_14_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_15: angular velocity (9 additions, 9 multiplications)
+    let link_15_angular_velocity = q[132]
+        .mul_add(
+            link_14_rate_z,
+            q[129].mul_add(link_14_rate_y, q[126] * link_14_rate_x),
+        );
+    let link_15_angular_velocity_2 = q[133]
+        .mul_add(
+            link_14_rate_z,
+            q[130].mul_add(link_14_rate_y, q[127] * link_14_rate_x),
+        );
+    let link_15_angular_velocity_3 = q[134]
+        .mul_add(
+            link_14_rate_z,
+            q[131].mul_add(link_14_rate_y, q[128] * link_14_rate_x),
+        );
+    let link_15_rate_x = v[42] + link_15_angular_velocity;
+    let link_15_rate_y = v[43] + link_15_angular_velocity_2;
+    let link_15_rate_z = v[44] + link_15_angular_velocity_3;
     // link_15: acceleration (30 additions, 33 multiplications)
     let link_15_acceleration = (-link_14_acceleration_12)
         .mul_add(n(0.2), link_14_acceleration_4);
@@ -6522,6 +7194,82 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_15_rate_z, link_15_acceleration_7);
     let link_15_acceleration_14 = link_15_rate_x
         .mul_add(link_15_rate_x, link_15_acceleration_11);
+    // link_15: force (17 additions, 26 multiplications)
+    let link_15_force = link_15_rate_z
+        .mul_add(n(0.00041000000000000005), link_15_rate_x * n(0.08550000000000002));
+    let link_15_force_2 = link_15_rate_y * n(0.08544000000000002);
+    let link_15_force_3 = link_15_rate_z
+        .mul_add(n(0.00023999999999999976), link_15_rate_x * n(0.00041000000000000005));
+    let link_15_force_4 = (-link_15_rate_z)
+        .mul_add(
+            link_15_force_2,
+            link_15_acceleration_5
+                .mul_add(
+                    n(0.44000000000000006),
+                    link_15_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_15_acceleration_7
+                                .mul_add(
+                                    n(0.08550000000000002),
+                                    link_15_rate_y * link_15_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_15_force_5 = (-link_15_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_15_acceleration_4)
+                .mul_add(
+                    n(0.44000000000000006),
+                    (-link_15_rate_x)
+                        .mul_add(
+                            link_15_force_3,
+                            link_15_acceleration_8
+                                .mul_add(
+                                    n(0.08544000000000002),
+                                    link_15_rate_z * link_15_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_15_force_6 = (-link_15_rate_y)
+        .mul_add(
+            link_15_force,
+            link_15_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_15_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_15_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_15_rate_x * link_15_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_16: angular velocity (9 additions, 9 multiplications)
+    let link_16_angular_velocity = q[141]
+        .mul_add(
+            link_15_rate_z,
+            q[138].mul_add(link_15_rate_y, q[135] * link_15_rate_x),
+        );
+    let link_16_angular_velocity_2 = q[142]
+        .mul_add(
+            link_15_rate_z,
+            q[139].mul_add(link_15_rate_y, q[136] * link_15_rate_x),
+        );
+    let link_16_angular_velocity_3 = q[143]
+        .mul_add(
+            link_15_rate_z,
+            q[140].mul_add(link_15_rate_y, q[137] * link_15_rate_x),
+        );
+    let link_16_rate_x = v[45] + link_16_angular_velocity;
+    let link_16_rate_y = v[46] + link_16_angular_velocity_2;
+    let link_16_rate_z = v[47] + link_16_angular_velocity_3;
     // link_16: acceleration (30 additions, 33 multiplications)
     let link_16_acceleration = (-link_15_acceleration_12)
         .mul_add(n(0.2), link_15_acceleration_4);
@@ -6602,6 +7350,82 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_16_rate_z, link_16_acceleration_7);
     let link_16_acceleration_14 = link_16_rate_x
         .mul_add(link_16_rate_x, link_16_acceleration_11);
+    // link_16: force (17 additions, 26 multiplications)
+    let link_16_force = link_16_rate_z
+        .mul_add(n(0.00041000000000000005), link_16_rate_x * n(0.06950000000000002));
+    let link_16_force_2 = link_16_rate_y * n(0.06944000000000002);
+    let link_16_force_3 = link_16_rate_z
+        .mul_add(n(0.00023999999999999976), link_16_rate_x * n(0.00041000000000000005));
+    let link_16_force_4 = (-link_16_rate_z)
+        .mul_add(
+            link_16_force_2,
+            link_16_acceleration_5
+                .mul_add(
+                    n(0.3600000000000001),
+                    link_16_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_16_acceleration_7
+                                .mul_add(
+                                    n(0.06950000000000002),
+                                    link_16_rate_y * link_16_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_16_force_5 = (-link_16_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_16_acceleration_4)
+                .mul_add(
+                    n(0.3600000000000001),
+                    (-link_16_rate_x)
+                        .mul_add(
+                            link_16_force_3,
+                            link_16_acceleration_8
+                                .mul_add(
+                                    n(0.06944000000000002),
+                                    link_16_rate_z * link_16_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_16_force_6 = (-link_16_rate_y)
+        .mul_add(
+            link_16_force,
+            link_16_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_16_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_16_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_16_rate_x * link_16_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_17: angular velocity (9 additions, 9 multiplications)
+    let link_17_angular_velocity = q[150]
+        .mul_add(
+            link_16_rate_z,
+            q[147].mul_add(link_16_rate_y, q[144] * link_16_rate_x),
+        );
+    let link_17_angular_velocity_2 = q[151]
+        .mul_add(
+            link_16_rate_z,
+            q[148].mul_add(link_16_rate_y, q[145] * link_16_rate_x),
+        );
+    let link_17_angular_velocity_3 = q[152]
+        .mul_add(
+            link_16_rate_z,
+            q[149].mul_add(link_16_rate_y, q[146] * link_16_rate_x),
+        );
+    let link_17_rate_x = v[48] + link_17_angular_velocity;
+    let link_17_rate_y = v[49] + link_17_angular_velocity_2;
+    let link_17_rate_z = v[50] + link_17_angular_velocity_3;
     // link_17: acceleration (30 additions, 33 multiplications)
     let link_17_acceleration = (-link_16_acceleration_12)
         .mul_add(n(0.2), link_16_acceleration_4);
@@ -6682,6 +7506,82 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_17_rate_z, link_17_acceleration_7);
     let link_17_acceleration_14 = link_17_rate_x
         .mul_add(link_17_rate_x, link_17_acceleration_11);
+    // link_17: force (17 additions, 26 multiplications)
+    let link_17_force = link_17_rate_z
+        .mul_add(n(0.00041000000000000005), link_17_rate_x * n(0.05350000000000002));
+    let link_17_force_2 = link_17_rate_y * n(0.053440000000000015);
+    let link_17_force_3 = link_17_rate_z
+        .mul_add(n(0.00023999999999999976), link_17_rate_x * n(0.00041000000000000005));
+    let link_17_force_4 = (-link_17_rate_z)
+        .mul_add(
+            link_17_force_2,
+            link_17_acceleration_5
+                .mul_add(
+                    n(0.28),
+                    link_17_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_17_acceleration_7
+                                .mul_add(
+                                    n(0.05350000000000002),
+                                    link_17_rate_y * link_17_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_17_force_5 = (-link_17_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_17_acceleration_4)
+                .mul_add(
+                    n(0.28),
+                    (-link_17_rate_x)
+                        .mul_add(
+                            link_17_force_3,
+                            link_17_acceleration_8
+                                .mul_add(
+                                    n(0.053440000000000015),
+                                    link_17_rate_z * link_17_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_17_force_6 = (-link_17_rate_y)
+        .mul_add(
+            link_17_force,
+            link_17_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_17_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_17_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_17_rate_x * link_17_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_18: angular velocity (9 additions, 9 multiplications)
+    let link_18_angular_velocity = q[159]
+        .mul_add(
+            link_17_rate_z,
+            q[156].mul_add(link_17_rate_y, q[153] * link_17_rate_x),
+        );
+    let link_18_angular_velocity_2 = q[160]
+        .mul_add(
+            link_17_rate_z,
+            q[157].mul_add(link_17_rate_y, q[154] * link_17_rate_x),
+        );
+    let link_18_angular_velocity_3 = q[161]
+        .mul_add(
+            link_17_rate_z,
+            q[158].mul_add(link_17_rate_y, q[155] * link_17_rate_x),
+        );
+    let link_18_rate_x = v[51] + link_18_angular_velocity;
+    let link_18_rate_y = v[52] + link_18_angular_velocity_2;
+    let link_18_rate_z = v[53] + link_18_angular_velocity_3;
     // link_18: acceleration (30 additions, 33 multiplications)
     let link_18_acceleration = (-link_17_acceleration_12)
         .mul_add(n(0.2), link_17_acceleration_4);
@@ -6762,6 +7662,82 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_18_rate_z, link_18_acceleration_7);
     let link_18_acceleration_14 = link_18_rate_x
         .mul_add(link_18_rate_x, link_18_acceleration_11);
+    // link_18: force (17 additions, 26 multiplications)
+    let link_18_force = link_18_rate_z
+        .mul_add(n(0.00041000000000000005), link_18_rate_x * n(0.037500000000000006));
+    let link_18_force_2 = link_18_rate_y * n(0.03744000000000001);
+    let link_18_force_3 = link_18_rate_z
+        .mul_add(n(0.00023999999999999976), link_18_rate_x * n(0.00041000000000000005));
+    let link_18_force_4 = (-link_18_rate_z)
+        .mul_add(
+            link_18_force_2,
+            link_18_acceleration_5
+                .mul_add(
+                    n(0.20000000000000004),
+                    link_18_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_18_acceleration_7
+                                .mul_add(
+                                    n(0.037500000000000006),
+                                    link_18_rate_y * link_18_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_18_force_5 = (-link_18_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_18_acceleration_4)
+                .mul_add(
+                    n(0.20000000000000004),
+                    (-link_18_rate_x)
+                        .mul_add(
+                            link_18_force_3,
+                            link_18_acceleration_8
+                                .mul_add(
+                                    n(0.03744000000000001),
+                                    link_18_rate_z * link_18_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_18_force_6 = (-link_18_rate_y)
+        .mul_add(
+            link_18_force,
+            link_18_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_18_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_18_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_18_rate_x * link_18_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_19: angular velocity (9 additions, 9 multiplications)
+    let link_19_angular_velocity = q[168]
+        .mul_add(
+            link_18_rate_z,
+            q[165].mul_add(link_18_rate_y, q[162] * link_18_rate_x),
+        );
+    let link_19_angular_velocity_2 = q[169]
+        .mul_add(
+            link_18_rate_z,
+            q[166].mul_add(link_18_rate_y, q[163] * link_18_rate_x),
+        );
+    let link_19_angular_velocity_3 = q[170]
+        .mul_add(
+            link_18_rate_z,
+            q[167].mul_add(link_18_rate_y, q[164] * link_18_rate_x),
+        );
+    let link_19_rate_x = v[54] + link_19_angular_velocity;
+    let link_19_rate_y = v[55] + link_19_angular_velocity_2;
+    let link_19_rate_z = v[56] + link_19_angular_velocity_3;
     // link_19: acceleration (30 additions, 33 multiplications)
     let link_19_acceleration = (-link_18_acceleration_12)
         .mul_add(n(0.2), link_18_acceleration_4);
@@ -6842,6 +7818,82 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         .mul_add(link_19_rate_z, link_19_acceleration_7);
     let link_19_acceleration_14 = link_19_rate_x
         .mul_add(link_19_rate_x, link_19_acceleration_11);
+    // link_19: force (17 additions, 26 multiplications)
+    let link_19_force = link_19_rate_z
+        .mul_add(n(0.00041000000000000005), link_19_rate_x * n(0.021500000000000005));
+    let link_19_force_2 = link_19_rate_y * n(0.021440000000000004);
+    let link_19_force_3 = link_19_rate_z
+        .mul_add(n(0.00023999999999999976), link_19_rate_x * n(0.00041000000000000005));
+    let link_19_force_4 = (-link_19_rate_z)
+        .mul_add(
+            link_19_force_2,
+            link_19_acceleration_5
+                .mul_add(
+                    n(0.12000000000000002),
+                    link_19_acceleration_9
+                        .mul_add(
+                            n(0.00041000000000000005),
+                            link_19_acceleration_7
+                                .mul_add(
+                                    n(0.021500000000000005),
+                                    link_19_rate_y * link_19_force_3,
+                                ),
+                        ),
+                ),
+        );
+    let link_19_force_5 = (-link_19_acceleration_6)
+        .mul_add(
+            n(0.004),
+            (-link_19_acceleration_4)
+                .mul_add(
+                    n(0.12000000000000002),
+                    (-link_19_rate_x)
+                        .mul_add(
+                            link_19_force_3,
+                            link_19_acceleration_8
+                                .mul_add(
+                                    n(0.021440000000000004),
+                                    link_19_rate_z * link_19_force,
+                                ),
+                        ),
+                ),
+        );
+    let link_19_force_6 = (-link_19_rate_y)
+        .mul_add(
+            link_19_force,
+            link_19_acceleration_5
+                .mul_add(
+                    n(0.004),
+                    link_19_acceleration_9
+                        .mul_add(
+                            n(0.00023999999999999976),
+                            link_19_acceleration_7
+                                .mul_add(
+                                    n(0.00041000000000000005),
+                                    link_19_rate_x * link_19_force_2,
+                                ),
+                        ),
+                ),
+        );
+    // link_20: angular velocity (9 additions, 9 multiplications)
+    let link_20_angular_velocity = q[177]
+        .mul_add(
+            link_19_rate_z,
+            q[174].mul_add(link_19_rate_y, q[171] * link_19_rate_x),
+        );
+    let link_20_angular_velocity_2 = q[178]
+        .mul_add(
+            link_19_rate_z,
+            q[175].mul_add(link_19_rate_y, q[172] * link_19_rate_x),
+        );
+    let link_20_angular_velocity_3 = q[179]
+        .mul_add(
+            link_19_rate_z,
+            q[176].mul_add(link_19_rate_y, q[173] * link_19_rate_x),
+        );
+    let link_20_rate_x = v[57] + link_20_angular_velocity;
+    let link_20_rate_y = v[58] + link_20_angular_velocity_2;
+    let link_20_rate_z = v[59] + link_20_angular_velocity_3;
     // link_20: acceleration (30 additions, 33 multiplications)
     let link_20_acceleration = (-link_19_acceleration_12)
         .mul_add(n(0.2), link_19_acceleration_4);
@@ -6907,1058 +7959,6 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         );
     let link_20_acceleration_8 = link_20_rate_x * link_20_rate_z;
     let link_20_acceleration_9 = link_20_rate_y * link_20_rate_y;
-    // link_1: force (14 additions, 20 multiplications)
-    let link_1_force = v[2]
-        .mul_add(n(0.00041000000000000005), v[0] * n(0.30950000000000016));
-    let link_1_force_2 = v[1] * n(0.30944000000000016);
-    let link_1_force_3 = v[2]
-        .mul_add(n(0.00023999999999999976), v[0] * n(0.00041000000000000005));
-    let link_1_force_4 = (-v[2])
-        .mul_add(
-            link_1_force_2,
-            q[7]
-                .mul_add(
-                    n(15.303600000000007),
-                    a[2]
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            a[0].mul_add(n(0.30950000000000016), v[1] * link_1_force_3),
-                        ),
-                ),
-        );
-    let link_1_force_5 = (-q[8])
-        .mul_add(
-            n(0.039240000000000004),
-            (-q[6])
-                .mul_add(
-                    n(15.303600000000007),
-                    (-v[0])
-                        .mul_add(
-                            link_1_force_3,
-                            a[1].mul_add(n(0.30944000000000016), v[2] * link_1_force),
-                        ),
-                ),
-        );
-    let link_1_force_6 = (-v[1])
-        .mul_add(
-            link_1_force,
-            q[7]
-                .mul_add(
-                    n(0.039240000000000004),
-                    a[2]
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            a[0]
-                                .mul_add(n(0.00041000000000000005), v[0] * link_1_force_2),
-                        ),
-                ),
-        );
-    // link_2: force (17 additions, 26 multiplications)
-    let link_2_force = link_2_rate_z
-        .mul_add(n(0.00041000000000000005), link_2_rate_x * n(0.29350000000000015));
-    let link_2_force_2 = link_2_rate_y * n(0.29344000000000015);
-    let link_2_force_3 = link_2_rate_z
-        .mul_add(n(0.00023999999999999976), link_2_rate_x * n(0.00041000000000000005));
-    let link_2_force_4 = (-link_2_rate_z)
-        .mul_add(
-            link_2_force_2,
-            link_2_acceleration_5
-                .mul_add(
-                    n(1.4800000000000004),
-                    link_2_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_2_acceleration_7
-                                .mul_add(
-                                    n(0.29350000000000015),
-                                    link_2_rate_y * link_2_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_2_force_5 = (-link_2_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_2_acceleration_4)
-                .mul_add(
-                    n(1.4800000000000004),
-                    (-link_2_rate_x)
-                        .mul_add(
-                            link_2_force_3,
-                            link_2_acceleration_8
-                                .mul_add(
-                                    n(0.29344000000000015),
-                                    link_2_rate_z * link_2_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_2_force_6 = (-link_2_rate_y)
-        .mul_add(
-            link_2_force,
-            link_2_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_2_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_2_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_2_rate_x * link_2_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_3: force (17 additions, 26 multiplications)
-    let link_3_force = link_3_rate_z
-        .mul_add(n(0.00041000000000000005), link_3_rate_x * n(0.27750000000000014));
-    let link_3_force_2 = link_3_rate_y * n(0.27744000000000013);
-    let link_3_force_3 = link_3_rate_z
-        .mul_add(n(0.00023999999999999976), link_3_rate_x * n(0.00041000000000000005));
-    let link_3_force_4 = (-link_3_rate_z)
-        .mul_add(
-            link_3_force_2,
-            link_3_acceleration_5
-                .mul_add(
-                    n(1.4000000000000004),
-                    link_3_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_3_acceleration_7
-                                .mul_add(
-                                    n(0.27750000000000014),
-                                    link_3_rate_y * link_3_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_3_force_5 = (-link_3_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_3_acceleration_4)
-                .mul_add(
-                    n(1.4000000000000004),
-                    (-link_3_rate_x)
-                        .mul_add(
-                            link_3_force_3,
-                            link_3_acceleration_8
-                                .mul_add(
-                                    n(0.27744000000000013),
-                                    link_3_rate_z * link_3_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_3_force_6 = (-link_3_rate_y)
-        .mul_add(
-            link_3_force,
-            link_3_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_3_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_3_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_3_rate_x * link_3_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_4: force (17 additions, 26 multiplications)
-    let link_4_force = link_4_rate_z
-        .mul_add(n(0.00041000000000000005), link_4_rate_x * n(0.2615000000000001));
-    let link_4_force_2 = link_4_rate_y * n(0.2614400000000001);
-    let link_4_force_3 = link_4_rate_z
-        .mul_add(n(0.00023999999999999976), link_4_rate_x * n(0.00041000000000000005));
-    let link_4_force_4 = (-link_4_rate_z)
-        .mul_add(
-            link_4_force_2,
-            link_4_acceleration_5
-                .mul_add(
-                    n(1.3200000000000003),
-                    link_4_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_4_acceleration_7
-                                .mul_add(
-                                    n(0.2615000000000001),
-                                    link_4_rate_y * link_4_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_4_force_5 = (-link_4_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_4_acceleration_4)
-                .mul_add(
-                    n(1.3200000000000003),
-                    (-link_4_rate_x)
-                        .mul_add(
-                            link_4_force_3,
-                            link_4_acceleration_8
-                                .mul_add(
-                                    n(0.2614400000000001),
-                                    link_4_rate_z * link_4_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_4_force_6 = (-link_4_rate_y)
-        .mul_add(
-            link_4_force,
-            link_4_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_4_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_4_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_4_rate_x * link_4_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_5: force (17 additions, 26 multiplications)
-    let link_5_force = link_5_rate_z
-        .mul_add(n(0.00041000000000000005), link_5_rate_x * n(0.24550000000000008));
-    let link_5_force_2 = link_5_rate_y * n(0.24544000000000007);
-    let link_5_force_3 = link_5_rate_z
-        .mul_add(n(0.00023999999999999976), link_5_rate_x * n(0.00041000000000000005));
-    let link_5_force_4 = (-link_5_rate_z)
-        .mul_add(
-            link_5_force_2,
-            link_5_acceleration_5
-                .mul_add(
-                    n(1.2400000000000002),
-                    link_5_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_5_acceleration_7
-                                .mul_add(
-                                    n(0.24550000000000008),
-                                    link_5_rate_y * link_5_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_5_force_5 = (-link_5_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_5_acceleration_4)
-                .mul_add(
-                    n(1.2400000000000002),
-                    (-link_5_rate_x)
-                        .mul_add(
-                            link_5_force_3,
-                            link_5_acceleration_8
-                                .mul_add(
-                                    n(0.24544000000000007),
-                                    link_5_rate_z * link_5_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_5_force_6 = (-link_5_rate_y)
-        .mul_add(
-            link_5_force,
-            link_5_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_5_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_5_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_5_rate_x * link_5_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_6: force (17 additions, 26 multiplications)
-    let link_6_force = link_6_rate_z
-        .mul_add(n(0.00041000000000000005), link_6_rate_x * n(0.22950000000000007));
-    let link_6_force_2 = link_6_rate_y * n(0.22944000000000006);
-    let link_6_force_3 = link_6_rate_z
-        .mul_add(n(0.00023999999999999976), link_6_rate_x * n(0.00041000000000000005));
-    let link_6_force_4 = (-link_6_rate_z)
-        .mul_add(
-            link_6_force_2,
-            link_6_acceleration_5
-                .mul_add(
-                    n(1.1600000000000001),
-                    link_6_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_6_acceleration_7
-                                .mul_add(
-                                    n(0.22950000000000007),
-                                    link_6_rate_y * link_6_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_6_force_5 = (-link_6_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_6_acceleration_4)
-                .mul_add(
-                    n(1.1600000000000001),
-                    (-link_6_rate_x)
-                        .mul_add(
-                            link_6_force_3,
-                            link_6_acceleration_8
-                                .mul_add(
-                                    n(0.22944000000000006),
-                                    link_6_rate_z * link_6_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_6_force_6 = (-link_6_rate_y)
-        .mul_add(
-            link_6_force,
-            link_6_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_6_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_6_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_6_rate_x * link_6_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_7: force (17 additions, 26 multiplications)
-    let link_7_force = link_7_rate_z
-        .mul_add(n(0.00041000000000000005), link_7_rate_x * n(0.21350000000000005));
-    let link_7_force_2 = link_7_rate_y * n(0.21344000000000005);
-    let link_7_force_3 = link_7_rate_z
-        .mul_add(n(0.00023999999999999976), link_7_rate_x * n(0.00041000000000000005));
-    let link_7_force_4 = (-link_7_rate_z)
-        .mul_add(
-            link_7_force_2,
-            link_7_acceleration_5
-                .mul_add(
-                    n(1.08),
-                    link_7_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_7_acceleration_7
-                                .mul_add(
-                                    n(0.21350000000000005),
-                                    link_7_rate_y * link_7_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_7_force_5 = (-link_7_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_7_acceleration_4)
-                .mul_add(
-                    n(1.08),
-                    (-link_7_rate_x)
-                        .mul_add(
-                            link_7_force_3,
-                            link_7_acceleration_8
-                                .mul_add(
-                                    n(0.21344000000000005),
-                                    link_7_rate_z * link_7_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_7_force_6 = (-link_7_rate_y)
-        .mul_add(
-            link_7_force,
-            link_7_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_7_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_7_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_7_rate_x * link_7_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_8: force (17 additions, 21 multiplications)
-    let link_8_force = link_8_rate_z
-        .mul_add(n(0.00041000000000000005), link_8_rate_x * n(0.19750000000000004));
-    let link_8_force_2 = link_8_rate_y * n(0.19744000000000003);
-    let link_8_force_3 = link_8_rate_z
-        .mul_add(n(0.00023999999999999976), link_8_rate_x * n(0.00041000000000000005));
-    let link_8_force_4 = (-link_8_rate_z)
-        .mul_add(
-            link_8_force_2,
-            link_8_acceleration_9
-                .mul_add(
-                    n(0.00041000000000000005),
-                    link_8_acceleration_7
-                        .mul_add(
-                            n(0.19750000000000004),
-                            link_8_rate_y.mul_add(link_8_force_3, link_8_acceleration_5),
-                        ),
-                ),
-        );
-    let link_8_force_5 = (-link_8_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_8_rate_x)
-                .mul_add(
-                    link_8_force_3,
-                    link_8_acceleration_8
-                        .mul_add(
-                            n(0.19744000000000003),
-                            link_8_rate_z.mul_add(link_8_force, -link_8_acceleration_4),
-                        ),
-                ),
-        );
-    let link_8_force_6 = (-link_8_rate_y)
-        .mul_add(
-            link_8_force,
-            link_8_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_8_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_8_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_8_rate_x * link_8_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_9: force (17 additions, 26 multiplications)
-    let link_9_force = link_9_rate_z
-        .mul_add(n(0.00041000000000000005), link_9_rate_x * n(0.18150000000000002));
-    let link_9_force_2 = link_9_rate_y * n(0.18144000000000002);
-    let link_9_force_3 = link_9_rate_z
-        .mul_add(n(0.00023999999999999976), link_9_rate_x * n(0.00041000000000000005));
-    let link_9_force_4 = (-link_9_rate_z)
-        .mul_add(
-            link_9_force_2,
-            link_9_acceleration_5
-                .mul_add(
-                    n(0.9199999999999999),
-                    link_9_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_9_acceleration_7
-                                .mul_add(
-                                    n(0.18150000000000002),
-                                    link_9_rate_y * link_9_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_9_force_5 = (-link_9_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_9_acceleration_4)
-                .mul_add(
-                    n(0.9199999999999999),
-                    (-link_9_rate_x)
-                        .mul_add(
-                            link_9_force_3,
-                            link_9_acceleration_8
-                                .mul_add(
-                                    n(0.18144000000000002),
-                                    link_9_rate_z * link_9_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_9_force_6 = (-link_9_rate_y)
-        .mul_add(
-            link_9_force,
-            link_9_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_9_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_9_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_9_rate_x * link_9_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_10: force (17 additions, 26 multiplications)
-    let link_10_force = link_10_rate_z
-        .mul_add(n(0.00041000000000000005), link_10_rate_x * n(0.1655));
-    let link_10_force_2 = link_10_rate_y * n(0.16544);
-    let link_10_force_3 = link_10_rate_z
-        .mul_add(n(0.00023999999999999976), link_10_rate_x * n(0.00041000000000000005));
-    let link_10_force_4 = (-link_10_rate_z)
-        .mul_add(
-            link_10_force_2,
-            link_10_acceleration_5
-                .mul_add(
-                    n(0.84),
-                    link_10_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_10_acceleration_7
-                                .mul_add(n(0.1655), link_10_rate_y * link_10_force_3),
-                        ),
-                ),
-        );
-    let link_10_force_5 = (-link_10_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_10_acceleration_4)
-                .mul_add(
-                    n(0.84),
-                    (-link_10_rate_x)
-                        .mul_add(
-                            link_10_force_3,
-                            link_10_acceleration_8
-                                .mul_add(n(0.16544), link_10_rate_z * link_10_force),
-                        ),
-                ),
-        );
-    let link_10_force_6 = (-link_10_rate_y)
-        .mul_add(
-            link_10_force,
-            link_10_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_10_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_10_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_10_rate_x * link_10_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_11: force (17 additions, 26 multiplications)
-    let link_11_force = link_11_rate_z
-        .mul_add(n(0.00041000000000000005), link_11_rate_x * n(0.14950000000000002));
-    let link_11_force_2 = link_11_rate_y * n(0.14944000000000002);
-    let link_11_force_3 = link_11_rate_z
-        .mul_add(n(0.00023999999999999976), link_11_rate_x * n(0.00041000000000000005));
-    let link_11_force_4 = (-link_11_rate_z)
-        .mul_add(
-            link_11_force_2,
-            link_11_acceleration_5
-                .mul_add(
-                    n(0.76),
-                    link_11_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_11_acceleration_7
-                                .mul_add(
-                                    n(0.14950000000000002),
-                                    link_11_rate_y * link_11_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_11_force_5 = (-link_11_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_11_acceleration_4)
-                .mul_add(
-                    n(0.76),
-                    (-link_11_rate_x)
-                        .mul_add(
-                            link_11_force_3,
-                            link_11_acceleration_8
-                                .mul_add(
-                                    n(0.14944000000000002),
-                                    link_11_rate_z * link_11_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_11_force_6 = (-link_11_rate_y)
-        .mul_add(
-            link_11_force,
-            link_11_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_11_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_11_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_11_rate_x * link_11_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_12: force (17 additions, 26 multiplications)
-    let link_12_force = link_12_rate_z
-        .mul_add(n(0.00041000000000000005), link_12_rate_x * n(0.1335));
-    let link_12_force_2 = link_12_rate_y * n(0.13344);
-    let link_12_force_3 = link_12_rate_z
-        .mul_add(n(0.00023999999999999976), link_12_rate_x * n(0.00041000000000000005));
-    let link_12_force_4 = (-link_12_rate_z)
-        .mul_add(
-            link_12_force_2,
-            link_12_acceleration_5
-                .mul_add(
-                    n(0.68),
-                    link_12_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_12_acceleration_7
-                                .mul_add(n(0.1335), link_12_rate_y * link_12_force_3),
-                        ),
-                ),
-        );
-    let link_12_force_5 = (-link_12_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_12_acceleration_4)
-                .mul_add(
-                    n(0.68),
-                    (-link_12_rate_x)
-                        .mul_add(
-                            link_12_force_3,
-                            link_12_acceleration_8
-                                .mul_add(n(0.13344), link_12_rate_z * link_12_force),
-                        ),
-                ),
-        );
-    let link_12_force_6 = (-link_12_rate_y)
-        .mul_add(
-            link_12_force,
-            link_12_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_12_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_12_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_12_rate_x * link_12_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_13: force (17 additions, 26 multiplications)
-    let link_13_force = link_13_rate_z
-        .mul_add(n(0.00041000000000000005), link_13_rate_x * n(0.11750000000000002));
-    let link_13_force_2 = link_13_rate_y * n(0.11744000000000002);
-    let link_13_force_3 = link_13_rate_z
-        .mul_add(n(0.00023999999999999976), link_13_rate_x * n(0.00041000000000000005));
-    let link_13_force_4 = (-link_13_rate_z)
-        .mul_add(
-            link_13_force_2,
-            link_13_acceleration_5
-                .mul_add(
-                    n(0.6),
-                    link_13_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_13_acceleration_7
-                                .mul_add(
-                                    n(0.11750000000000002),
-                                    link_13_rate_y * link_13_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_13_force_5 = (-link_13_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_13_acceleration_4)
-                .mul_add(
-                    n(0.6),
-                    (-link_13_rate_x)
-                        .mul_add(
-                            link_13_force_3,
-                            link_13_acceleration_8
-                                .mul_add(
-                                    n(0.11744000000000002),
-                                    link_13_rate_z * link_13_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_13_force_6 = (-link_13_rate_y)
-        .mul_add(
-            link_13_force,
-            link_13_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_13_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_13_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_13_rate_x * link_13_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_14: force (17 additions, 26 multiplications)
-    let link_14_force = link_14_rate_z
-        .mul_add(n(0.00041000000000000005), link_14_rate_x * n(0.10150000000000002));
-    let link_14_force_2 = link_14_rate_y * n(0.10144000000000002);
-    let link_14_force_3 = link_14_rate_z
-        .mul_add(n(0.00023999999999999976), link_14_rate_x * n(0.00041000000000000005));
-    let link_14_force_4 = (-link_14_rate_z)
-        .mul_add(
-            link_14_force_2,
-            link_14_acceleration_5
-                .mul_add(
-                    n(0.52),
-                    link_14_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_14_acceleration_7
-                                .mul_add(
-                                    n(0.10150000000000002),
-                                    link_14_rate_y * link_14_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_14_force_5 = (-link_14_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_14_acceleration_4)
-                .mul_add(
-                    n(0.52),
-                    (-link_14_rate_x)
-                        .mul_add(
-                            link_14_force_3,
-                            link_14_acceleration_8
-                                .mul_add(
-                                    n(0.10144000000000002),
-                                    link_14_rate_z * link_14_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_14_force_6 = (-link_14_rate_y)
-        .mul_add(
-            link_14_force,
-            link_14_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_14_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_14_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_14_rate_x * link_14_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_15: force (17 additions, 26 multiplications)
-    let link_15_force = link_15_rate_z
-        .mul_add(n(0.00041000000000000005), link_15_rate_x * n(0.08550000000000002));
-    let link_15_force_2 = link_15_rate_y * n(0.08544000000000002);
-    let link_15_force_3 = link_15_rate_z
-        .mul_add(n(0.00023999999999999976), link_15_rate_x * n(0.00041000000000000005));
-    let link_15_force_4 = (-link_15_rate_z)
-        .mul_add(
-            link_15_force_2,
-            link_15_acceleration_5
-                .mul_add(
-                    n(0.44000000000000006),
-                    link_15_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_15_acceleration_7
-                                .mul_add(
-                                    n(0.08550000000000002),
-                                    link_15_rate_y * link_15_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_15_force_5 = (-link_15_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_15_acceleration_4)
-                .mul_add(
-                    n(0.44000000000000006),
-                    (-link_15_rate_x)
-                        .mul_add(
-                            link_15_force_3,
-                            link_15_acceleration_8
-                                .mul_add(
-                                    n(0.08544000000000002),
-                                    link_15_rate_z * link_15_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_15_force_6 = (-link_15_rate_y)
-        .mul_add(
-            link_15_force,
-            link_15_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_15_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_15_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_15_rate_x * link_15_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_16: force (17 additions, 26 multiplications)
-    let link_16_force = link_16_rate_z
-        .mul_add(n(0.00041000000000000005), link_16_rate_x * n(0.06950000000000002));
-    let link_16_force_2 = link_16_rate_y * n(0.06944000000000002);
-    let link_16_force_3 = link_16_rate_z
-        .mul_add(n(0.00023999999999999976), link_16_rate_x * n(0.00041000000000000005));
-    let link_16_force_4 = (-link_16_rate_z)
-        .mul_add(
-            link_16_force_2,
-            link_16_acceleration_5
-                .mul_add(
-                    n(0.3600000000000001),
-                    link_16_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_16_acceleration_7
-                                .mul_add(
-                                    n(0.06950000000000002),
-                                    link_16_rate_y * link_16_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_16_force_5 = (-link_16_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_16_acceleration_4)
-                .mul_add(
-                    n(0.3600000000000001),
-                    (-link_16_rate_x)
-                        .mul_add(
-                            link_16_force_3,
-                            link_16_acceleration_8
-                                .mul_add(
-                                    n(0.06944000000000002),
-                                    link_16_rate_z * link_16_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_16_force_6 = (-link_16_rate_y)
-        .mul_add(
-            link_16_force,
-            link_16_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_16_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_16_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_16_rate_x * link_16_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_17: force (17 additions, 26 multiplications)
-    let link_17_force = link_17_rate_z
-        .mul_add(n(0.00041000000000000005), link_17_rate_x * n(0.05350000000000002));
-    let link_17_force_2 = link_17_rate_y * n(0.053440000000000015);
-    let link_17_force_3 = link_17_rate_z
-        .mul_add(n(0.00023999999999999976), link_17_rate_x * n(0.00041000000000000005));
-    let link_17_force_4 = (-link_17_rate_z)
-        .mul_add(
-            link_17_force_2,
-            link_17_acceleration_5
-                .mul_add(
-                    n(0.28),
-                    link_17_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_17_acceleration_7
-                                .mul_add(
-                                    n(0.05350000000000002),
-                                    link_17_rate_y * link_17_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_17_force_5 = (-link_17_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_17_acceleration_4)
-                .mul_add(
-                    n(0.28),
-                    (-link_17_rate_x)
-                        .mul_add(
-                            link_17_force_3,
-                            link_17_acceleration_8
-                                .mul_add(
-                                    n(0.053440000000000015),
-                                    link_17_rate_z * link_17_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_17_force_6 = (-link_17_rate_y)
-        .mul_add(
-            link_17_force,
-            link_17_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_17_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_17_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_17_rate_x * link_17_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_18: force (17 additions, 26 multiplications)
-    let link_18_force = link_18_rate_z
-        .mul_add(n(0.00041000000000000005), link_18_rate_x * n(0.037500000000000006));
-    let link_18_force_2 = link_18_rate_y * n(0.03744000000000001);
-    let link_18_force_3 = link_18_rate_z
-        .mul_add(n(0.00023999999999999976), link_18_rate_x * n(0.00041000000000000005));
-    let link_18_force_4 = (-link_18_rate_z)
-        .mul_add(
-            link_18_force_2,
-            link_18_acceleration_5
-                .mul_add(
-                    n(0.20000000000000004),
-                    link_18_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_18_acceleration_7
-                                .mul_add(
-                                    n(0.037500000000000006),
-                                    link_18_rate_y * link_18_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_18_force_5 = (-link_18_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_18_acceleration_4)
-                .mul_add(
-                    n(0.20000000000000004),
-                    (-link_18_rate_x)
-                        .mul_add(
-                            link_18_force_3,
-                            link_18_acceleration_8
-                                .mul_add(
-                                    n(0.03744000000000001),
-                                    link_18_rate_z * link_18_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_18_force_6 = (-link_18_rate_y)
-        .mul_add(
-            link_18_force,
-            link_18_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_18_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_18_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_18_rate_x * link_18_force_2,
-                                ),
-                        ),
-                ),
-        );
-    // link_19: force (17 additions, 26 multiplications)
-    let link_19_force = link_19_rate_z
-        .mul_add(n(0.00041000000000000005), link_19_rate_x * n(0.021500000000000005));
-    let link_19_force_2 = link_19_rate_y * n(0.021440000000000004);
-    let link_19_force_3 = link_19_rate_z
-        .mul_add(n(0.00023999999999999976), link_19_rate_x * n(0.00041000000000000005));
-    let link_19_force_4 = (-link_19_rate_z)
-        .mul_add(
-            link_19_force_2,
-            link_19_acceleration_5
-                .mul_add(
-                    n(0.12000000000000002),
-                    link_19_acceleration_9
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_19_acceleration_7
-                                .mul_add(
-                                    n(0.021500000000000005),
-                                    link_19_rate_y * link_19_force_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_19_force_5 = (-link_19_acceleration_6)
-        .mul_add(
-            n(0.004),
-            (-link_19_acceleration_4)
-                .mul_add(
-                    n(0.12000000000000002),
-                    (-link_19_rate_x)
-                        .mul_add(
-                            link_19_force_3,
-                            link_19_acceleration_8
-                                .mul_add(
-                                    n(0.021440000000000004),
-                                    link_19_rate_z * link_19_force,
-                                ),
-                        ),
-                ),
-        );
-    let link_19_force_6 = (-link_19_rate_y)
-        .mul_add(
-            link_19_force,
-            link_19_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_19_acceleration_9
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            link_19_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_19_rate_x * link_19_force_2,
-                                ),
-                        ),
-                ),
-        );
     // link_20: force (17 additions, 26 multiplications)
     let link_20_force = link_20_rate_z
         .mul_add(n(0.00041000000000000005), link_20_rate_x * n(0.005500000000000001));

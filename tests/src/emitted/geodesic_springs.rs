@@ -103,15 +103,6 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_rate_x = lower_joint_25 + lower_angular_velocity;
     let lower_rate_y = lower_joint_26 + lower_angular_velocity_2;
     let lower_rate_z = lower_joint_27 + lower_angular_velocity_3;
-    // lower: acceleration (13 additions, 19 multiplications)
-    let lower_acceleration = (-lower_joint_26)
-        .mul_add(lower_angular_velocity_3, lower_joint_27 * lower_angular_velocity_2);
-    let lower_acceleration_2 = (-lower_joint_27)
-        .mul_add(lower_angular_velocity, lower_joint_25 * lower_angular_velocity_3);
-    let lower_acceleration_3 = (-(v[0] * v[2])).mul_add(n(0.6), q[6] * n(9.81));
-    let lower_acceleration_4 = (-(v[1] * v[2])).mul_add(n(0.6), q[7] * n(9.81));
-    let lower_acceleration_5 = (v[1].mul_add(v[1], v[0] * v[0]))
-        .mul_add(n(0.6), q[8] * n(9.81));
     // upper: force (9 additions, 15 multiplications)
     let upper_force = v[2].mul_add(n(0.06), v[0] * n(0.59));
     let upper_force_2 = v[1] * n(0.62);
@@ -122,6 +113,15 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-q[6])
                 .mul_add(n(11.772), (-v[0]).mul_add(upper_force_3, v[2] * upper_force)),
         );
+    // lower: acceleration (13 additions, 19 multiplications)
+    let lower_acceleration = (-lower_joint_26)
+        .mul_add(lower_angular_velocity_3, lower_joint_27 * lower_angular_velocity_2);
+    let lower_acceleration_2 = (-lower_joint_27)
+        .mul_add(lower_angular_velocity, lower_joint_25 * lower_angular_velocity_3);
+    let lower_acceleration_3 = (-(v[0] * v[2])).mul_add(n(0.6), q[6] * n(9.81));
+    let lower_acceleration_4 = (-(v[1] * v[2])).mul_add(n(0.6), q[7] * n(9.81));
+    let lower_acceleration_5 = (v[1].mul_add(v[1], v[0] * v[0]))
+        .mul_add(n(0.6), q[8] * n(9.81));
     // lower: force (8 additions, 17 multiplications)
     let lower_force = lower_rate_x * n(0.0825);
     let lower_force_2 = lower_rate_y * n(0.0825);
@@ -691,27 +691,6 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                         ),
                 ),
         );
-    // upper: factor (4 additions, 7 multiplications, 3 divisions)
-    let upper_factor = n(1.0) / lower_factor_24;
-    let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = (-lower_factor_26)
-        .mul_add(
-            upper_factor_2,
-            (-lower_factor_17)
-                .mul_add(
-                    lower_factor_27,
-                    (-lower_factor_6)
-                        .mul_add(
-                            lower_factor_20,
-                            (-lower_composite_inertia_23)
-                                .mul_add(lower_factor_11, lower_composite_inertia_7),
-                        ),
-                ),
-        );
-    let upper_factor_4 = lower_factor_26 * upper_factor;
-    let upper_factor_5 = n(1.0)
-        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
-    let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // lower: load (12 additions, 12 multiplications)
     let lower_load = (-lower_effort_9)
         .mul_add(lower_factor_2, lower_effort_2 - lower_effort_7);
@@ -738,6 +717,27 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     (-lower_effort_9).mul_add(lower_factor_10, upper_effort_2),
                 ),
         );
+    // upper: factor (4 additions, 7 multiplications, 3 divisions)
+    let upper_factor = n(1.0) / lower_factor_24;
+    let upper_factor_2 = lower_factor_25 * upper_factor;
+    let upper_factor_3 = (-lower_factor_26)
+        .mul_add(
+            upper_factor_2,
+            (-lower_factor_17)
+                .mul_add(
+                    lower_factor_27,
+                    (-lower_factor_6)
+                        .mul_add(
+                            lower_factor_20,
+                            (-lower_composite_inertia_23)
+                                .mul_add(lower_factor_11, lower_composite_inertia_7),
+                        ),
+                ),
+        );
+    let upper_factor_4 = lower_factor_26 * upper_factor;
+    let upper_factor_5 = n(1.0)
+        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
+    let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // upper: load (3 additions, 3 multiplications)
     let upper_load = upper_factor_2
         .mul_add(
@@ -1110,6 +1110,15 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
+    // lower: load (12 additions, 12 multiplications)
+    let lower_load = p[5].mul_add(lower_factor_2, p[4]);
+    let lower_load_2 = (-p[5])
+        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
+    let lower_load_3 = (-lower_factor_23)
+        .mul_add(
+            lower_load_2,
+            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
+        );
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
@@ -1131,15 +1140,6 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let upper_factor_5 = n(1.0)
         / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
-    // lower: load (12 additions, 12 multiplications)
-    let lower_load = p[5].mul_add(lower_factor_2, p[4]);
-    let lower_load_2 = (-p[5])
-        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
-    let lower_load_3 = (-lower_factor_23)
-        .mul_add(
-            lower_load_2,
-            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
-        );
     // upper: load (3 additions, 3 multiplications)
     let upper_load = (-lower_factor_20)
         .mul_add(
@@ -1176,6 +1176,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let upper_speed_3 = upper_factor
         * ((-lower_factor_26)
             .mul_add(upper_speed, lower_factor_25.mul_add(upper_speed_2, lower_load_3)));
+    // upper: weight (1 addition, 7 multiplications)
+    let upper_weight = q[6] * n(9.81);
+    let upper_weight_2 = q[7] * n(9.81);
+    let upper_weight_3 = q[8] * n(9.81);
     // lower: response (12 additions, 15 multiplications)
     let lower_speed = lower_factor_22
         * ((-lower_factor_17)
@@ -1282,10 +1286,6 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         .mul_add(n(0.25), lower_momentum_7 * n(0.0825));
     let lower_momentum_12 = lower_momentum_7 * n(0.25);
     let lower_momentum_13 = lower_momentum_6 * n(0.25);
-    // upper: weight (1 addition, 7 multiplications)
-    let upper_weight = q[6] * n(9.81);
-    let upper_weight_2 = q[7] * n(9.81);
-    let upper_weight_3 = q[8] * n(9.81);
     // lower: weight (4 additions, 8 multiplications)
     let lower_weight = ((-lower_joint_19)
         .mul_add(
@@ -2018,6 +2018,15 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                         ),
                 ),
         );
+    // lower: load (12 additions, 12 multiplications)
+    let lower_load = p[5].mul_add(lower_factor_2, p[4]);
+    let lower_load_2 = (-p[5])
+        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
+    let lower_load_3 = (-lower_factor_23)
+        .mul_add(
+            lower_load_2,
+            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
+        );
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
@@ -2039,15 +2048,6 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let upper_factor_5 = n(1.0)
         / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
-    // lower: load (12 additions, 12 multiplications)
-    let lower_load = p[5].mul_add(lower_factor_2, p[4]);
-    let lower_load_2 = (-p[5])
-        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
-    let lower_load_3 = (-lower_factor_23)
-        .mul_add(
-            lower_load_2,
-            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
-        );
     // upper: load (3 additions, 3 multiplications)
     let upper_load = (-lower_factor_20)
         .mul_add(
@@ -2084,52 +2084,6 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let upper_speed_3 = upper_factor
         * ((-lower_factor_26)
             .mul_add(upper_speed, lower_factor_25.mul_add(upper_speed_2, lower_load_3)));
-    // lower: response (17 additions, 22 multiplications)
-    let lower_speed = lower_factor_22
-        * ((-lower_factor_17)
-            .mul_add(
-                upper_speed,
-                (-lower_factor_15)
-                    .mul_add(
-                        upper_speed_3,
-                        lower_factor_16.mul_add(upper_speed_2, lower_load_2),
-                    ),
-            ));
-    let lower_response = (-lower_factor_5)
-        .mul_add(
-            upper_speed_2,
-            lower_factor_6
-                .mul_add(
-                    upper_speed,
-                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
-                ),
-        );
-    let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
-    let lower_response_2 = (-lower_composite_inertia_22)
-        .mul_add(
-            upper_speed_3,
-            (-lower_composite_inertia_8)
-                .mul_add(
-                    lower_speed,
-                    lower_composite_inertia_24
-                        .mul_add(
-                            upper_speed_2,
-                            lower_composite_inertia_15 * lower_speed_2,
-                        ),
-                ),
-        );
-    let lower_response_3 = p[3]
-        .mul_add(
-            lower_speed,
-            p[2].mul_add(upper_speed_3, p[1].mul_add(upper_speed_2, p[0] * upper_speed)),
-        );
-    let lower_response_4 = p[5]
-        .mul_add(
-            lower_factor
-                * ((-lower_composite_inertia_23)
-                    .mul_add(upper_speed, p[5] + lower_response_2)),
-            p[4].mul_add(lower_speed_2, lower_response_3),
-        );
     // upper: spring (20 additions, 34 multiplications, 1 function call)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
@@ -2188,6 +2142,52 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     upper_spring[1] * n(20.0),
                     upper_spring[0] * (upper_spring[0] * n(30.0)),
                 ),
+        );
+    // lower: response (17 additions, 22 multiplications)
+    let lower_speed = lower_factor_22
+        * ((-lower_factor_17)
+            .mul_add(
+                upper_speed,
+                (-lower_factor_15)
+                    .mul_add(
+                        upper_speed_3,
+                        lower_factor_16.mul_add(upper_speed_2, lower_load_2),
+                    ),
+            ));
+    let lower_response = (-lower_factor_5)
+        .mul_add(
+            upper_speed_2,
+            lower_factor_6
+                .mul_add(
+                    upper_speed,
+                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
+                ),
+        );
+    let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
+    let lower_response_2 = (-lower_composite_inertia_22)
+        .mul_add(
+            upper_speed_3,
+            (-lower_composite_inertia_8)
+                .mul_add(
+                    lower_speed,
+                    lower_composite_inertia_24
+                        .mul_add(
+                            upper_speed_2,
+                            lower_composite_inertia_15 * lower_speed_2,
+                        ),
+                ),
+        );
+    let lower_response_3 = p[3]
+        .mul_add(
+            lower_speed,
+            p[2].mul_add(upper_speed_3, p[1].mul_add(upper_speed_2, p[0] * upper_speed)),
+        );
+    let lower_response_4 = p[5]
+        .mul_add(
+            lower_factor
+                * ((-lower_composite_inertia_23)
+                    .mul_add(upper_speed, p[5] + lower_response_2)),
+            p[4].mul_add(lower_speed_2, lower_response_3),
         );
     // lower: spring (3 additions, 7 multiplications, 1 function call)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);

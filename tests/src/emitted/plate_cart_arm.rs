@@ -336,29 +336,6 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_force_11,
             q[12].mul_add(end_effector_force_12, q[10] * end_effector_force_10),
         );
-    // cart: effort (7 additions, 6 multiplications)
-    let cart_effort = (-end_effector_effort_2)
-        .mul_add(
-            n(0.02),
-            (-end_effector_effort_3)
-                .mul_add(
-                    n(0.15),
-                    cart_acceleration_3
-                        .mul_add(
-                            n(0.046),
-                            cart_acceleration_5.mul_add(n(0.495), -end_effector_effort),
-                        ),
-                ),
-        );
-    let cart_effort_2 = cart_acceleration_4
-        .mul_add(n(0.495), cart_acceleration_3.mul_add(n(5.7), end_effector_effort_2));
-    let cart_effort_3 = (-cart_acceleration_4)
-        .mul_add(n(0.046), cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_3));
-    let cart_effort_4 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
-            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
-        );
     // end_effector: composite inertia (75 additions, 113 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
@@ -552,6 +529,29 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_34 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+    // cart: effort (7 additions, 6 multiplications)
+    let cart_effort = (-end_effector_effort_2)
+        .mul_add(
+            n(0.02),
+            (-end_effector_effort_3)
+                .mul_add(
+                    n(0.15),
+                    cart_acceleration_3
+                        .mul_add(
+                            n(0.046),
+                            cart_acceleration_5.mul_add(n(0.495), -end_effector_effort),
+                        ),
+                ),
+        );
+    let cart_effort_2 = cart_acceleration_4
+        .mul_add(n(0.495), cart_acceleration_3.mul_add(n(5.7), end_effector_effort_2));
+    let cart_effort_3 = (-cart_acceleration_4)
+        .mul_add(n(0.046), cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_3));
+    let cart_effort_4 = (-q[6])
+        .mul_add(
+            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
+        );
     // cart: composite inertia (15 additions, 20 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
@@ -714,50 +714,6 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                 ),
         );
     let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
-    // cart: factor (4 additions, 7 multiplications, 2 divisions)
-    let cart_factor = n(1.0)
-        / (end_effector_factor_16
-            .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
-                    .mul_add(
-                        end_effector_factor_19,
-                        end_effector_composite_inertia_28
-                            .mul_add(end_effector_factor_10, -n(5.7)),
-                    ),
-            ));
-    let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_17)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
-                .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_30)
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_3),
-                        ),
-                ),
-        );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
-    let cart_factor_5 = end_effector_factor_26 * cart_factor;
-    let cart_factor_6 = n(1.0) / cart_factor_3;
-    let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-end_effector_effort_4)
         .mul_add(
@@ -820,8 +776,52 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                         ),
                 ),
         );
+    // cart: factor (4 additions, 7 multiplications, 2 divisions)
+    let cart_factor = n(1.0)
+        / (end_effector_factor_16
+            .mul_add(
+                end_effector_factor_24,
+                end_effector_factor_5
+                    .mul_add(
+                        end_effector_factor_19,
+                        end_effector_composite_inertia_28
+                            .mul_add(end_effector_factor_10, -n(5.7)),
+                    ),
+            ));
+    let cart_factor_2 = end_effector_factor_25 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_17)
+        .mul_add(
+            end_effector_factor_27,
+            (-end_effector_factor_6)
+                .mul_add(
+                    end_effector_factor_20,
+                    (-end_effector_composite_inertia_30)
+                        .mul_add(
+                            end_effector_factor_12,
+                            end_effector_factor_25
+                                .mul_add(cart_factor_2, cart_composite_inertia_3),
+                        ),
+                ),
+        );
+    let cart_factor_4 = end_effector_factor_26
+        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_5 = end_effector_factor_26 * cart_factor;
+    let cart_factor_6 = n(1.0) / cart_factor_3;
+    let cart_factor_7 = cart_factor_4 * cart_factor_6;
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
+    // plate: factor (1 division)
+    let plate_factor = n(1.0)
+        / ((-cart_factor_4)
+            .mul_add(
+                cart_factor_7,
+                (-end_effector_factor_18)
+                    .mul_add(
+                        end_effector_factor_29,
+                        end_effector_factor_26
+                            .mul_add(cart_factor_5, end_effector_factor_22),
+                    ),
+            ));
     // plate: response (1 multiplication)
     let plate_acceleration_2 = plate_factor
         * ((-cart_factor_7)
@@ -903,21 +903,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
 #[must_use]
 pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6] {
     let n = T::from_f64;
-    // end_effector: joint (6 additions, 9 multiplications)
-    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
-    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
-    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
-    // cart: angular velocity (1 addition)
-    let cart_rate_z = v[0] + v[1];
-    // end_effector: angular velocity (3 additions, 3 multiplications)
-    let end_effector_angular_velocity = q[13] * cart_rate_z;
-    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
-    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
-    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
-    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
-    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // plate: acceleration (1 multiplication)
     let plate_acceleration = v[0] * v[0];
+    // cart: angular velocity (1 addition)
+    let cart_rate_z = v[0] + v[1];
     // cart: acceleration (8 additions, 12 multiplications)
     let cart_acceleration = q[6].mul_add(a[0], q[3] * plate_acceleration);
     let cart_acceleration_2 = (-q[6]).mul_add(plate_acceleration, q[3] * a[0]);
@@ -930,6 +919,17 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
             cart_acceleration,
             q[5].mul_add(cart_acceleration_2, v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0))),
         );
+    // end_effector: joint (6 additions, 9 multiplications)
+    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
+    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
+    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
+    // end_effector: angular velocity (3 additions, 3 multiplications)
+    let end_effector_angular_velocity = q[13] * cart_rate_z;
+    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
+    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
+    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
+    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
+    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // end_effector: acceleration (34 additions, 37 multiplications)
     let end_effector_acceleration = (-cart_acceleration_4)
         .mul_add(n(0.15), cart_acceleration_3.mul_add(n(0.02), cart_acceleration_5));
@@ -1526,19 +1526,8 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
 #[must_use]
 pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
     let n = T::from_f64;
-    // end_effector: joint (6 additions, 9 multiplications)
-    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
-    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
-    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
     // cart: angular velocity (1 addition)
     let cart_rate_z = v[0] + v[1];
-    // end_effector: angular velocity (3 additions, 3 multiplications)
-    let end_effector_angular_velocity = q[13] * cart_rate_z;
-    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
-    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
-    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
-    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
-    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // plate: acceleration (1 multiplication)
     let plate_acceleration = v[0] * v[0];
     // cart: acceleration (4 additions, 10 multiplications)
@@ -1553,6 +1542,17 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
             (-q[2])
                 .mul_add(cart_acceleration, v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0))),
         );
+    // end_effector: joint (6 additions, 9 multiplications)
+    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
+    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
+    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
+    // end_effector: angular velocity (3 additions, 3 multiplications)
+    let end_effector_angular_velocity = q[13] * cart_rate_z;
+    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
+    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
+    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
+    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
+    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // end_effector: acceleration (20 additions, 23 multiplications)
     let end_effector_acceleration = (-end_effector_joint_2)
         .mul_add(
@@ -2127,6 +2127,19 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                 ),
         );
     let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    // end_effector: load (12 additions, 12 multiplications)
+    let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
+    let end_effector_load_2 = (-end_effector_factor_15)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_24)
+        .mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_load,
+                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
+                ),
+        );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
         / (end_effector_factor_16
@@ -2159,31 +2172,6 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
-    // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_15)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_2,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
-        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
@@ -2211,6 +2199,18 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                         ),
                 ),
         );
+    // plate: factor (1 division)
+    let plate_factor = n(1.0)
+        / ((-cart_factor_4)
+            .mul_add(
+                cart_factor_7,
+                (-end_effector_factor_18)
+                    .mul_add(
+                        end_effector_factor_29,
+                        end_effector_factor_26
+                            .mul_add(cart_factor_5, end_effector_factor_22),
+                    ),
+            ));
     // plate: response (1 multiplication)
     let plate_speed = plate_factor * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
@@ -2221,6 +2221,13 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                 plate_speed,
                 end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
             ));
+    // cart: momentum (6 additions, 10 multiplications)
+    let cart_momentum = q[6] * plate_speed;
+    let cart_momentum_2 = q[3] * plate_speed;
+    let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
+    let cart_momentum_4 = plate_speed + cart_speed;
+    let cart_momentum_5 = (-q[4])
+        .mul_add(cart_momentum_2, q[1].mul_add(cart_momentum, cart_speed_2));
     // end_effector: response (12 additions, 15 multiplications)
     let end_effector_speed = end_effector_factor_23
         * ((-end_effector_factor_18)
@@ -2260,13 +2267,6 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
     let end_effector_speed_3 = end_effector_factor
         * ((-end_effector_composite_inertia_32)
             .mul_add(plate_speed, p[5] - end_effector_response_2));
-    // cart: momentum (6 additions, 10 multiplications)
-    let cart_momentum = q[6] * plate_speed;
-    let cart_momentum_2 = q[3] * plate_speed;
-    let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
-    let cart_momentum_4 = plate_speed + cart_speed;
-    let cart_momentum_5 = (-q[4])
-        .mul_add(cart_momentum_2, q[1].mul_add(cart_momentum, cart_speed_2));
     // end_effector: momentum (23 additions, 32 multiplications)
     let end_effector_momentum = (-cart_momentum_4).mul_add(n(0.02), cart_momentum_5);
     let end_effector_momentum_2 = (-cart_momentum_4).mul_add(n(0.15), cart_momentum_3);
@@ -3038,6 +3038,19 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                 ),
         );
     let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    // end_effector: load (12 additions, 12 multiplications)
+    let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
+    let end_effector_load_2 = (-end_effector_factor_15)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_24)
+        .mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_load,
+                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
+                ),
+        );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
         / (end_effector_factor_16
@@ -3070,31 +3083,6 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
-    // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_15)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_2,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
-        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
@@ -3122,6 +3110,18 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                         ),
                 ),
         );
+    // plate: factor (1 division)
+    let plate_factor = n(1.0)
+        / ((-cart_factor_4)
+            .mul_add(
+                cart_factor_7,
+                (-end_effector_factor_18)
+                    .mul_add(
+                        end_effector_factor_29,
+                        end_effector_factor_26
+                            .mul_add(cart_factor_5, end_effector_factor_22),
+                    ),
+            ));
     // plate: response (1 multiplication)
     let plate_speed = plate_factor * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
@@ -3540,6 +3540,19 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                 ),
         );
     let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    // end_effector: load (12 additions, 12 multiplications)
+    let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
+    let end_effector_load_2 = (-end_effector_factor_15)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_24)
+        .mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_load,
+                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
+                ),
+        );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
         / (end_effector_factor_16
@@ -3572,31 +3585,6 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
-    // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_15)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_2,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
-        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
@@ -3624,6 +3612,18 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                         ),
                 ),
         );
+    // plate: factor (1 division)
+    let plate_factor = n(1.0)
+        / ((-cart_factor_4)
+            .mul_add(
+                cart_factor_7,
+                (-end_effector_factor_18)
+                    .mul_add(
+                        end_effector_factor_29,
+                        end_effector_factor_26
+                            .mul_add(cart_factor_5, end_effector_factor_22),
+                    ),
+            ));
     // plate: response (1 multiplication)
     let plate_speed = plate_factor * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
@@ -3709,6 +3709,22 @@ pub fn energies<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 2] {
     let cart_momentum_4 = v[0] + v[1];
     let cart_momentum_5 = (-q[1])
         .mul_add(cart_momentum, q[4].mul_add(cart_momentum_2, v[2]));
+    // cart: kinetic energy (3 additions, 3 multiplications)
+    let cart_kinetic_energy = cart_momentum_3
+        .mul_add(
+            (-cart_momentum_4).mul_add(n(0.495), cart_momentum_3 * n(5.7)),
+            cart_momentum_5
+                * ((-cart_momentum_4).mul_add(n(0.046), cart_momentum_5 * n(5.7))),
+        );
+    let cart_kinetic_energy_2 = cart_momentum_4
+        .mul_add(
+            (-cart_momentum_5)
+                .mul_add(
+                    n(0.046),
+                    (-cart_momentum_3).mul_add(n(0.495), cart_momentum_4 * n(0.16493)),
+                ),
+            cart_kinetic_energy,
+        );
     // end_effector: momentum (23 additions, 32 multiplications)
     let end_effector_momentum = cart_momentum_4.mul_add(n(0.02), cart_momentum_5);
     let end_effector_momentum_2 = (-cart_momentum_4).mul_add(n(0.15), cart_momentum_3);
@@ -3768,22 +3784,6 @@ pub fn energies<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 2] {
                                 ),
                         ),
                 ),
-        );
-    // cart: kinetic energy (3 additions, 3 multiplications)
-    let cart_kinetic_energy = cart_momentum_3
-        .mul_add(
-            (-cart_momentum_4).mul_add(n(0.495), cart_momentum_3 * n(5.7)),
-            cart_momentum_5
-                * ((-cart_momentum_4).mul_add(n(0.046), cart_momentum_5 * n(5.7))),
-        );
-    let cart_kinetic_energy_2 = cart_momentum_4
-        .mul_add(
-            (-cart_momentum_5)
-                .mul_add(
-                    n(0.046),
-                    (-cart_momentum_3).mul_add(n(0.495), cart_momentum_4 * n(0.16493)),
-                ),
-            cart_kinetic_energy,
         );
     // end_effector: kinetic energy (6 additions, 7 multiplications)
     let end_effector_kinetic_energy = end_effector_momentum_4
@@ -3930,6 +3930,9 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             cart_acceleration_3,
             (-q[2]).mul_add(cart_acceleration_2, cart_acceleration),
         );
+    // cart: force (3 additions, 6 multiplications)
+    let cart_force = cart_acceleration_5 * n(0.495);
+    let cart_force_2 = cart_acceleration_5 * n(0.046);
     // end_effector: acceleration (20 additions, 23 multiplications)
     let end_effector_acceleration = (-end_effector_joint_2)
         .mul_add(
@@ -3974,9 +3977,6 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_acceleration_17 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_18 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_19 = end_effector_rate_z * end_effector_rate_z;
-    // cart: force (3 additions, 6 multiplications)
-    let cart_force = cart_acceleration_5 * n(0.495);
-    let cart_force_2 = cart_acceleration_5 * n(0.046);
     // end_effector: force (30 additions, 39 multiplications)
     let end_effector_force = (-end_effector_rate_z)
         .mul_add(
@@ -4093,29 +4093,6 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         .mul_add(
             end_effector_force_16,
             q[12].mul_add(end_effector_force_18, q[10] * end_effector_force_14),
-        );
-    // cart: effort (7 additions, 6 multiplications)
-    let cart_effort = (-end_effector_effort_2)
-        .mul_add(
-            n(0.02),
-            (-end_effector_effort_3)
-                .mul_add(
-                    n(0.15),
-                    cart_acceleration_4
-                        .mul_add(
-                            n(0.046),
-                            cart_acceleration_6.mul_add(n(0.495), -end_effector_effort),
-                        ),
-                ),
-        );
-    let cart_effort_2 = cart_acceleration_4
-        .mul_add(n(5.7), cart_force + end_effector_effort_2);
-    let cart_effort_3 = cart_acceleration_6
-        .mul_add(n(5.7), -cart_force_2 - end_effector_effort_3);
-    let cart_effort_4 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
-            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
     // end_effector: composite inertia (75 additions, 113 multiplications)
     let end_effector_composite_inertia = (-q[9])
@@ -4310,6 +4287,29 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_34 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+    // cart: effort (7 additions, 6 multiplications)
+    let cart_effort = (-end_effector_effort_2)
+        .mul_add(
+            n(0.02),
+            (-end_effector_effort_3)
+                .mul_add(
+                    n(0.15),
+                    cart_acceleration_4
+                        .mul_add(
+                            n(0.046),
+                            cart_acceleration_6.mul_add(n(0.495), -end_effector_effort),
+                        ),
+                ),
+        );
+    let cart_effort_2 = cart_acceleration_4
+        .mul_add(n(5.7), cart_force + end_effector_effort_2);
+    let cart_effort_3 = cart_acceleration_6
+        .mul_add(n(5.7), -cart_force_2 - end_effector_effort_3);
+    let cart_effort_4 = (-q[6])
+        .mul_add(
+            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
+        );
     // cart: composite inertia (15 additions, 20 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
@@ -4472,50 +4472,6 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
         );
     let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
-    // cart: factor (4 additions, 7 multiplications, 2 divisions)
-    let cart_factor = n(1.0)
-        / (end_effector_factor_16
-            .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
-                    .mul_add(
-                        end_effector_factor_19,
-                        end_effector_composite_inertia_28
-                            .mul_add(end_effector_factor_10, -n(5.7)),
-                    ),
-            ));
-    let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_17)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
-                .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_30)
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_3),
-                        ),
-                ),
-        );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
-    let cart_factor_5 = end_effector_factor_26 * cart_factor;
-    let cart_factor_6 = n(1.0) / cart_factor_3;
-    let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-end_effector_effort_4)
         .mul_add(
@@ -4578,8 +4534,52 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         ),
                 ),
         );
+    // cart: factor (4 additions, 7 multiplications, 2 divisions)
+    let cart_factor = n(1.0)
+        / (end_effector_factor_16
+            .mul_add(
+                end_effector_factor_24,
+                end_effector_factor_5
+                    .mul_add(
+                        end_effector_factor_19,
+                        end_effector_composite_inertia_28
+                            .mul_add(end_effector_factor_10, -n(5.7)),
+                    ),
+            ));
+    let cart_factor_2 = end_effector_factor_25 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_17)
+        .mul_add(
+            end_effector_factor_27,
+            (-end_effector_factor_6)
+                .mul_add(
+                    end_effector_factor_20,
+                    (-end_effector_composite_inertia_30)
+                        .mul_add(
+                            end_effector_factor_12,
+                            end_effector_factor_25
+                                .mul_add(cart_factor_2, cart_composite_inertia_3),
+                        ),
+                ),
+        );
+    let cart_factor_4 = end_effector_factor_26
+        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_5 = end_effector_factor_26 * cart_factor;
+    let cart_factor_6 = n(1.0) / cart_factor_3;
+    let cart_factor_7 = cart_factor_4 * cart_factor_6;
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
+    // plate: factor (1 division)
+    let plate_factor = n(1.0)
+        / ((-cart_factor_4)
+            .mul_add(
+                cart_factor_7,
+                (-end_effector_factor_18)
+                    .mul_add(
+                        end_effector_factor_29,
+                        end_effector_factor_26
+                            .mul_add(cart_factor_5, end_effector_factor_22),
+                    ),
+            ));
     // plate: response (1 multiplication)
     let plate_acceleration_2 = plate_factor
         * ((-cart_factor_7)
@@ -4597,6 +4597,42 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 (-end_effector_factor_25)
                     .mul_add(cart_acceleration_7, end_effector_load_4),
             ));
+    // cart: acceleration (7 additions, 6 multiplications)
+    let cart_acceleration_9 = q[6] * plate_acceleration_2;
+    let cart_acceleration_10 = cart_acceleration_2 - cart_acceleration_9;
+    let cart_acceleration_11 = q[3] * plate_acceleration_2;
+    let cart_acceleration_12 = cart_acceleration_3 + cart_acceleration_11;
+    let cart_acceleration_13 = plate_acceleration_2 + cart_acceleration_7;
+    let cart_acceleration_14 = q[4]
+        .mul_add(
+            cart_acceleration_12,
+            q[1].mul_add(cart_acceleration_10, cart_acceleration_8),
+        );
+    let cart_acceleration_15 = (-q[5])
+        .mul_add(
+            cart_acceleration_12,
+            (-q[2]).mul_add(cart_acceleration_10, cart_acceleration),
+        );
+    // cart: motion (11 additions, 16 multiplications)
+    let cart_motion = v[0] * q[6];
+    let cart_motion_2 = v[0] * q[3];
+    let cart_motion_3 = (-q[4]).mul_add(cart_motion_2, q[1] * cart_motion);
+    let cart_motion_4 = (-q[5]).mul_add(cart_motion_2, q[2] * cart_motion);
+    let cart_motion_5 = v[2] - cart_motion_3;
+    // cart: variation (4 additions, 3 multiplications)
+    let cart_variation = v[0] + cart_rate_z;
+    let cart_variation_2 = cart_motion_3 - cart_motion_5;
+    let cart_variation_3 = cart_motion_4 * n(2.0);
+    let cart_variation_4 = (-v[0])
+        .mul_add(
+            cart_motion_3,
+            (-q[5]).mul_add(cart_acceleration_11, q[2] * cart_acceleration_9),
+        );
+    let cart_variation_5 = (-q[4])
+        .mul_add(
+            cart_acceleration_11,
+            v[0].mul_add(cart_motion_4, q[1] * cart_acceleration_9),
+        );
     // end_effector: response (12 additions, 15 multiplications)
     let end_effector_acceleration_20 = end_effector_factor_23
         * (end_effector_factor_18
@@ -4644,22 +4680,6 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 plate_acceleration_2,
                 end_effector_effort_4 - end_effector_response_2,
             ));
-    // cart: acceleration (7 additions, 6 multiplications)
-    let cart_acceleration_9 = q[6] * plate_acceleration_2;
-    let cart_acceleration_10 = cart_acceleration_2 - cart_acceleration_9;
-    let cart_acceleration_11 = q[3] * plate_acceleration_2;
-    let cart_acceleration_12 = cart_acceleration_3 + cart_acceleration_11;
-    let cart_acceleration_13 = plate_acceleration_2 + cart_acceleration_7;
-    let cart_acceleration_14 = q[4]
-        .mul_add(
-            cart_acceleration_12,
-            q[1].mul_add(cart_acceleration_10, cart_acceleration_8),
-        );
-    let cart_acceleration_15 = (-q[5])
-        .mul_add(
-            cart_acceleration_12,
-            (-q[2]).mul_add(cart_acceleration_10, cart_acceleration),
-        );
     // end_effector: acceleration (28 additions, 20 multiplications)
     let end_effector_acceleration_23 = cart_acceleration_13 * n(0.02);
     let end_effector_acceleration_24 = cart_acceleration_13 * n(0.15);
@@ -4718,12 +4738,6 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         + end_effector_acceleration_31 - end_effector_acceleration_34;
     let end_effector_acceleration_38 = end_effector_acceleration_3
         + end_effector_acceleration_32 - end_effector_acceleration_35;
-    // cart: motion (11 additions, 16 multiplications)
-    let cart_motion = v[0] * q[6];
-    let cart_motion_2 = v[0] * q[3];
-    let cart_motion_3 = (-q[4]).mul_add(cart_motion_2, q[1] * cart_motion);
-    let cart_motion_4 = (-q[5]).mul_add(cart_motion_2, q[2] * cart_motion);
-    let cart_motion_5 = v[2] - cart_motion_3;
     // end_effector: motion (34 additions, 41 multiplications)
     let end_effector_motion = cart_rate_z.mul_add(n(0.02), cart_motion_5);
     let end_effector_motion_2 = (-cart_rate_z).mul_add(n(0.15), cart_motion_4);
@@ -4826,20 +4840,6 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             n(0.085),
             (end_effector_acceleration_18 + end_effector_acceleration_36)
                 .mul_add(n(0.136), end_effector_force_17),
-        );
-    // cart: variation (4 additions, 3 multiplications)
-    let cart_variation = v[0] + cart_rate_z;
-    let cart_variation_2 = cart_motion_3 - cart_motion_5;
-    let cart_variation_3 = cart_motion_4 * n(2.0);
-    let cart_variation_4 = (-v[0])
-        .mul_add(
-            cart_motion_3,
-            (-q[5]).mul_add(cart_acceleration_11, q[2] * cart_acceleration_9),
-        );
-    let cart_variation_5 = (-q[4])
-        .mul_add(
-            cart_acceleration_11,
-            v[0].mul_add(cart_motion_4, q[1] * cart_acceleration_9),
         );
     // end_effector: variation (110 additions, 114 multiplications)
     let end_effector_variation = end_effector_angular_velocity + end_effector_rate_x;
@@ -7498,14 +7498,15 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         ),
                 ),
         );
-    // plate: response (1 multiplication)
+    // plate: response (2 multiplications)
     let plate_slope_12 = plate_factor
         * ((-cart_factor_7)
             .mul_add(
                 cart_load_14,
                 (-cart_factor_5).mul_add(end_effector_load_56, end_effector_load_57),
             ));
-    // cart: response (3 additions, 5 multiplications)
+    let plate_response = cart_factor_7 * plate_factor;
+    // cart: response (4 additions, 7 multiplications)
     let cart_slope_41 = cart_factor_6
         * ((-cart_factor_4).mul_add(plate_slope_12, cart_load_14));
     let cart_slope_42 = cart_factor
@@ -7554,8 +7555,6 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         ),
                 ),
         );
-    // plate: response (1 multiplication)
-    let plate_response = cart_factor_7 * plate_factor;
     // plate: response (1 multiplication)
     let plate_response_2 = plate_factor
         * ((-cart_factor_2).mul_add(cart_factor_7, cart_factor_5));
@@ -7953,21 +7952,10 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     a: &[T; 6],
 ) -> [[T; 13]; 6] {
     let n = T::from_f64;
-    // end_effector: joint (6 additions, 9 multiplications)
-    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
-    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
-    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
-    // cart: angular velocity (1 addition)
-    let cart_rate_z = v[0] + v[1];
-    // end_effector: angular velocity (3 additions, 3 multiplications)
-    let end_effector_angular_velocity = q[13] * cart_rate_z;
-    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
-    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
-    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
-    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
-    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // plate: acceleration (1 multiplication)
     let plate_acceleration = v[0] * v[0];
+    // cart: angular velocity (1 addition)
+    let cart_rate_z = v[0] + v[1];
     // cart: acceleration (8 additions, 12 multiplications)
     let cart_acceleration = q[6] * a[0];
     let cart_acceleration_2 = q[3].mul_add(plate_acceleration, cart_acceleration);
@@ -7982,6 +7970,37 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             cart_acceleration_2,
             q[5].mul_add(cart_acceleration_4, v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0))),
         );
+    // cart: motion (11 additions, 18 multiplications)
+    let cart_motion = v[0] * q[6];
+    let cart_motion_2 = v[0] * q[3];
+    let cart_motion_3 = (-q[4]).mul_add(cart_motion_2, q[1] * cart_motion);
+    let cart_motion_4 = (-q[5]).mul_add(cart_motion_2, q[2] * cart_motion);
+    let cart_motion_5 = v[2] - cart_motion_3;
+    // cart: variation (4 additions, 3 multiplications)
+    let cart_variation = v[0] + cart_rate_z;
+    let cart_variation_2 = cart_motion_3 - cart_motion_5;
+    let cart_variation_3 = cart_motion_4 * n(2.0);
+    let cart_variation_4 = (-q[5])
+        .mul_add(
+            cart_acceleration_3,
+            v[0].mul_add(cart_motion_3, q[2] * cart_acceleration),
+        );
+    let cart_variation_5 = (-v[0])
+        .mul_add(
+            cart_motion_4,
+            (-q[4]).mul_add(cart_acceleration_3, q[1] * cart_acceleration),
+        );
+    // end_effector: joint (6 additions, 9 multiplications)
+    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
+    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
+    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
+    // end_effector: angular velocity (3 additions, 3 multiplications)
+    let end_effector_angular_velocity = q[13] * cart_rate_z;
+    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
+    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
+    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
+    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
+    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // end_effector: acceleration (34 additions, 37 multiplications)
     let end_effector_acceleration = cart_acceleration_5 * n(0.02);
     let end_effector_acceleration_2 = cart_acceleration_5 * n(0.15);
@@ -8049,12 +8068,6 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_acceleration_23 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_24 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_25 = end_effector_rate_z * end_effector_rate_z;
-    // cart: motion (11 additions, 18 multiplications)
-    let cart_motion = v[0] * q[6];
-    let cart_motion_2 = v[0] * q[3];
-    let cart_motion_3 = (-q[4]).mul_add(cart_motion_2, q[1] * cart_motion);
-    let cart_motion_4 = (-q[5]).mul_add(cart_motion_2, q[2] * cart_motion);
-    let cart_motion_5 = v[2] - cart_motion_3;
     // end_effector: motion (43 additions, 59 multiplications)
     let end_effector_motion = cart_rate_z.mul_add(n(0.02), cart_motion_5);
     let end_effector_motion_2 = (-cart_rate_z).mul_add(n(0.15), cart_motion_4);
@@ -8200,20 +8213,6 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                     (end_effector_acceleration_18 - end_effector_acceleration_22)
                         * n(0.085),
                 ),
-        );
-    // cart: variation (4 additions, 3 multiplications)
-    let cart_variation = v[0] + cart_rate_z;
-    let cart_variation_2 = cart_motion_3 - cart_motion_5;
-    let cart_variation_3 = cart_motion_4 * n(2.0);
-    let cart_variation_4 = (-q[5])
-        .mul_add(
-            cart_acceleration_3,
-            v[0].mul_add(cart_motion_3, q[2] * cart_acceleration),
-        );
-    let cart_variation_5 = (-v[0])
-        .mul_add(
-            cart_motion_4,
-            (-q[4]).mul_add(cart_acceleration_3, q[1] * cart_acceleration),
         );
     // end_effector: variation (110 additions, 114 multiplications)
     let end_effector_variation = end_effector_angular_velocity + end_effector_rate_x;

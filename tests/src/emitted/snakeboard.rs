@@ -348,12 +348,6 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 9], p: &[T; 6]) -> [T; 1] {
         * board_composite_inertia_3;
     let board_composite_inertia_5 = board_constraint_2 * board_composite_inertia_4;
     let board_composite_inertia_6 = board_constraint_3 * board_composite_inertia_4;
-    // rotor: momentum (1 addition, 1 multiplication)
-    let rotor_momentum = p[3] + board_composite_inertia_5;
-    // front: momentum (1 addition, 1 multiplication)
-    let front_momentum = p[4] + board_composite_inertia_5;
-    // back: momentum (1 addition, 1 multiplication)
-    let back_momentum = p[5] + board_composite_inertia_5;
     // board: kinetic energy (2 additions, 3 multiplications)
     let board_kinetic_energy = board_composite_inertia_6
         .mul_add(
@@ -365,6 +359,12 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 9], p: &[T; 6]) -> [T; 1] {
                         * (board_composite_inertia_5 * n(0.24200000000000002)),
                 ),
         );
+    // rotor: momentum (1 addition, 1 multiplication)
+    let rotor_momentum = p[3] + board_composite_inertia_5;
+    // front: momentum (1 addition, 1 multiplication)
+    let front_momentum = p[4] + board_composite_inertia_5;
+    // back: momentum (1 addition, 1 multiplication)
+    let back_momentum = p[5] + board_composite_inertia_5;
     // back: kinetic energy (1 addition, 2 multiplications)
     let back_kinetic_energy = back_momentum
         .mul_add(

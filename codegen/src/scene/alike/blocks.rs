@@ -3,6 +3,7 @@
 use crate::expr::Function;
 use crate::scene::graph::{Graph, Operation, Value};
 use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 /// What is computed for one body in one sweep.
 #[derive(Clone, Debug)]
@@ -105,6 +106,17 @@ impl Blocks {
         latest.insert(section, place);
         self.home.extend(run.iter().map(|&node| (node, place)));
         self.blocks[place].nodes.extend(run);
+    }
+
+    /// The other blocks that a block reads.
+    pub fn sources(&self, graph: &Graph, block: usize) -> BTreeSet<usize> {
+        let mut sources = BTreeSet::new();
+        for &node in &self.blocks[block].nodes {
+            let operation = &graph.nodes[node as usize].operation;
+            operation.each_operand(|node| sources.extend(self.home.get(&node).copied()));
+        }
+        sources.remove(&block);
+        sources
     }
 
     fn find_outputs(&mut self, graph: &Graph) {

@@ -21,6 +21,7 @@ mod schedule;
 
 pub use blocks::{Block, Blocks, Trigonometry};
 pub use interface::{Interface, Read};
+pub use schedule::late;
 
 use super::graph::{Graph, Value};
 use std::collections::BTreeMap;

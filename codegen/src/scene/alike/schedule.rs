@@ -1,6 +1,7 @@
-//! An order of blocks in which like ones follow each other.
+//! Orders of blocks: one in which like ones follow each other, and one in which values are read soon after.
 
-use super::Interface;
+use super::{Blocks, Interface};
+use crate::scene::graph::Graph;
 use std::collections::BTreeSet;
 
 /// Groups of like blocks: the next is always like the one before, where one can be computed, else the earliest.
@@ -40,6 +41,29 @@ pub fn groups(interfaces: &[Interface]) -> Vec<Vec<usize>> {
         }
     }
     groups
+}
+
+/// Each block as late as it can be, right before the first that reads it: few values wait at any time, as a limb of a tree is done, outward and
+/// inward, before the next one begins.
+pub fn late(graph: &Graph, blocks: &Blocks) -> Vec<usize> {
+    let count = blocks.blocks.len();
+    let sources: Vec<BTreeSet<usize>> = (0..count).map(|b| blocks.sources(graph, b)).collect();
+    let read: BTreeSet<usize> = sources.iter().flatten().copied().collect();
+    let mut order = Vec::with_capacity(count);
+    let mut is_done = vec![false; count];
+    for last in (0..count).filter(|block| !read.contains(block)) {
+        let mut stack = vec![(last, sources[last].iter())];
+        while let Some((block, waited_for)) = stack.last_mut() {
+            if let Some(&source) = waited_for.find(|&&source| !is_done[source]) {
+                stack.push((source, sources[source].iter()));
+            } else {
+                is_done[*block] = true;
+                order.push(*block);
+                stack.pop();
+            }
+        }
+    }
+    order
 }
 
 /// For each block the number of the first that it is like.

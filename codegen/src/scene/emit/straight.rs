@@ -4,7 +4,7 @@ use super::lines::{Formula, Heading, Line, Place};
 use super::lower::{Lowering, partners};
 use super::{Function, Lowered};
 use crate::emit::names::NameSet;
-use crate::scene::alike::{Blocks, Read};
+use crate::scene::alike::{Blocks, Read, late};
 use crate::scene::graph::{Graph, Operation, Operations};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -25,17 +25,11 @@ pub fn lowered(function: &Function, bodies: &[String], names: &mut NameSet) -> L
         formulas: FxHashMap::default(),
         lines: vec![],
     };
-    batch(&mut lowering, &Blocks::new(graph, &function.outputs));
-    let is_given = |node: u32| {
-        let operation = &graph.nodes[node as usize].operation;
-        matches!(operation, Operation::Input(..) | Operation::Constant(_))
-    };
-    let needed: Vec<u32> = (0_u32..)
-        .zip(&uses)
-        .filter(|&(node, &uses)| uses > 0 && !is_given(node))
-        .map(|(node, _)| node)
-        .collect();
-    lowering.run(&needed);
+    let blocks = Blocks::new(graph, &function.outputs);
+    batch(&mut lowering, &blocks);
+    let order = late(graph, &blocks);
+    let nodes = order.iter().flat_map(|&block| &blocks.blocks[block].nodes);
+    lowering.run(&nodes.copied().collect::<Vec<u32>>());
     let outputs = function.outputs.iter();
     let outputs = outputs.map(|&output| lowering.read(output)).collect();
     Lowered {
