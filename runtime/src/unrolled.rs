@@ -16,6 +16,11 @@ macro_rules! unrolled {
             let $i = $turn;
             $body
         })*
+        #[allow(
+            clippy::needless_range_loop,
+            clippy::reversed_empty_ranges,
+            reason = "the body is written for turns with numbers"
+        )]
         for $i in 128..$count $body
     };
 }

@@ -1,7 +1,7 @@
 //! Many states at once: the same as one by one, at every level, whatever their number and the threads; wrong sizes are named.
 #![cfg(all(feature = "alloc", feature = "rayon"))]
 
-use hamel::compiled::{Batch, BatchError, Equations, InLanes, Level, OfState, many_states};
+use hamel::compiled::{Batch, BatchError, Equations, InLanes, Lanes, Level, OfState, many_states};
 use hamel::scalar::Scalar;
 
 /// Two angles with speeds and three efforts: what a module holds, by hand.
@@ -84,6 +84,26 @@ impl Case {
         done.expect("sizes fit");
         rates
     }
+
+    /// The same with eight states side by side.
+    fn run_side_by_side(&self, batch: &Batch) -> Vec<f64> {
+        let [q, v, u] = [(&self.q, 2), (&self.v, 2), (&self.u, 3)]
+            .map(|(of, width)| Lanes::side_by_side(of, width));
+        let mut rates = vec![Lanes([f64::NAN; 8]); v.len()];
+        let done = batch.forward_dynamics(&q, &v, &u, &mut rates);
+        done.expect("sizes fit");
+        let mut shared = rates.clone();
+        let done = batch.par_forward_dynamics(&q, &v, &u, &mut shared);
+        done.expect("sizes fit");
+        let rates = Lanes::apart(&rates, 2);
+        assert_eq!(bits(&Lanes::apart(&shared, 2)), bits(&rates));
+        rates[..self.v.len()].to_vec()
+    }
+}
+
+/// NaN equals NaN.
+fn bits(numbers: &[f64]) -> Vec<u64> {
+    numbers.iter().map(|number| number.to_bits()).collect()
 }
 
 fn levels() -> impl Iterator<Item = Level> {
@@ -105,6 +125,38 @@ fn lanes_are_single_states_to_rounding_at_every_level() {
             }
         }
     }
+}
+
+#[test]
+fn states_side_by_side_are_those_of_rows() {
+    for states in [0, 1, 8, 13, 1003] {
+        let mut case = Case::new(states);
+        if let Some(angle) = case.q.last_mut() {
+            // Beyond the fast path.
+            *angle = 1e6;
+        }
+        for level in levels() {
+            let batch = Batch::at(&IN_LANES, level).expect("it is available");
+            assert_eq!(case.run_side_by_side(&batch), case.run(&batch));
+        }
+        let one_by_one = Batch::new(&ONE_BY_ONE);
+        assert_eq!(case.run_side_by_side(&one_by_one), case.run(&one_by_one));
+    }
+}
+
+#[test]
+fn rows_go_side_by_side_and_apart() {
+    let rows: Vec<f64> = (0..33).map(f64::from).collect();
+    let lanes = Lanes::side_by_side(&rows, 3);
+    assert_eq!(lanes.len(), 6);
+    assert_eq!(
+        lanes[1],
+        Lanes([1.0, 4.0, 7.0, 10.0, 13.0, 16.0, 19.0, 22.0])
+    );
+    // Three states are left, the last one repeated.
+    assert_eq!(lanes[5].0, [26.0, 29.0, 32.0, 32.0, 32.0, 32.0, 32.0, 32.0]);
+    assert_eq!(Lanes::apart(&lanes, 3)[..33], rows);
+    assert!(Lanes::side_by_side(&[], 3).is_empty() && Lanes::side_by_side(&[], 0).is_empty());
 }
 
 #[test]
@@ -162,13 +214,13 @@ fn what_does_not_fit_is_named() {
     let text = error.expect_err("too short").to_string();
     assert_eq!(
         text,
-        "a batch of 5 states of `by hand`: configuration must have 10 numbers, not 9; rates must have 10 numbers, not 9"
+        "a batch of 5 rows of `by hand`: configuration must have 10 numbers, not 9; rates must have 10 numbers, not 9"
     );
     let error = batch.forward_dynamics(&q, &v[1..], &u, &mut rates);
     let text = error.expect_err("no whole state").to_string();
     assert_eq!(
         text,
-        "9 speeds are no whole number of states of `by hand`, which has 2"
+        "9 speeds are no whole number of rows of `by hand`, which has 2"
     );
     let error = batch.inverse_dynamics(&q, &v, &u, &mut rates);
     let missing = BatchError::Missing {

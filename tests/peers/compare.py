@@ -63,8 +63,10 @@ ALGOS = [
     'step',
     'aba_x4',
     'aba_x8',
+    'aba_x8_rows',
     'rnea_x4',
     'rnea_x8',
+    'rnea_x8_rows',
 ]
 if a.algos:
     ALGOS = [x for x in ALGOS if x in a.algos.split(',')]
@@ -161,9 +163,11 @@ for rob in robots:
                 ('fd_crba_chol', 'aba'),
                 ('aba_x4', 'aba'),
                 ('aba_x8', 'aba'),
+                ('aba_x8_rows', 'aba'),
                 ('rnea', 'rnea'),
                 ('rnea_x4', 'rnea'),
                 ('rnea_x8', 'rnea'),
+                ('rnea_x8_rows', 'rnea'),
             ):
                 if al not in have[p.name] or (
                     p.name == 'pinocchio' and (al == 'rnea' or (al == 'aba' and not exact))
@@ -212,7 +216,7 @@ def fmt(x):
 
 out = []
 out.append(
-    '## ns per call, median of %d interleaved repetitions of %g ms (in brackets: library / Pinocchio clang, median of per-repetition ratios; < 1 is faster)\n'
+    '## ns per call, median of %d interleaved repetitions of %g ms (in brackets: library / Pinocchio clang, median of per-repetition ratios; < 1 is faster; of functions of many states how many times as fast as that of one state in Pinocchio)\n'
     % (a.reps, a.ms)
 )
 out.append('| robot (nv) | algorithm | ' + ' | '.join(names) + ' |')
@@ -225,8 +229,9 @@ for rob in robots:
         base = d.get('pinocchio')
         if al in ('forward', 'step'):
             base = res.get((rob, 'aba'), {}).get('pinocchio')
-        if al.endswith(('_x4', '_x8')):
-            base = res.get((rob, al[:-3]), {}).get('pinocchio')
+        lanes = al.endswith(('_x4', '_x8', '_x8_rows'))
+        if lanes:
+            base = res.get((rob, al.split('_')[0]), {}).get('pinocchio')
         row = []
         for n in names:
             x = d.get(n)
@@ -235,7 +240,8 @@ for rob in robots:
                 continue
             c = fmt(st.median(x))
             if base and not (n == 'pinocchio' and al not in ('forward', 'step')):
-                c += ' (%.2f)' % st.median(i / j for i, j in zip(x, base))
+                ratio = st.median(i / j for i, j in zip(x, base))
+                c += f' ({1 / ratio:.1f}x)' if lanes else f' ({ratio:.2f})'
             row.append(c)
         out.append(f'| {rob} ({nvs[rob]}) | {al} | ' + ' | '.join(row) + ' |')
 out.append(
@@ -248,7 +254,18 @@ for rob in robots:
     for n in names:
         c = ', '.join(
             f'{al} {checks[(rob, n, al)]:.1e}'
-            for al in ('aba', 'aba_world', 'fd_crba_chol', 'aba_x4', 'aba_x8', 'rnea', 'rnea_x4', 'rnea_x8')
+            for al in (
+                'aba',
+                'aba_world',
+                'fd_crba_chol',
+                'aba_x4',
+                'aba_x8',
+                'aba_x8_rows',
+                'rnea',
+                'rnea_x4',
+                'rnea_x8',
+                'rnea_x8_rows',
+            )
             if (rob, n, al) in checks
         )
         row.append(c or '-')

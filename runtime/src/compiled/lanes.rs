@@ -5,11 +5,13 @@
 //! that neither the number of states nor their order shows in any result. Levels with fused multiply–adds and those without
 //! differ by rounding.
 
-use super::transpose::{Plain, Transpose, apart, side_by_side};
+use super::instructions::{Instructions, Plain, Work};
+use super::layout::{Lanes, Quantities, States};
+use super::transpose::{apart, side_by_side};
 use crate::scalar::{Lane, Scalar};
 use crate::unrolled::unrolled;
-#[cfg(all(feature = "levels", target_arch = "x86_64"))]
 use core::marker::PhantomData;
+use core::slice;
 
 /// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
 pub const LANES: usize = 8;
@@ -20,8 +22,8 @@ pub trait OfState<const Q: usize, const V: usize, const U: usize> {
     fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U]) -> [T; V];
 }
 
-/// A function of many states at a level that the machine has: rows of Q, v̄ and inputs, and of results.
-pub type ManyStates = fn(Level, &[f64], &[f64], &[f64], &mut [f64]);
+/// A function of many states at a level that the machine has.
+pub type ManyStates = fn(Level, States<'_>);
 
 /// SIMD instructions, from the fewest to the most. The default is the best that the machine has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -60,138 +62,189 @@ impl Default for Level {
     }
 }
 
-/// `F` of as many states as there are rows in all arguments, eight at a time. What a machine does not have is done at the baseline.
+/// `F` of as many states as there are whole rows of in all quantities, eight at a time. What a machine does not have is done at the baseline.
 ///
 /// Modules that are compiled with lanes hold this function of theirs: see [`Equations`](super::Equations).
 pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
     level: Level,
-    q: &[f64],
-    v: &[f64],
-    u: &[f64],
-    results: &mut [f64],
+    states: States<'_>,
 ) where
     F: OfState<Q, V, U>,
 {
-    let rows = Rows {
-        q: q.as_chunks().0,
-        v: v.as_chunks().0,
-        u: u.as_chunks().0,
-        results: results.as_chunks_mut().0,
-    };
     #[cfg(all(feature = "levels", target_arch = "x86_64"))]
     match level {
         Level::Baseline => {}
         Level::Avx2 => {
             if let Some(simd) = pulp::x86::V3::try_new() {
-                return simd.vectorize(At::<F, _, Q, V, U>(rows, simd, PhantomData));
+                return at::<Loop<F, true>, Q, V, U>(simd, states);
             }
         }
         Level::Avx512 => {
             if let Some(simd) = pulp::x86::V4::try_new() {
-                return simd.vectorize(At::<F, _, Q, V, U>(rows, simd, PhantomData));
+                return at::<Loop<F, true>, Q, V, U>(simd, states);
             }
         }
     }
     // There is but one.
     #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
     let _ = level;
-    rows.fill::<F, { cfg!(target_feature = "fma") }>(Plain);
+    at::<Loop<F, { cfg!(target_feature = "fma") }>, Q, V, U>(Plain, states);
 }
 
-/// Arguments and results, a row for each state.
-struct Rows<'a, const Q: usize, const V: usize, const U: usize> {
-    q: &'a [[f64; Q]],
-    v: &'a [[f64; V]],
-    u: &'a [[f64; U]],
-    results: &'a mut [[f64; V]],
-}
-
-/// The same for a level with fused multiply–adds.
-#[cfg(all(feature = "levels", target_arch = "x86_64"))]
-struct At<'a, F, S, const Q: usize, const V: usize, const U: usize>(
-    Rows<'a, Q, V, U>,
-    S,
-    PhantomData<F>,
-);
-
-#[cfg(all(feature = "levels", target_arch = "x86_64"))]
-impl<F, S, const Q: usize, const V: usize, const U: usize> pulp::NullaryFnOnce
-    for At<'_, F, S, Q, V, U>
-where
-    F: OfState<Q, V, U>,
-    S: Transpose,
+/// The same by instructions that the machine has.
+fn at<E, const Q: usize, const V: usize, const U: usize>(
+    simd: impl Instructions,
+    states: States<'_>,
+) where
+    E: OfEight<Q, V, U>,
 {
-    type Output = ();
-
-    // Inlined, as all that it calls, into a function that may use the instructions of the level.
-    #[inline(always)]
-    fn call(self) {
-        self.0.fill::<F, true>(self.1);
+    match states {
+        States::SideBySide(of) => simd.run(Groups::<E, Q, V, U>(whole(of), PhantomData)),
+        States::Rows(of) => rows::<E, Q, V, U>(simd, whole(of)),
     }
 }
 
-impl<const Q: usize, const V: usize, const U: usize> Rows<'_, Q, V, U> {
+/// Whole rows of what a function takes and leaves.
+struct Whole<'a, N, const Q: usize, const V: usize, const U: usize> {
+    q: &'a [[N; Q]],
+    v: &'a [[N; V]],
+    u: &'a [[N; U]],
+    results: &'a mut [[N; V]],
+}
+
+/// As many whole rows as all quantities have.
+fn whole<N, const Q: usize, const V: usize, const U: usize>(
+    of: Quantities<'_, N>,
+) -> Whole<'_, N, Q, V, U> {
+    let (q, v, u) = (of.q.as_chunks().0, of.v.as_chunks().0, of.u.as_chunks().0);
+    let results = of.results.as_chunks_mut().0;
+    let count = results.len().min(q.len()).min(v.len()).min(u.len());
+    Whole {
+        q: &q[..count],
+        v: &v[..count],
+        u: &u[..count],
+        results: &mut results[..count],
+    }
+}
+
+/// States in rows: eight at a time side by side, and back.
+fn rows<E, const Q: usize, const V: usize, const U: usize>(
+    simd: impl Instructions,
+    rows: Whole<'_, f64, Q, V, U>,
+) where
+    E: OfEight<Q, V, U>,
+{
+    let (mut q, mut v, mut u) = ([Lanes::ZERO; Q], [Lanes::ZERO; V], [Lanes::ZERO; U]);
+    let mut results = [Lanes::ZERO; V];
+    for start in (0..rows.results.len()).step_by(LANES) {
+        simd.run(Gather {
+            simd,
+            from: (&rows, start),
+            to: (&mut q, &mut v, &mut u),
+        });
+        let group = Whole {
+            q: slice::from_ref(&q),
+            v: slice::from_ref(&v),
+            u: slice::from_ref(&u),
+            results: slice::from_mut(&mut results),
+        };
+        simd.run(Groups::<E, Q, V, U>(group, PhantomData));
+        simd.run(Scatter(simd, &results, &mut rows.results[start..]));
+    }
+}
+
+/// Eight rows of all arguments from one on, to side by side.
+struct Gather<'a, S, const Q: usize, const V: usize, const U: usize> {
+    simd: S,
+    from: (&'a Whole<'a, f64, Q, V, U>, usize),
+    to: (&'a mut [Lanes; Q], &'a mut [Lanes; V], &'a mut [Lanes; U]),
+}
+
+impl<S, const Q: usize, const V: usize, const U: usize> Work for Gather<'_, S, Q, V, U>
+where
+    S: Instructions,
+{
     #[inline(always)]
-    fn fill<F: OfState<Q, V, U>, const FUSED: bool>(self, by: impl Transpose) {
-        let count = self.results.len();
-        let count = count.min(self.q.len()).min(self.v.len()).min(self.u.len());
-        let mut start = 0;
-        while start < count {
-            let q = Lines(side_by_side(by, self.q, start));
-            let v = Lines(side_by_side(by, self.v, start));
-            let u = Lines(side_by_side(by, self.u, start));
-            let mut results = Lines([[0.0; LANES]; V]);
-            eight::<F, FUSED, Q, V, U>(&q.0, &v.0, &u.0, &mut results.0);
-            apart(by, &results.0, &mut self.results[start..count]);
-            start += LANES;
+    fn run(self) {
+        let (rows, start) = self.from;
+        side_by_side(self.simd, rows.q, start, self.to.0);
+        side_by_side(self.simd, rows.v, start, self.to.1);
+        side_by_side(self.simd, rows.u, start, self.to.2);
+    }
+}
+
+/// What is side by side, to rows.
+struct Scatter<'a, S, const N: usize>(S, &'a [Lanes; N], &'a mut [[f64; N]]);
+
+impl<S: Instructions, const N: usize> Work for Scatter<'_, S, N> {
+    #[inline(always)]
+    fn run(self) {
+        apart(self.0, self.1, self.2);
+    }
+}
+
+/// `E` of states that lie side by side.
+struct Groups<'a, E, const Q: usize, const V: usize, const U: usize>(
+    Whole<'a, Lanes, Q, V, U>,
+    PhantomData<E>,
+);
+
+impl<E, const Q: usize, const V: usize, const U: usize> Work for Groups<'_, E, Q, V, U>
+where
+    E: OfEight<Q, V, U>,
+{
+    #[inline(always)]
+    fn run(self) {
+        let Whole { q, v, u, results } = self.0;
+        for (group, results) in results.iter_mut().enumerate() {
+            E::eight(&q[group], &v[group], &u[group], results);
         }
     }
 }
 
-/// Lanes in whole cache lines.
+/// A function of eight states.
 ///
-/// This also aligns the frame of the function and with it what registers do not hold: without it each such load and store of eight doubles would touch two lines, but
-/// for one place of the stack in four.
-#[repr(align(64))]
-struct Lines<const N: usize>([[f64; LANES]; N]);
+/// Callers take it as a parameter, so that it is LLVM that inlines it: it then knows that results overlap no argument, without which it does not vectorise the
+/// loop. The Rust compiler, which inlines what it knows, forgets that.
+trait OfEight<const Q: usize, const V: usize, const U: usize> {
+    /// The results.
+    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; V]);
+}
 
-/// Eight states: the loop that is vectorised. Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
-#[inline(always)]
-fn eight<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize>(
-    q: &[[f64; LANES]; Q],
-    v: &[[f64; LANES]; V],
-    u: &[[f64; LANES]; U],
-    results: &mut [[f64; LANES]; V],
-) where
+/// `F` in a loop over states, which is vectorised.
+///
+/// Rows would do in place of lanes side by side, but longer ones keep the compiler from it. Lanes fill cache lines, which also aligns
+/// the frame of the function and with it what registers do not hold: without it each such load and store of
+/// eight doubles would touch two lines, but for one place of the stack in four.
+struct Loop<F, const FUSED: bool>(PhantomData<F>);
+
+impl<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize> OfEight<Q, V, U>
+    for Loop<F, FUSED>
+where
     F: OfState<Q, V, U>,
 {
-    for lane in 0..LANES {
-        let value =
-            F::value::<Lane<FUSED>>(&of_lane(q, lane), &of_lane(v, lane), &of_lane(u, lane));
-        put(value, results, lane);
+    #[inline(always)]
+    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; V]) {
+        for lane in 0..LANES {
+            // Read and written here, not by helpers: what these read, once they are inlined, LLVM may no longer know to be apart from the results.
+            let mut state = (
+                [Lane::<FUSED>(0.0); Q],
+                [Lane::<FUSED>(0.0); V],
+                [Lane::<FUSED>(0.0); U],
+            );
+            unrolled!(i in Q {
+                state.0[i] = Lane(q[i].0[lane]);
+            });
+            unrolled!(i in V {
+                state.1[i] = Lane(v[i].0[lane]);
+            });
+            unrolled!(i in U {
+                state.2[i] = Lane(u[i].0[lane]);
+            });
+            let value = F::value(&state.0, &state.1, &state.2);
+            unrolled!(i in V {
+                results[i].0[lane] = value[i].0;
+            });
+        }
     }
-}
-
-/// The numbers of one state.
-#[inline(always)]
-fn of_lane<const FUSED: bool, const N: usize>(
-    lanes: &[[f64; LANES]; N],
-    lane: usize,
-) -> [Lane<FUSED>; N] {
-    let mut own = [Lane(0.0); N];
-    unrolled!(i in N {
-        own[i] = Lane(lanes[i][lane]);
-    });
-    own
-}
-
-#[inline(always)]
-fn put<const FUSED: bool, const N: usize>(
-    own: [Lane<FUSED>; N],
-    lanes: &mut [[f64; LANES]; N],
-    lane: usize,
-) {
-    unrolled!(i in N {
-        lanes[i][lane] = own[i].0;
-    });
 }

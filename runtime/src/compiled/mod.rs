@@ -5,14 +5,21 @@
 
 #[cfg(feature = "alloc")]
 mod batch;
+#[cfg(feature = "alloc")]
+mod entry;
+mod instructions;
 mod lanes;
+mod layout;
 mod transpose;
 #[cfg(feature = "alloc")]
 mod tree;
 
 #[cfg(feature = "alloc")]
 pub use batch::{Batch, BatchError};
+#[cfg(feature = "alloc")]
+pub use entry::Entry;
 pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
+pub use layout::{Lanes, Quantities, States};
 #[cfg(feature = "alloc")]
 pub use tree::{Compiled, CompiledError};
 

@@ -1,77 +1,74 @@
 //! Rows of eight states to numbers side by side, and back, by shuffles of registers: gathers take several times as long.
 
-use super::LANES;
-
-/// Eight rows of eight.
-pub(super) type Block = [[f64; LANES]; LANES];
-
-/// What a level of instructions has for it.
-pub(super) trait Transpose: Copy {
-    /// Columns for rows.
-    fn transpose(self, rows: Block) -> Block;
-}
-
-/// Without instructions of any level.
-#[derive(Clone, Copy)]
-pub(super) struct Plain;
-
-impl Transpose for Plain {
-    #[inline(always)]
-    fn transpose(self, rows: Block) -> Block {
-        let mut columns = rows;
-        for (i, column) in columns.iter_mut().enumerate() {
-            for (entry, row) in column.iter_mut().zip(&rows) {
-                *entry = row[i];
-            }
-        }
-        columns
-    }
-}
+use super::instructions::Instructions;
+use super::{LANES, Lanes};
+use crate::unrolled::unrolled;
 
 /// Entry by entry the numbers of eight rows from `start`, the last one repeated.
 #[inline(always)]
 pub(super) fn side_by_side<const N: usize>(
-    by: impl Transpose,
+    by: impl Instructions,
     rows: &[[f64; N]],
     start: usize,
-) -> [[f64; LANES]; N] {
-    let mut lanes = [[0.0; LANES]; N];
+    lanes: &mut [Lanes; N],
+) {
     let last = rows.len() - 1;
     let mut place = 0;
     while place < N {
         let from = covering::<N>(place);
         let mut block = [[0.0; LANES]; LANES];
-        for (lane, numbers) in block.iter_mut().enumerate() {
-            *numbers = eight_from(&rows[(start + lane).min(last)], from);
-        }
-        for (lanes, numbers) in lanes[from..].iter_mut().zip(&by.transpose(block)) {
-            *lanes = *numbers;
+        unrolled!(lane in LANES {
+            block[lane] = eight_from(&rows[(start + lane).min(last)], from);
+        });
+        let columns = by.transpose(block);
+        match lanes[from..].first_chunk_mut::<LANES>() {
+            Some(lanes) => {
+                unrolled!(i in LANES {
+                    lanes[i].0 = columns[i];
+                });
+            }
+            None => {
+                for (lanes, numbers) in lanes.iter_mut().zip(columns) {
+                    lanes.0 = numbers;
+                }
+            }
         }
         place += LANES;
     }
-    lanes
 }
 
 /// The numbers of the lanes into as many rows as there are, eight at most.
 #[inline(always)]
 pub(super) fn apart<const N: usize>(
-    by: impl Transpose,
-    lanes: &[[f64; LANES]; N],
+    by: impl Instructions,
+    lanes: &[Lanes; N],
     rows: &mut [[f64; N]],
 ) {
     let mut place = 0;
     while place < N {
         let from = covering::<N>(place);
         let mut block = [[0.0; LANES]; LANES];
-        for (block, numbers) in block.iter_mut().zip(&lanes[from..]) {
-            *block = *numbers;
-        }
-        for (row, numbers) in rows.iter_mut().zip(&by.transpose(block)) {
-            match row[from..].first_chunk_mut() {
-                Some(entries) => *entries = *numbers,
-                None => row.copy_from_slice(&numbers[..N]),
+        match lanes[from..].first_chunk::<LANES>() {
+            Some(lanes) => {
+                unrolled!(i in LANES {
+                    block[i] = lanes[i].0;
+                });
+            }
+            None => {
+                for (block, numbers) in block.iter_mut().zip(lanes) {
+                    *block = numbers.0;
+                }
             }
         }
+        let columns = by.transpose(block);
+        unrolled!(lane in LANES {
+            if let Some(row) = rows.get_mut(lane) {
+                match row[from..].first_chunk_mut() {
+                    Some(entries) => *entries = columns[lane],
+                    None => row.copy_from_slice(&columns[lane][..N]),
+                }
+            }
+        });
         place += LANES;
     }
 }
@@ -95,107 +92,14 @@ fn eight_from<const N: usize>(row: &[f64; N], place: usize) -> [f64; LANES] {
     }
 }
 
-#[cfg(all(feature = "levels", target_arch = "x86_64"))]
-mod x86 {
-    use super::{Block, Transpose};
-    use core::arch::x86_64::{__m256d, __m512d};
-    use pulp::cast;
-    use pulp::x86::{V3, V4};
-
-    impl Transpose for V3 {
-        #[inline(always)]
-        fn transpose(self, rows: Block) -> Block {
-            let rows: [[__m256d; 2]; 8] = cast(rows);
-            let mut columns = rows;
-            for side in 0..2 {
-                for top in 0..2 {
-                    let quarter = quarters(
-                        self,
-                        [
-                            rows[4 * top][side],
-                            rows[4 * top + 1][side],
-                            rows[4 * top + 2][side],
-                            rows[4 * top + 3][side],
-                        ],
-                    );
-                    columns[4 * side][top] = quarter[0];
-                    columns[4 * side + 1][top] = quarter[1];
-                    columns[4 * side + 2][top] = quarter[2];
-                    columns[4 * side + 3][top] = quarter[3];
-                }
-            }
-            cast(columns)
-        }
-    }
-
-    /// Four by four.
-    #[inline(always)]
-    fn quarters(simd: V3, [a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
-        let avx = simd.avx;
-        let (even, odd) = (avx._mm256_unpacklo_pd(a, b), avx._mm256_unpackhi_pd(a, b));
-        let (even_below, odd_below) = (avx._mm256_unpacklo_pd(c, d), avx._mm256_unpackhi_pd(c, d));
-        [
-            avx._mm256_permute2f128_pd::<0x20>(even, even_below),
-            avx._mm256_permute2f128_pd::<0x20>(odd, odd_below),
-            avx._mm256_permute2f128_pd::<0x31>(even, even_below),
-            avx._mm256_permute2f128_pd::<0x31>(odd, odd_below),
-        ]
-    }
-
-    impl Transpose for V4 {
-        #[inline(always)]
-        fn transpose(self, rows: Block) -> Block {
-            let [a, b, c, d, e, f, g, h]: [__m512d; 8] = cast(rows);
-            let avx = self.avx512f;
-            // Pairs of rows: entries of even columns, and of odd ones.
-            let even = [
-                avx._mm512_unpacklo_pd(a, b),
-                avx._mm512_unpacklo_pd(c, d),
-                avx._mm512_unpacklo_pd(e, f),
-                avx._mm512_unpacklo_pd(g, h),
-            ];
-            let odd = [
-                avx._mm512_unpackhi_pd(a, b),
-                avx._mm512_unpackhi_pd(c, d),
-                avx._mm512_unpackhi_pd(e, f),
-                avx._mm512_unpackhi_pd(g, h),
-            ];
-            let [[c0, c2, c4, c6], [c1, c3, c5, c7]] = [pairs(self, even), pairs(self, odd)];
-            cast([c0, c1, c2, c3, c4, c5, c6, c7])
-        }
-    }
-
-    /// Four by four pairs of numbers.
-    #[inline(always)]
-    fn pairs(simd: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
-        // The first and third pair of both, or the second and fourth.
-        const FIRST: i32 = 0x88;
-        const SECOND: i32 = 0xdd;
-        let avx = simd.avx512f;
-        let (above, above_later) = (
-            avx._mm512_shuffle_f64x2::<FIRST>(a, b),
-            avx._mm512_shuffle_f64x2::<SECOND>(a, b),
-        );
-        let (below, below_later) = (
-            avx._mm512_shuffle_f64x2::<FIRST>(c, d),
-            avx._mm512_shuffle_f64x2::<SECOND>(c, d),
-        );
-        [
-            avx._mm512_shuffle_f64x2::<FIRST>(above, below),
-            avx._mm512_shuffle_f64x2::<FIRST>(above_later, below_later),
-            avx._mm512_shuffle_f64x2::<SECOND>(above, below),
-            avx._mm512_shuffle_f64x2::<SECOND>(above_later, below_later),
-        ]
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Plain, Transpose, apart, side_by_side};
-    use crate::compiled::LANES;
+    use super::{apart, side_by_side};
+    use crate::compiled::instructions::{Instructions, Plain};
+    use crate::compiled::{LANES, Lanes};
 
     /// Rows of `N` numbers, all of them different.
-    fn check<const N: usize>(by: impl Transpose) {
+    fn check<const N: usize>(by: impl Instructions) {
         for count in 1..=2 * LANES {
             let mut number = 0.0;
             let rows: Vec<[f64; N]> = (0..count)
@@ -207,9 +111,10 @@ mod tests {
                 })
                 .collect();
             for start in (0..count).step_by(LANES) {
-                let lanes = side_by_side(by, &rows, start);
+                let mut lanes = [Lanes::ZERO; N];
+                side_by_side(by, &rows, start, &mut lanes);
                 for (i, numbers) in lanes.iter().enumerate() {
-                    for (lane, number) in numbers.iter().enumerate() {
+                    for (lane, number) in numbers.0.iter().enumerate() {
                         assert_eq!(*number, rows[(start + lane).min(count - 1)][i]);
                     }
                 }
@@ -221,7 +126,7 @@ mod tests {
         }
     }
 
-    fn check_all(by: impl Transpose) {
+    fn check_all(by: impl Instructions) {
         check::<1>(by);
         check::<7>(by);
         check::<8>(by);

@@ -14,7 +14,7 @@ mod peers {
     pub use states::{States, convert};
 }
 
-use hamel::compiled::{Batch, Equations};
+use hamel::compiled::{Batch, Equations, LANES, Lanes};
 use hamel::scalar::F64x4;
 use peers::{Model, States, convert};
 use std::error::Error;
@@ -112,8 +112,10 @@ impl Functions {
             ("aba_deriv", equations.forward_dynamics_derivatives.is_some()),
             ("aba_x4", self.forward_x4.is_some()),
             ("aba_x8", lanes.forward_dynamics.is_some()),
+            ("aba_x8_rows", lanes.forward_dynamics.is_some()),
             ("rnea_x4", self.inverse_x4.is_some()),
             ("rnea_x8", lanes.inverse_dynamics.is_some()),
+            ("rnea_x8_rows", lanes.inverse_dynamics.is_some()),
         ];
         let there = all.iter().filter(|(_, there)| *there);
         there.map(|(name, _)| format!(" {name}")).collect()
@@ -130,7 +132,10 @@ struct Loaded {
     rows: [Vec<f64>; 3],
     /// The same in groups of four, entry by entry.
     fours: [Vec<F64x4>; 3],
+    /// The same in groups of eight.
+    eights: [Vec<Lanes>; 3],
     out: Vec<f64>,
+    out_eight: Vec<Lanes>,
     out_four: Vec<F64x4>,
     mass: Vec<f64>,
     slopes: Vec<f64>,
@@ -177,7 +182,7 @@ fn info() -> String {
         false => "baseline instructions",
     };
     let level = hamel::compiled::Level::default();
-    format!("hamel, compiled scenes, {fused}; x8 by `Batch` at level {level:?}, x4 by `F64x4`")
+    format!("hamel, compiled scenes, {fused}; x8 by `Batch` at level {level:?} with states side by side, x8_rows with states in rows, x4 by `F64x4`")
 }
 
 impl Loaded {
@@ -191,7 +196,9 @@ impl Loaded {
             batch: Batch::new(equations),
             rows: of.map(|rows| rows.concat()),
             fours: of.map(|rows| rows.chunks_exact(4).flat_map(side_by_side).collect()),
+            eights: of.map(|rows| Lanes::side_by_side(&rows.concat(), rows[0].len())),
             out: vec![0.0; BATCH * equations.speeds],
+            out_eight: vec![Lanes::default(); BATCH / LANES * equations.speeds],
             out_four: vec![F64x4::default(); equations.speeds],
             mass: vec![0.0; equations.speeds * equations.speeds],
             // Rows of three matrices as wide as there are speeds, at most, and of the accelerations.
@@ -206,7 +213,7 @@ impl Loaded {
     fn together(&self, algorithm: &str) -> usize {
         let most = match algorithm.split_once('_') {
             Some((_, "x4")) => 4,
-            Some((_, "x8")) => BATCH,
+            Some((_, "x8" | "x8_rows")) => BATCH,
             _ => 1,
         };
         most.min(self.states.q.len())
@@ -228,12 +235,21 @@ impl Loaded {
                 let [q, v, u] = group(&self.fours, &self.states, k, 1);
                 function.ok_or_else(missing)?(q, v, u, &mut self.out_four);
             }
-            "aba_x8" => {
+            "aba_x8" | "rnea_x8" => {
+                let rows = states / LANES;
+                let [q, v, u] = group(&self.eights, &self.states, k, rows);
+                let out = &mut self.out_eight[..rows * size];
+                match algorithm {
+                    "aba_x8" => self.batch.forward_dynamics(q, v, u, out)?,
+                    _ => self.batch.inverse_dynamics(q, v, u, out)?,
+                }
+            }
+            "aba_x8_rows" => {
                 let [q, v, u] = group(&self.rows, &self.states, k, states);
                 let out = &mut self.out[..states * size];
                 self.batch.forward_dynamics(q, v, u, out)?;
             }
-            "rnea_x8" => {
+            "rnea_x8_rows" => {
                 // The accelerations are the states' efforts.
                 let [q, v, u] = group(&self.rows, &self.states, k, states);
                 let out = &mut self.out[..states * size];
@@ -259,7 +275,8 @@ impl Loaded {
                 }
             }
         }
-        black_box((&self.out, &self.out_four, &self.mass, &self.slopes));
+        black_box((&self.out, &self.out_four, &self.out_eight));
+        black_box((&self.mass, &self.slopes));
         Ok(())
     }
 
@@ -304,6 +321,10 @@ impl Loaded {
             "aba_x4" | "rnea_x4" => {
                 let lanes = order.iter().map(|&i| self.out_four[i].to_array());
                 lanes.map(|lanes| lanes[lane]).collect()
+            }
+            "aba_x8" | "rnea_x8" => {
+                let row = &self.out_eight[lane / LANES * size..];
+                order.iter().map(|&i| row[i].0[lane % LANES]).collect()
             }
             _ => order.iter().map(|&i| self.out[lane * size + i]).collect(),
         };

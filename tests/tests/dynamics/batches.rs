@@ -1,7 +1,7 @@
 //! Many states of a compiled scene at once (`hamel::compiled::Batch`), with the committed module.
 
 use allocation_counter::measure;
-use hamel::compiled::{Batch, Equations, InLanes, Level};
+use hamel::compiled::{Batch, Equations, InLanes, Lanes, Level};
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel_tests::emitted::plate_cart_arm as module;
 use hamel_tests::{random, scenes};
@@ -58,6 +58,23 @@ impl States {
         done.expect("sizes fit");
         [rates, efforts]
     }
+
+    /// The same of states that lie side by side.
+    fn run_side_by_side(&self, batch: &Batch) -> [Vec<f64>; 2] {
+        let q = Lanes::side_by_side(&self.q, module::CONFIGURATION);
+        let v = Lanes::side_by_side(&self.v, module::SPEEDS);
+        let tau = Lanes::side_by_side(&self.tau, module::FREEDOMS);
+        let a = Lanes::side_by_side(self.accelerations(), module::SPEEDS);
+        let (mut rates, mut efforts) = (v.clone(), v.clone());
+        let counted = measure(|| {
+            let done = batch.forward_dynamics(&q, &v, &tau, &mut rates);
+            done.expect("sizes fit");
+            let done = batch.inverse_dynamics(&q, &v, &a, &mut efforts);
+            done.expect("sizes fit");
+        });
+        assert_eq!(counted.count_total, 0);
+        [rates, efforts].map(|lanes| Lanes::apart(&lanes, module::SPEEDS)[..self.v.len()].to_vec())
+    }
 }
 
 fn assert_close(found: &[f64], expected: &[f64], bound: f64, what: &str) {
@@ -81,6 +98,15 @@ fn a_batch_is_its_states_one_by_one_at_every_level() {
                 assert_close(&found[row.clone()], &expected[row], ROUNDINGS, &what);
             }
         }
+    }
+}
+
+#[test]
+fn states_side_by_side_have_the_numbers_of_states_in_rows() {
+    let states = States::new(29);
+    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+        let batch = Batch::at(&module::EQUATIONS, level).expect("it is available");
+        assert_eq!(states.run_side_by_side(&batch), states.run(&batch));
     }
 }
 
@@ -143,7 +169,7 @@ fn sizes_that_do_not_fit_are_all_named() {
     let error = batch.forward_dynamics(&states.q, &states.v, short, &mut rates);
     assert_eq!(
         error.expect_err("sizes differ").to_string(),
-        "a batch of 3 states of `plate_cart_arm`: efforts must have 21 numbers, not 19; rates must have 18 numbers, not 17"
+        "a batch of 3 rows of `plate_cart_arm`: efforts must have 21 numbers, not 19; rates must have 18 numbers, not 17"
     );
 }
 
