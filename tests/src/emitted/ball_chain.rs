@@ -5029,6 +5029,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                 own_6[1].mul_add(each_acceleration_13, own_6[6] + each_acceleration_15),
             );
         let each_acceleration_17 = each_acceleration_3 - each_acceleration_16;
+        results[3 * i + 6] = -each_acceleration_16;
+        results[3 * i + 7] = each_acceleration_13;
+        results[3 * i + 8] = -each_acceleration_10;
         rows_of_6[i + 20] = [
             each_acceleration_6,
             each_acceleration_7,
@@ -5037,9 +5040,6 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             each_acceleration_14,
             each_acceleration_17,
         ];
-        results[3 * i + 6] = -each_acceleration_16;
-        results[3 * i + 7] = each_acceleration_13;
-        results[3 * i + 8] = -each_acceleration_10;
     }
     // link_20: acceleration (30 additions, 27 multiplications)
     let link_20_acceleration = rows_of_6[36][4].mul_add(n(-0.2), rows_of_6[36][0]);

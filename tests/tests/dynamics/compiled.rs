@@ -2,6 +2,7 @@
 //! what a scene does not have costs nothing.
 
 mod derivatives;
+mod loops;
 
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::elements::BodySpring;

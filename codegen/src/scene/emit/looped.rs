@@ -173,11 +173,11 @@ impl Writer<'_> {
             .map(|&(place, value)| (place as i64 - results[0].0 as i64, lowering.read(value)))
             .collect();
         let mut lines = lowering.lines;
-        if !values.is_empty() {
+        let row = (!values.is_empty()).then(|| {
             let rows = group.iter().map(|&block| plan.rows[block].unwrap_or(0));
             let place = tables.place(rows.collect());
-            lines.push(Line::Row(Row { place, values }));
-        }
+            Line::Row(Row { place, values })
+        });
         if !results.is_empty() {
             let starts = group
                 .iter()
@@ -189,6 +189,8 @@ impl Writer<'_> {
                     .map(|(by, formula)| Line::Result(start.plus(by), formula)),
             );
         }
+        // Last: in Rust, the rows that results read are borrowed until then.
+        lines.extend(row);
         self.leave_rows(group);
         let name = self.names.claim("like");
         self.lines.push(Line::Loop(Loop {
