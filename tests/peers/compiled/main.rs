@@ -244,16 +244,14 @@ impl Loaded {
                     _ => self.batch.inverse_dynamics(q, v, u, out)?,
                 }
             }
-            "aba_x8_rows" => {
+            // The accelerations of inverse dynamics are the states' efforts.
+            "aba_x8_rows" | "rnea_x8_rows" => {
                 let [q, v, u] = group(&self.rows, &self.states, k, states);
                 let out = &mut self.out[..states * size];
-                self.batch.forward_dynamics(q, v, u, out)?;
-            }
-            "rnea_x8_rows" => {
-                // The accelerations are the states' efforts.
-                let [q, v, u] = group(&self.rows, &self.states, k, states);
-                let out = &mut self.out[..states * size];
-                self.batch.inverse_dynamics(q, v, u, out)?;
+                match algorithm {
+                    "aba_x8_rows" => self.batch.forward_dynamics(q, v, u, out)?,
+                    _ => self.batch.inverse_dynamics(q, v, u, out)?,
+                }
             }
             _ => {
                 let (q, v, u) = (&self.states.q[k], &self.states.v[k], &self.states.tau[k]);
