@@ -273,12 +273,11 @@ impl<N: Entry> Call<'_, N> {
         if let Some(many) = self.many {
             let [q, v, u] = self.rows(first, rows);
             let results = &mut *results;
-            many(self.level, N::states(Quantities { q, v, u, results }));
+            if many(self.level, N::states(Quantities { q, v, u, results })) {
+                return;
+            }
         }
         let all = self.many.is_none();
-        if !all && N::all_finite(results) {
-            return;
-        }
         for (row, results) in results.chunks_exact_mut(self.row[1]).enumerate() {
             let [q, v, u] = self.rows(first + row, 1);
             N::one_by_one(self.one, Quantities { q, v, u, results }, all);

@@ -14,10 +14,6 @@ pub trait Entry: Copy + Send + Sync + private::Sealed {
     #[doc(hidden)]
     fn states(rows: Quantities<'_, Self>) -> States<'_>;
 
-    /// Whether there is neither NaN nor infinity in any state.
-    #[doc(hidden)]
-    fn all_finite(row: &[Self]) -> bool;
-
     /// Computes what is asked for, of the states of one row; of all of them, or of those whose results are not finite.
     #[doc(hidden)]
     fn one_by_one(function: OneState, row: Quantities<'_, Self>, all: bool);
@@ -28,10 +24,6 @@ impl Entry for f64 {
 
     fn states(rows: Quantities<'_, Self>) -> States<'_> {
         States::Rows(rows)
-    }
-
-    fn all_finite(row: &[Self]) -> bool {
-        all_finite(row)
     }
 
     fn one_by_one(function: OneState, row: Quantities<'_, Self>, all: bool) {
@@ -48,15 +40,7 @@ impl Entry for Lanes {
         States::SideBySide(rows)
     }
 
-    fn all_finite(row: &[Self]) -> bool {
-        row.iter()
-            .fold(true, |all, numbers| all & all_finite(&numbers.0))
-    }
-
     fn one_by_one(function: OneState, row: Quantities<'_, Self>, all: bool) {
-        if !all && Self::all_finite(row.results) {
-            return;
-        }
         let mut results = vec![0.0; row.results.len()];
         for state in 0..LANES {
             let is_done = row.results.iter().all(|number| number.0[state].is_finite());

@@ -7,14 +7,17 @@ pub(super) type Block = [[f64; LANES]; LANES];
 
 /// What is done in a function of its own.
 pub(super) trait Work {
+    /// What comes of it.
+    type Output;
+
     /// Does it. Inlined, as all that it calls, into the function of each level.
-    fn run(self);
+    fn run(self) -> Self::Output;
 }
 
 /// What a level of instructions has.
 pub(super) trait Instructions: Copy {
     /// Runs in a function that may use them.
-    fn run(self, work: impl Work);
+    fn run<W: Work>(self, work: W) -> W::Output;
 
     /// Columns for rows.
     fn transpose(self, rows: Block) -> Block;
@@ -26,8 +29,8 @@ pub(super) struct Plain;
 
 impl Instructions for Plain {
     #[inline(never)]
-    fn run(self, work: impl Work) {
-        work.run();
+    fn run<W: Work>(self, work: W) -> W::Output {
+        work.run()
     }
 
     #[inline(always)]
@@ -53,18 +56,18 @@ mod x86 {
     struct Inside<W>(W);
 
     impl<W: Work> NullaryFnOnce for Inside<W> {
-        type Output = ();
+        type Output = W::Output;
 
         // Inlined, as all that it calls, into a function that may use the instructions of the level.
         #[inline(always)]
-        fn call(self) {
-            self.0.run();
+        fn call(self) -> W::Output {
+            self.0.run()
         }
     }
 
     impl Instructions for V3 {
-        fn run(self, work: impl Work) {
-            self.vectorize(Inside(work));
+        fn run<W: Work>(self, work: W) -> W::Output {
+            self.vectorize(Inside(work))
         }
 
         #[inline(always)]
@@ -107,8 +110,8 @@ mod x86 {
     }
 
     impl Instructions for V4 {
-        fn run(self, work: impl Work) {
-            self.vectorize(Inside(work));
+        fn run<W: Work>(self, work: W) -> W::Output {
+            self.vectorize(Inside(work))
         }
 
         #[inline(always)]

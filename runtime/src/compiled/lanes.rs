@@ -10,6 +10,7 @@ use super::layout::{Lanes, Quantities, States};
 use super::transpose::{apart, side_by_side};
 use crate::scalar::{Lane, Scalar};
 use crate::unrolled::unrolled;
+use core::hint::black_box;
 use core::marker::PhantomData;
 use core::slice;
 
@@ -22,8 +23,8 @@ pub trait OfState<const Q: usize, const V: usize, const U: usize> {
     fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U]) -> [T; V];
 }
 
-/// A function of many states at a level that the machine has.
-pub type ManyStates = fn(Level, States<'_>);
+/// A function of many states at a level that the machine has; whether all results are finite.
+pub type ManyStates = fn(Level, States<'_>) -> bool;
 
 /// SIMD instructions, from the fewest to the most. The default is the best that the machine has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,13 +63,15 @@ impl Default for Level {
     }
 }
 
-/// `F` of as many states as there are whole rows of in all quantities, eight at a time. What a machine does not have is done at the baseline.
+/// `F` of as many states as there are whole rows of in all quantities, eight at a time; whether all results are finite. What a machine does not have is
+/// done at the baseline.
 ///
 /// Modules that are compiled with lanes hold this function of theirs: see [`Equations`](super::Equations).
 pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
     level: Level,
     states: States<'_>,
-) where
+) -> bool
+where
     F: OfState<Q, V, U>,
 {
     #[cfg(all(feature = "levels", target_arch = "x86_64"))]
@@ -88,14 +91,15 @@ pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
     // There is but one.
     #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
     let _ = level;
-    at::<Loop<F, { cfg!(target_feature = "fma") }>, Q, V, U>(Plain, states);
+    at::<Loop<F, { cfg!(target_feature = "fma") }>, Q, V, U>(Plain, states)
 }
 
 /// The same by instructions that the machine has.
 fn at<E, const Q: usize, const V: usize, const U: usize>(
     simd: impl Instructions,
     states: States<'_>,
-) where
+) -> bool
+where
     E: OfEight<Q, V, U>,
 {
     match states {
@@ -131,11 +135,13 @@ fn whole<N, const Q: usize, const V: usize, const U: usize>(
 fn rows<E, const Q: usize, const V: usize, const U: usize>(
     simd: impl Instructions,
     rows: Whole<'_, f64, Q, V, U>,
-) where
+) -> bool
+where
     E: OfEight<Q, V, U>,
 {
     let (mut q, mut v, mut u) = ([Lanes::ZERO; Q], [Lanes::ZERO; V], [Lanes::ZERO; U]);
     let mut results = [Lanes::ZERO; V];
+    let mut finite = true;
     for start in (0..rows.results.len()).step_by(LANES) {
         simd.run(Gather {
             simd,
@@ -148,9 +154,10 @@ fn rows<E, const Q: usize, const V: usize, const U: usize>(
             u: slice::from_ref(&u),
             results: slice::from_mut(&mut results),
         };
-        simd.run(Groups::<E, Q, V, U>(group, PhantomData));
+        finite &= simd.run(Groups::<E, Q, V, U>(group, PhantomData));
         simd.run(Scatter(simd, &results, &mut rows.results[start..]));
     }
+    finite
 }
 
 /// Eight rows of all arguments from one on, to side by side.
@@ -164,6 +171,8 @@ impl<S, const Q: usize, const V: usize, const U: usize> Work for Gather<'_, S, Q
 where
     S: Instructions,
 {
+    type Output = ();
+
     #[inline(always)]
     fn run(self) {
         let (rows, start) = self.from;
@@ -177,13 +186,15 @@ where
 struct Scatter<'a, S, const N: usize>(S, &'a [Lanes; N], &'a mut [[f64; N]]);
 
 impl<S: Instructions, const N: usize> Work for Scatter<'_, S, N> {
+    type Output = ();
+
     #[inline(always)]
     fn run(self) {
         apart(self.0, self.1, self.2);
     }
 }
 
-/// `E` of states that lie side by side.
+/// `E` of states that lie side by side; whether all results are finite.
 struct Groups<'a, E, const Q: usize, const V: usize, const U: usize>(
     Whole<'a, Lanes, Q, V, U>,
     PhantomData<E>,
@@ -193,12 +204,27 @@ impl<E, const Q: usize, const V: usize, const U: usize> Work for Groups<'_, E, Q
 where
     E: OfEight<Q, V, U>,
 {
+    type Output = bool;
+
     #[inline(always)]
-    fn run(self) {
+    fn run(self) -> bool {
         let Whole { q, v, u, results } = self.0;
+        // A whole cache line on the stack aligns the frame, and with it what registers do not hold: without it each such load and store of eight doubles
+        // would touch two lines, but for one place of the stack in four.
+        black_box(Lanes::ZERO);
+        // What x − x adds up to: 0, or NaN. Asked here, where the results still are at hand; reading them again takes a tenth of inverse dynamics.
+        let mut differences = [0.0; LANES];
         for (group, results) in results.iter_mut().enumerate() {
             E::eight(&q[group], &v[group], &u[group], results);
+            for entry in results {
+                for (sum, x) in differences.iter_mut().zip(entry.0) {
+                    #[expect(clippy::eq_op, reason = "not zero where x is not finite")]
+                    let difference = x - x;
+                    *sum += difference;
+                }
+            }
         }
+        differences.iter().all(|&sum| sum == 0.0)
     }
 }
 
@@ -213,9 +239,7 @@ trait OfEight<const Q: usize, const V: usize, const U: usize> {
 
 /// `F` in a loop over states, which is vectorised.
 ///
-/// Rows would do in place of lanes side by side, but longer ones keep the compiler from it. Lanes fill cache lines, which also aligns
-/// the frame of the function and with it what registers do not hold: without it each such load and store of
-/// eight doubles would touch two lines, but for one place of the stack in four.
+/// Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
 struct Loop<F, const FUSED: bool>(PhantomData<F>);
 
 impl<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize> OfEight<Q, V, U>
