@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// Names of the ten parameters of an inertia.
 const PARAMETERS: [&str; 10] = [
-    "m", "mc_x", "mc_y", "mc_z", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz",
+    "m", "mc_x", "mc_y", "mc_z", "∫x²", "∫y²", "∫z²", "∫xy", "∫xz", "∫yz",
 ];
 
 /// The account, as text.

@@ -124,7 +124,7 @@ pub struct Inertia {
     pub mass: f64,
     /// Mass times position of the centre of mass, kg m.
     pub first: Vector3<f64>,
-    /// Moments and products of inertia, kg m².
+    /// Second moments `J = ∫ r rᵀ dm`, kg m²; the moments and products of inertia are `I = tr(J) 1 − J`.
     pub second: Matrix3<f64>,
 }
 
@@ -143,7 +143,7 @@ impl Inertia {
         let own = Self {
             mass: mass.mass,
             first: Vector3::zeros(),
-            second: mass.inertia_com,
+            second: second_moments(&mass.inertia_com),
         };
         own.seen_from(&Pose::from_translation(mass.com))
     }
@@ -154,28 +154,28 @@ impl Inertia {
         let (r, p) = (&pose.rotation, &pose.translation);
         let first = r * self.first;
         let second = r * self.second * r.transpose();
-        let outer = p * first.transpose() + first * p.transpose() + p * p.transpose() * self.mass;
+        let moved = p * first.transpose() + first * p.transpose() + p * p.transpose() * self.mass;
         Self {
             mass: self.mass,
             first: first + p * self.mass,
-            second: second + Matrix3::identity() * outer.trace() - outer,
+            second: second + moved,
         }
     }
 
-    /// `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
+    /// `[m, mc_x, mc_y, mc_z, Jxx, Jyy, Jzz, Jxy, Jxz, Jyz]`.
     pub fn parameters(&self) -> [f64; 10] {
-        let (h, i) = (&self.first, &self.second);
+        let (h, j) = (&self.first, &self.second);
         [
             self.mass,
             h.x,
             h.y,
             h.z,
-            i[(0, 0)],
-            i[(1, 1)],
-            i[(2, 2)],
-            i[(0, 1)],
-            i[(0, 2)],
-            i[(1, 2)],
+            j[(0, 0)],
+            j[(1, 1)],
+            j[(2, 2)],
+            j[(0, 1)],
+            j[(0, 2)],
+            j[(1, 2)],
         ]
     }
 
@@ -185,6 +185,15 @@ impl Inertia {
             mass: p[0],
             first: Vector3::new(p[1], p[2], p[3]),
             second: Matrix3::new(p[4], p[7], p[8], p[7], p[5], p[9], p[8], p[9], p[6]),
+        }
+    }
+
+    /// The inertia with the parameters `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
+    pub fn from_moments_of_inertia(p: &[f64; 10]) -> Self {
+        let inertia = Self::from_parameters(p);
+        Self {
+            second: second_moments(&inertia.second),
+            ..inertia
         }
     }
 
@@ -207,4 +216,16 @@ impl Inertia {
             second: self.second * factor,
         }
     }
+}
+
+/// `J = ½ tr(I) 1 − I`. The larger of two moments is lessened by the third first: where these two are close, as in a rod, nothing of the small
+/// one is lost.
+fn second_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| {
+        if i != j {
+            return -inertia[(i, j)];
+        }
+        let [a, b] = [1, 2].map(|k| inertia[((i + k) % 3, (i + k) % 3)]);
+        ((a.max(b) - inertia[(i, i)]) + a.min(b)) / 2.0
+    })
 }

@@ -53,14 +53,14 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
 
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
-/// Operations: 5059 additions, 6615 multiplications, 57 divisions.
+/// Operations: 4818 additions, 6189 multiplications, 57 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> [T; 60] {
     let n = T::from_f64;
     let mut rows_of_6 = [[n(0.0); 6]; 37];
     let mut rows_of_15 = [[n(0.0); 15]; 18];
-    let mut rows_of_48 = [[n(0.0); 48]; 17];
+    let mut rows_of_45 = [[n(0.0); 45]; 17];
     let mut results = [n(0.0); 60];
     // link_2: angular velocity (9 additions, 9 multiplications)
     let link_2_angular_velocity = v[2].mul_add(q[15], v[1].mul_add(q[12], v[0] * q[9]));
@@ -110,52 +110,47 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             each_rate_z,
         ];
     }
-    // link_1: bias (6 additions, 15 multiplications)
-    let link_1_bias = v[0] * v[2];
-    let link_1_bias_2 = v[1] * v[2];
-    let link_1_bias_3 = v[1].mul_add(v[1], v[0] * v[0]);
-    let link_1_bias_4 = v[2]
-        .mul_add(n(0.00041000000000000005), v[0] * n(0.30950000000000016));
-    let link_1_bias_5 = v[1] * n(0.30944000000000016);
-    let link_1_bias_6 = v[2]
-        .mul_add(n(0.00023999999999999976), v[0] * n(0.00041000000000000005));
-    let link_1_bias_7 = (-v[2]).mul_add(link_1_bias_5, v[1] * link_1_bias_6);
-    let link_1_bias_8 = (-v[0]).mul_add(link_1_bias_6, v[2] * link_1_bias_4);
-    let link_1_bias_9 = (-v[1]).mul_add(link_1_bias_4, v[0] * link_1_bias_5);
-    // link_2: bias (19 additions, 41 multiplications)
-    let link_2_bias = link_2_rate_x * link_2_rate_z;
-    let link_2_bias_2 = link_2_rate_y * link_2_rate_y;
-    let link_2_bias_3 = link_2_rate_y * link_2_rate_z;
-    let link_2_bias_4 = link_2_rate_x.mul_add(link_2_rate_x, link_2_bias_2);
-    let link_2_bias_5 = link_2_rate_z
-        .mul_add(n(0.00041000000000000005), link_2_rate_x * n(0.29350000000000015));
-    let link_2_bias_6 = link_2_rate_y * n(0.29344000000000015);
-    let link_2_bias_7 = link_2_rate_z
-        .mul_add(n(0.00023999999999999976), link_2_rate_x * n(0.00041000000000000005));
-    let link_2_bias_8 = (-link_2_rate_z)
-        .mul_add(link_2_bias_6, link_2_rate_y * link_2_bias_7);
-    let link_2_bias_9 = (-link_2_rate_x)
-        .mul_add(link_2_bias_7, link_2_rate_z * link_2_bias_5);
-    let link_2_bias_10 = (-link_2_rate_y)
-        .mul_add(link_2_bias_5, link_2_rate_x * link_2_bias_6);
-    let link_2_bias_11 = (-link_2_bias)
-        .mul_add(
-            n(-1.4800000000000004),
-            (link_2_rate_z.mul_add(link_2_rate_z, link_2_bias_2)) * n(0.004),
-        );
-    let link_2_bias_12 = link_2_bias_3
-        .mul_add(n(-1.4800000000000004), (link_2_rate_x * link_2_rate_y) * n(0.004));
-    let link_2_bias_13 = (-link_2_bias_4)
-        .mul_add(n(-1.4800000000000004), link_2_bias * n(0.004));
+    // link_1: bias (5 additions, 12 multiplications)
+    let link_1_bias = v[0] * v[0];
+    let link_1_bias_2 = v[0] * v[1];
+    let link_1_bias_3 = v[0] * v[2];
+    let link_1_bias_4 = v[1] * v[2];
+    let link_1_bias_5 = v[1].mul_add(v[1], link_1_bias);
+    let link_1_bias_6 = (-link_1_bias_2)
+        .mul_add(n(-0.00041000000000000005), link_1_bias_4 * n(-0.3092000000000002));
+    let link_1_bias_7 = ((-v[2]).mul_add(v[2], link_1_bias))
+        .mul_add(n(-0.00041000000000000005), link_1_bias_3 * n(0.3092600000000002));
+    let link_1_bias_8 = link_1_bias_4
+        .mul_add(n(-0.00041000000000000005), link_1_bias_2 * n(-0.00006000000000000002));
+    // link_2: bias (18 additions, 36 multiplications)
+    let link_2_bias = link_2_rate_x * link_2_rate_x;
+    let link_2_bias_2 = link_2_rate_x * link_2_rate_y;
+    let link_2_bias_3 = link_2_rate_x * link_2_rate_z;
+    let link_2_bias_4 = link_2_rate_y * link_2_rate_y;
+    let link_2_bias_5 = link_2_rate_y * link_2_rate_z;
+    let link_2_bias_6 = link_2_rate_z * link_2_rate_z;
+    let link_2_bias_7 = link_2_bias + link_2_bias_4;
+    let link_2_bias_8 = (-link_2_bias_2)
+        .mul_add(n(-0.00041000000000000005), link_2_bias_5 * n(-0.2932000000000002));
+    let link_2_bias_9 = (link_2_bias - link_2_bias_6)
+        .mul_add(n(-0.00041000000000000005), link_2_bias_3 * n(0.2932600000000002));
+    let link_2_bias_10 = link_2_bias_5
+        .mul_add(n(-0.00041000000000000005), link_2_bias_2 * n(-0.00006000000000000002));
+    let link_2_bias_11 = (-link_2_bias_3)
+        .mul_add(n(-1.4800000000000004), (link_2_bias_4 + link_2_bias_6) * n(0.004));
+    let link_2_bias_12 = link_2_bias_5
+        .mul_add(n(-1.4800000000000004), link_2_bias_2 * n(0.004));
+    let link_2_bias_13 = (-link_2_bias_7)
+        .mul_add(n(-1.4800000000000004), link_2_bias_3 * n(0.004));
     let link_2_bias_14 = (-v[4])
         .mul_add(link_2_angular_velocity_3, v[5] * link_2_angular_velocity_2);
     let link_2_bias_15 = (-v[5])
         .mul_add(link_2_angular_velocity, v[3] * link_2_angular_velocity_3);
     let link_2_bias_16 = (-v[3])
         .mul_add(link_2_angular_velocity_2, v[4] * link_2_angular_velocity);
-    let link_2_bias_17 = link_1_bias * n(-0.2);
-    let link_2_bias_18 = link_1_bias_2 * n(-0.2);
-    let link_2_bias_19 = link_1_bias_3 * n(-0.2);
+    let link_2_bias_17 = link_1_bias_3 * n(-0.2);
+    let link_2_bias_18 = link_1_bias_4 * n(-0.2);
+    let link_2_bias_19 = link_1_bias_5 * n(-0.2);
     let link_2_bias_20 = (-q[15])
         .mul_add(link_2_bias_19, q[12].mul_add(link_2_bias_18, q[9] * link_2_bias_17));
     let link_2_bias_21 = (-q[16])
@@ -163,9 +158,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     let link_2_bias_22 = (-q[17])
         .mul_add(link_2_bias_19, q[14].mul_add(link_2_bias_18, q[11] * link_2_bias_17));
     rows_of_15[0] = [
-        link_2_bias,
         link_2_bias_3,
-        link_2_bias_4,
+        link_2_bias_5,
+        link_2_bias_7,
         link_2_bias_8,
         link_2_bias_9,
         link_2_bias_10,
@@ -181,34 +176,37 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     ];
     // each of link_3, link_4, … link_7 (5 bodies):
     const LIKE_2_NUMBERS: [[f64; 3]; 5] = [
-        [0.27750000000000014, 0.27744000000000013, -1.4000000000000004],
-        [0.2615000000000001, 0.2614400000000001, -1.3200000000000003],
-        [0.24550000000000008, 0.24544000000000007, -1.2400000000000002],
-        [0.22950000000000007, 0.22944000000000006, -1.1600000000000001],
-        [0.21350000000000005, 0.21344000000000005, -1.08],
+        [-0.27720000000000017, 0.2772600000000002, -1.4000000000000004],
+        [-0.26120000000000015, 0.26126000000000016, -1.3200000000000003],
+        [-0.24520000000000006, 0.24526000000000006, -1.2400000000000002],
+        [-0.22920000000000004, 0.22926000000000005, -1.1600000000000001],
+        [-0.21320000000000003, 0.21326000000000003, -1.08],
     ];
     for i in 0..5 {
         let numbers = &LIKE_2_NUMBERS[i];
         let own = &rows_of_6[i + 1];
         let parent_2 = &rows_of_15[i];
-        // each: bias (19 additions, 41 multiplications)
-        let each_bias = own[3] * own[5];
-        let each_bias_2 = own[4] * own[4];
-        let each_bias_3 = own[4] * own[5];
-        let each_bias_4 = own[3].mul_add(own[3], each_bias_2);
-        let each_bias_5 = own[5]
-            .mul_add(n(0.00041000000000000005), own[3] * n(numbers[0]));
-        let each_bias_6 = own[4] * n(numbers[1]);
-        let each_bias_7 = own[5]
-            .mul_add(n(0.00023999999999999976), own[3] * n(0.00041000000000000005));
-        let each_bias_8 = (-own[5]).mul_add(each_bias_6, own[4] * each_bias_7);
-        let each_bias_9 = (-own[3]).mul_add(each_bias_7, own[5] * each_bias_5);
-        let each_bias_10 = (-own[4]).mul_add(each_bias_5, own[3] * each_bias_6);
-        let each_bias_11 = (-each_bias)
-            .mul_add(n(numbers[2]), (own[5].mul_add(own[5], each_bias_2)) * n(0.004));
-        let each_bias_12 = each_bias_3
-            .mul_add(n(numbers[2]), (own[3] * own[4]) * n(0.004));
-        let each_bias_13 = (-each_bias_4).mul_add(n(numbers[2]), each_bias * n(0.004));
+        // each: bias (18 additions, 36 multiplications)
+        let each_bias = own[3] * own[3];
+        let each_bias_2 = own[3] * own[4];
+        let each_bias_3 = own[3] * own[5];
+        let each_bias_4 = own[4] * own[4];
+        let each_bias_5 = own[4] * own[5];
+        let each_bias_6 = own[5] * own[5];
+        let each_bias_7 = each_bias + each_bias_4;
+        let each_bias_8 = (-each_bias_2)
+            .mul_add(n(-0.00041000000000000005), each_bias_5 * n(numbers[0]));
+        let each_bias_9 = (each_bias - each_bias_6)
+            .mul_add(n(-0.00041000000000000005), each_bias_3 * n(numbers[1]));
+        let each_bias_10 = each_bias_5
+            .mul_add(
+                n(-0.00041000000000000005),
+                each_bias_2 * n(-0.00006000000000000002),
+            );
+        let each_bias_11 = (-each_bias_3)
+            .mul_add(n(numbers[2]), (each_bias_4 + each_bias_6) * n(0.004));
+        let each_bias_12 = each_bias_5.mul_add(n(numbers[2]), each_bias_2 * n(0.004));
+        let each_bias_13 = (-each_bias_7).mul_add(n(numbers[2]), each_bias_3 * n(0.004));
         let each_bias_14 = (-v[3 * i + 7]).mul_add(own[2], v[3 * i + 8] * own[1]);
         let each_bias_15 = (-v[3 * i + 8]).mul_add(own[0], v[3 * i + 6] * own[2]);
         let each_bias_16 = (-v[3 * i + 6]).mul_add(own[1], v[3 * i + 7] * own[0]);
@@ -231,9 +229,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                 q[9 * i + 23].mul_add(each_bias_18, q[9 * i + 20] * each_bias_17),
             );
         rows_of_15[i + 1] = [
-            each_bias,
             each_bias_3,
-            each_bias_4,
+            each_bias_5,
+            each_bias_7,
             each_bias_8,
             each_bias_9,
             each_bias_10,
@@ -248,27 +246,24 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             each_bias_22,
         ];
     }
-    // link_8: bias (19 additions, 38 multiplications)
-    let link_8_bias = rows_of_6[6][3] * rows_of_6[6][5];
-    let link_8_bias_2 = rows_of_6[6][4] * rows_of_6[6][4];
-    let link_8_bias_3 = rows_of_6[6][4] * rows_of_6[6][5];
-    let link_8_bias_4 = rows_of_6[6][3].mul_add(rows_of_6[6][3], link_8_bias_2);
-    let link_8_bias_5 = rows_of_6[6][5]
-        .mul_add(n(0.00041000000000000005), rows_of_6[6][3] * n(0.19750000000000004));
-    let link_8_bias_6 = rows_of_6[6][4] * n(0.19744000000000003);
-    let link_8_bias_7 = rows_of_6[6][5]
-        .mul_add(n(0.00023999999999999976), rows_of_6[6][3] * n(0.00041000000000000005));
-    let link_8_bias_8 = (-rows_of_6[6][5])
-        .mul_add(link_8_bias_6, rows_of_6[6][4] * link_8_bias_7);
-    let link_8_bias_9 = (-rows_of_6[6][3])
-        .mul_add(link_8_bias_7, rows_of_6[6][5] * link_8_bias_5);
-    let link_8_bias_10 = (-rows_of_6[6][4])
-        .mul_add(link_8_bias_5, rows_of_6[6][3] * link_8_bias_6);
-    let link_8_bias_11 = (rows_of_6[6][5].mul_add(rows_of_6[6][5], link_8_bias_2))
-        .mul_add(n(0.004), link_8_bias);
-    let link_8_bias_12 = (-(rows_of_6[6][3] * rows_of_6[6][4]))
+    // link_8: bias (18 additions, 33 multiplications)
+    let link_8_bias = rows_of_6[6][3] * rows_of_6[6][3];
+    let link_8_bias_2 = rows_of_6[6][3] * rows_of_6[6][4];
+    let link_8_bias_3 = rows_of_6[6][3] * rows_of_6[6][5];
+    let link_8_bias_4 = rows_of_6[6][4] * rows_of_6[6][4];
+    let link_8_bias_5 = rows_of_6[6][4] * rows_of_6[6][5];
+    let link_8_bias_6 = rows_of_6[6][5] * rows_of_6[6][5];
+    let link_8_bias_7 = link_8_bias + link_8_bias_4;
+    let link_8_bias_8 = (-link_8_bias_2)
+        .mul_add(n(-0.00041000000000000005), link_8_bias_5 * n(-0.19720000000000001));
+    let link_8_bias_9 = (link_8_bias - link_8_bias_6)
+        .mul_add(n(-0.00041000000000000005), link_8_bias_3 * n(0.19726000000000002));
+    let link_8_bias_10 = link_8_bias_5
+        .mul_add(n(-0.00041000000000000005), link_8_bias_2 * n(-0.00006000000000000002));
+    let link_8_bias_11 = (link_8_bias_4 + link_8_bias_6)
         .mul_add(n(0.004), link_8_bias_3);
-    let link_8_bias_13 = link_8_bias.mul_add(n(0.004), link_8_bias_4);
+    let link_8_bias_12 = (-link_8_bias_2).mul_add(n(0.004), link_8_bias_5);
+    let link_8_bias_13 = link_8_bias_3.mul_add(n(0.004), link_8_bias_7);
     let link_8_bias_14 = (-v[22]).mul_add(rows_of_6[6][2], v[23] * rows_of_6[6][1]);
     let link_8_bias_15 = (-v[23]).mul_add(rows_of_6[6][0], v[21] * rows_of_6[6][2]);
     let link_8_bias_16 = (-v[21]).mul_add(rows_of_6[6][1], v[22] * rows_of_6[6][0]);
@@ -282,9 +277,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     let link_8_bias_22 = (-q[71])
         .mul_add(link_8_bias_19, q[68].mul_add(link_8_bias_18, q[65] * link_8_bias_17));
     rows_of_15[6] = [
-        link_8_bias,
         link_8_bias_3,
-        link_8_bias_4,
+        link_8_bias_5,
+        link_8_bias_7,
         link_8_bias_8,
         link_8_bias_9,
         link_8_bias_10,
@@ -300,44 +295,44 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     ];
     // each of link_9, link_10, … link_19 (11 bodies):
     const LIKE_3_NUMBERS: [[f64; 3]; 11] = [
-        [0.18150000000000002, 0.18144000000000002, -0.9199999999999999],
-        [0.1655, 0.16544, -0.84],
-        [0.14950000000000002, 0.14944000000000002, -0.76],
-        [0.1335, 0.13344, -0.68],
-        [0.11750000000000002, 0.11744000000000002, -0.6],
-        [0.10150000000000002, 0.10144000000000002, -0.52],
-        [0.08550000000000002, 0.08544000000000002, -0.44000000000000006],
-        [0.06950000000000002, 0.06944000000000002, -0.3600000000000001],
-        [0.05350000000000002, 0.053440000000000015, -0.28],
-        [0.037500000000000006, 0.03744000000000001, -0.20000000000000004],
-        [0.021500000000000005, 0.021440000000000004, -0.12000000000000002],
+        [-0.1812, 0.18126, -0.9199999999999999],
+        [-0.16519999999999999, 0.16526, -0.84],
+        [-0.1492, 0.14926, -0.76],
+        [-0.13319999999999999, 0.13326, -0.68],
+        [-0.11720000000000001, 0.11726, -0.6],
+        [-0.10120000000000003, 0.10126000000000002, -0.52],
+        [-0.08520000000000001, 0.08526, -0.44000000000000006],
+        [-0.06920000000000003, 0.06926000000000002, -0.3600000000000001],
+        [-0.05320000000000002, 0.053260000000000016, -0.28],
+        [-0.03720000000000001, 0.03726000000000001, -0.20000000000000004],
+        [-0.021200000000000004, 0.021260000000000005, -0.12000000000000002],
     ];
     for i in 0..11 {
         let numbers = &LIKE_3_NUMBERS[i];
         let own_2 = &rows_of_6[i + 7];
         let parent_3 = &rows_of_15[i + 6];
-        // each: bias (19 additions, 41 multiplications)
-        let each_bias_23 = own_2[3] * own_2[5];
-        let each_bias_24 = own_2[4] * own_2[4];
-        let each_bias_25 = own_2[4] * own_2[5];
-        let each_bias_26 = own_2[3].mul_add(own_2[3], each_bias_24);
-        let each_bias_27 = own_2[5]
-            .mul_add(n(0.00041000000000000005), own_2[3] * n(numbers[0]));
-        let each_bias_28 = own_2[4] * n(numbers[1]);
-        let each_bias_29 = own_2[5]
-            .mul_add(n(0.00023999999999999976), own_2[3] * n(0.00041000000000000005));
-        let each_bias_30 = (-own_2[5]).mul_add(each_bias_28, own_2[4] * each_bias_29);
-        let each_bias_31 = (-own_2[3]).mul_add(each_bias_29, own_2[5] * each_bias_27);
-        let each_bias_32 = (-own_2[4]).mul_add(each_bias_27, own_2[3] * each_bias_28);
-        let each_bias_33 = (-each_bias_23)
+        // each: bias (18 additions, 36 multiplications)
+        let each_bias_23 = own_2[3] * own_2[3];
+        let each_bias_24 = own_2[3] * own_2[4];
+        let each_bias_25 = own_2[3] * own_2[5];
+        let each_bias_26 = own_2[4] * own_2[4];
+        let each_bias_27 = own_2[4] * own_2[5];
+        let each_bias_28 = own_2[5] * own_2[5];
+        let each_bias_29 = each_bias_23 + each_bias_26;
+        let each_bias_30 = (-each_bias_24)
+            .mul_add(n(-0.00041000000000000005), each_bias_27 * n(numbers[0]));
+        let each_bias_31 = (each_bias_23 - each_bias_28)
+            .mul_add(n(-0.00041000000000000005), each_bias_25 * n(numbers[1]));
+        let each_bias_32 = each_bias_27
             .mul_add(
-                n(numbers[2]),
-                (own_2[5].mul_add(own_2[5], each_bias_24)) * n(0.004),
+                n(-0.00041000000000000005),
+                each_bias_24 * n(-0.00006000000000000002),
             );
-        let each_bias_34 = each_bias_25
-            .mul_add(n(numbers[2]), (own_2[3] * own_2[4]) * n(0.004));
-        let each_bias_35 = (-each_bias_26)
-            .mul_add(n(numbers[2]), each_bias_23 * n(0.004));
+        let each_bias_33 = (-each_bias_25)
+            .mul_add(n(numbers[2]), (each_bias_26 + each_bias_28) * n(0.004));
+        let each_bias_34 = each_bias_27.mul_add(n(numbers[2]), each_bias_24 * n(0.004));
+        let each_bias_35 = (-each_bias_29)
+            .mul_add(n(numbers[2]), each_bias_25 * n(0.004));
         let each_bias_36 = (-v[3 * i + 25]).mul_add(own_2[2], v[3 * i + 26] * own_2[1]);
         let each_bias_37 = (-v[3 * i + 26]).mul_add(own_2[0], v[3 * i + 24] * own_2[2]);
         let each_bias_38 = (-v[3 * i + 24]).mul_add(own_2[1], v[3 * i + 25] * own_2[0]);
@@ -360,9 +355,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                 q[9 * i + 77].mul_add(each_bias_40, q[9 * i + 74] * each_bias_39),
             );
         rows_of_15[i + 7] = [
-            each_bias_23,
             each_bias_25,
-            each_bias_26,
+            each_bias_27,
+            each_bias_29,
             each_bias_30,
             each_bias_31,
             each_bias_32,
@@ -377,133 +372,132 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             each_bias_44,
         ];
     }
-    // link_20: bias (19 additions, 41 multiplications)
-    let link_20_bias = rows_of_6[18][3] * rows_of_6[18][5];
-    let link_20_bias_2 = rows_of_6[18][4] * rows_of_6[18][4];
-    let link_20_bias_3 = rows_of_6[18][5]
-        .mul_add(n(0.00041000000000000005), rows_of_6[18][3] * n(0.005500000000000001));
-    let link_20_bias_4 = rows_of_6[18][4] * n(0.005440000000000001);
-    let link_20_bias_5 = rows_of_6[18][5]
+    // link_20: bias (18 additions, 36 multiplications)
+    let link_20_bias = rows_of_6[18][3] * rows_of_6[18][3];
+    let link_20_bias_2 = rows_of_6[18][3] * rows_of_6[18][4];
+    let link_20_bias_3 = rows_of_6[18][3] * rows_of_6[18][5];
+    let link_20_bias_4 = rows_of_6[18][4] * rows_of_6[18][4];
+    let link_20_bias_5 = rows_of_6[18][4] * rows_of_6[18][5];
+    let link_20_bias_6 = rows_of_6[18][5] * rows_of_6[18][5];
+    let link_20_bias_7 = (-v[58]).mul_add(rows_of_6[18][2], v[59] * rows_of_6[18][1]);
+    let link_20_bias_8 = (-v[59]).mul_add(rows_of_6[18][0], v[57] * rows_of_6[18][2]);
+    let link_20_bias_9 = (-v[57]).mul_add(rows_of_6[18][1], v[58] * rows_of_6[18][0]);
+    let link_20_bias_10 = rows_of_15[17][0] * n(-0.2);
+    let link_20_bias_11 = rows_of_15[17][1] * n(-0.2);
+    let link_20_bias_12 = rows_of_15[17][2] * n(-0.2);
+    let link_20_bias_13 = (-q[177])
         .mul_add(
-            n(0.00023999999999999976),
-            rows_of_6[18][3] * n(0.00041000000000000005),
+            link_20_bias_12,
+            q[174].mul_add(link_20_bias_11, q[171] * link_20_bias_10),
         );
-    let link_20_bias_6 = (-rows_of_6[18][5])
-        .mul_add(link_20_bias_4, rows_of_6[18][4] * link_20_bias_5);
-    let link_20_bias_7 = (-rows_of_6[18][3])
-        .mul_add(link_20_bias_5, rows_of_6[18][5] * link_20_bias_3);
-    let link_20_bias_8 = (-rows_of_6[18][4])
-        .mul_add(link_20_bias_3, rows_of_6[18][3] * link_20_bias_4);
-    let link_20_bias_9 = (-v[58]).mul_add(rows_of_6[18][2], v[59] * rows_of_6[18][1]);
-    let link_20_bias_10 = (-v[59]).mul_add(rows_of_6[18][0], v[57] * rows_of_6[18][2]);
-    let link_20_bias_11 = (-v[57]).mul_add(rows_of_6[18][1], v[58] * rows_of_6[18][0]);
-    let link_20_bias_12 = rows_of_15[17][0] * n(-0.2);
-    let link_20_bias_13 = rows_of_15[17][1] * n(-0.2);
-    let link_20_bias_14 = rows_of_15[17][2] * n(-0.2);
-    let link_20_bias_15 = (-q[177])
+    let link_20_bias_14 = (-q[178])
         .mul_add(
-            link_20_bias_14,
-            q[174].mul_add(link_20_bias_13, q[171] * link_20_bias_12),
+            link_20_bias_12,
+            q[175].mul_add(link_20_bias_11, q[172] * link_20_bias_10),
         );
-    let link_20_bias_16 = (-q[178])
+    let link_20_bias_15 = (-q[179])
         .mul_add(
-            link_20_bias_14,
-            q[175].mul_add(link_20_bias_13, q[172] * link_20_bias_12),
+            link_20_bias_12,
+            q[176].mul_add(link_20_bias_11, q[173] * link_20_bias_10),
         );
-    let link_20_bias_17 = (-q[179])
+    // link_20: articulated inertia (8 additions, 8 multiplications)
+    let link_20_articulated_inertia = (-link_20_bias_2)
         .mul_add(
-            link_20_bias_14,
-            q[176].mul_add(link_20_bias_13, q[173] * link_20_bias_12),
+            n(-0.00041000000000000005),
+            link_20_bias_5.mul_add(n(-0.005200000000000001), -tau[57]),
         );
-    // link_20: articulated inertia (13 additions, 9 multiplications)
-    let link_20_articulated_inertia = link_20_bias_6 - tau[57];
-    let link_20_articulated_inertia_2 = link_20_bias_7 - tau[58];
-    let link_20_articulated_inertia_3 = link_20_articulated_inertia
-        * n(0.07454545454545454);
-    let link_20_articulated_inertia_4 = link_20_bias_8 - tau[59]
-        - link_20_articulated_inertia_3;
-    let link_20_articulated_inertia_5 = link_20_articulated_inertia
-        * n(181.81818181818178);
-    let link_20_articulated_inertia_6 = (-link_20_articulated_inertia)
+    let link_20_articulated_inertia_2 = (link_20_bias - link_20_bias_6)
         .mul_add(
-            n(7.2727272727272725),
-            (rows_of_6[18][4] * rows_of_6[18][5])
+            n(-0.00041000000000000005),
+            link_20_bias_3.mul_add(n(0.005260000000000001), -tau[58]),
+        );
+    let link_20_articulated_inertia_3 = (-link_20_articulated_inertia)
+        .mul_add(
+            n(0.07454545454545455),
+            link_20_bias_5
+                .mul_add(
+                    n(-0.00041000000000000005),
+                    link_20_bias_2.mul_add(n(-0.00006000000000000002), -tau[59]),
+                ),
+        );
+    let link_20_articulated_inertia_4 = link_20_articulated_inertia
+        * n(181.8181818181818);
+    let link_20_articulated_inertia_5 = link_20_articulated_inertia_2
+        * n(183.8235294117647);
+    let link_20_articulated_inertia_6 = link_20_articulated_inertia_3
+        * n(4774.720027780189);
+    let link_20_articulated_inertia_7 = (-link_20_articulated_inertia_3)
+        .mul_add(
+            n(4.8615331191943705),
+            (-link_20_articulated_inertia)
+                .mul_add(
+                    n(7.272727272727274),
+                    link_20_bias_5
+                        .mul_add(n(-0.04000000000000001), link_20_bias_2 * n(0.004)),
+                ),
+        );
+    // link_20: seen by parent (54 additions, 93 multiplications)
+    let link_20_seen_by_parent = link_20_bias_14
+        .mul_add(
+            n(0.00000000000000000026354423847203836),
+            link_20_bias_7
+                .mul_add(
+                    n(-0.00000000000000000000000000000000001403164104853412),
+                    tau[57],
+                ),
+        );
+    let link_20_seen_by_parent_2 = (-link_20_bias_15)
+        .mul_add(
+            n(-0.029411764705882356),
+            (-link_20_bias_13)
+                .mul_add(
+                    n(-0.29411764705882365),
+                    (-link_20_bias_3)
+                        .mul_add(
+                            n(-0.04000000000000001),
+                            link_20_articulated_inertia_2
+                                .mul_add(
+                                    n(-7.35294117647059),
+                                    (link_20_bias_4 + link_20_bias_6) * n(0.004),
+                                ),
+                        ),
+                ),
+        );
+    let link_20_seen_by_parent_3 = link_20_bias_14
+        .mul_add(
+            n(-0.29585901553954347),
+            link_20_bias_7
+                .mul_add(
+                    n(0.00000000000000000026354423847203836),
+                    link_20_articulated_inertia_7,
+                ),
+        );
+    let link_20_seen_by_parent_4 = (-link_20_articulated_inertia_2)
+        .mul_add(
+            n(-0.7352941176470588),
+            (-(link_20_bias + link_20_bias_4))
                 .mul_add(
                     n(-0.04000000000000001),
-                    (rows_of_6[18][3] * rows_of_6[18][4]) * n(0.004),
-                ),
-        );
-    let link_20_articulated_inertia_7 = link_20_articulated_inertia_2
-        * n(183.82352941176467);
-    let link_20_articulated_inertia_8 = link_20_bias_7 - link_20_articulated_inertia_2;
-    let link_20_articulated_inertia_9 = (-link_20_bias)
-        .mul_add(
-            n(-0.04000000000000001),
-            link_20_articulated_inertia_2
-                .mul_add(
-                    n(-7.352941176470588),
-                    (rows_of_6[18][5].mul_add(rows_of_6[18][5], link_20_bias_2))
-                        * n(0.004),
-                ),
-        );
-    let link_20_articulated_inertia_10 = (-link_20_articulated_inertia_2)
-        .mul_add(
-            n(-0.7352941176470587),
-            (-(rows_of_6[18][3].mul_add(rows_of_6[18][3], link_20_bias_2)))
-                .mul_add(n(-0.04000000000000001), link_20_bias * n(0.004)),
-        );
-    let link_20_articulated_inertia_11 = link_20_articulated_inertia_4
-        * n(4774.720027780195);
-    let link_20_articulated_inertia_12 = link_20_articulated_inertia_4
-        + link_20_articulated_inertia_3 - link_20_bias_8;
-    // link_20: seen by parent (54 additions, 96 multiplications)
-    let link_20_seen_by_parent = (-link_20_articulated_inertia_4)
-        .mul_add(
-            n(-0.00000000000000025883809135646677),
-            link_20_bias_16
-                .mul_add(
-                    n(0.0000000000000000002635442384720388),
-                    link_20_bias_9
+                    link_20_bias_15
                         .mul_add(
-                            n(-0.000000000000000000000000000000000014031641048534137),
-                            link_20_bias_6 - link_20_articulated_inertia,
+                            n(-0.0029411764705882353),
+                            link_20_bias_13
+                                .mul_add(
+                                    n(-0.029411764705882356),
+                                    link_20_bias_3 * n(0.004),
+                                ),
                         ),
                 ),
-        );
-    let link_20_seen_by_parent_2 = (-link_20_bias_17)
-        .mul_add(
-            n(-0.029411764705882353),
-            (-link_20_bias_15)
-                .mul_add(n(-0.2941176470588236), link_20_articulated_inertia_9),
-        );
-    let link_20_seen_by_parent_3 = (-link_20_articulated_inertia_4)
-        .mul_add(
-            n(4.8615331191943785),
-            link_20_bias_16
-                .mul_add(
-                    n(-0.2958590155395434),
-                    link_20_bias_9
-                        .mul_add(
-                            n(0.0000000000000000002635442384720388),
-                            link_20_articulated_inertia_6,
-                        ),
-                ),
-        );
-    let link_20_seen_by_parent_4 = link_20_bias_17
-        .mul_add(
-            n(-0.002941176470588235),
-            link_20_bias_15
-                .mul_add(n(-0.029411764705882353), link_20_articulated_inertia_10),
         );
     let link_20_seen_by_parent_5 = q[171]
-        * n(-0.000000000000000000000000000000000014031641048534137);
+        * n(-0.00000000000000000000000000000000001403164104853412);
     let link_20_seen_by_parent_6 = q[174]
-        * n(-0.000000000000000000000000000000000014031641048534137);
+        * n(-0.00000000000000000000000000000000001403164104853412);
     let link_20_seen_by_parent_7 = q[177]
-        * (q[177] * n(-0.000000000000000000000000000000000014031641048534137));
-    let link_20_seen_by_parent_8 = q[171] * n(0.0000000000000000002635442384720388);
-    let link_20_seen_by_parent_9 = q[174] * n(0.0000000000000000002635442384720388);
-    let link_20_seen_by_parent_10 = q[177] * n(0.0000000000000000002635442384720388);
+        * (q[177] * n(-0.00000000000000000000000000000000001403164104853412));
+    let link_20_seen_by_parent_8 = q[171] * n(0.00000000000000000026354423847203836);
+    let link_20_seen_by_parent_9 = q[174] * n(0.00000000000000000026354423847203836);
+    let link_20_seen_by_parent_10 = q[177] * n(0.00000000000000000026354423847203836);
     let link_20_seen_by_parent_11 = q[172] * link_20_seen_by_parent_8;
     let link_20_seen_by_parent_12 = q[172] * link_20_seen_by_parent_9;
     let link_20_seen_by_parent_13 = q[172] * link_20_seen_by_parent_10;
@@ -511,15 +505,15 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     let link_20_seen_by_parent_15 = q[175] * link_20_seen_by_parent_10;
     let link_20_seen_by_parent_16 = q[178] * link_20_seen_by_parent_10;
     let link_20_seen_by_parent_17 = q[173]
-        .mul_add(n(-0.029411764705882353), q[171] * n(-0.2941176470588236));
+        .mul_add(n(-0.029411764705882356), q[171] * n(-0.29411764705882365));
     let link_20_seen_by_parent_18 = q[176]
-        .mul_add(n(-0.029411764705882353), q[174] * n(-0.2941176470588236));
-    let link_20_seen_by_parent_19 = q[172] * n(-0.2958590155395434);
-    let link_20_seen_by_parent_20 = q[175] * n(-0.2958590155395434);
+        .mul_add(n(-0.029411764705882356), q[174] * n(-0.29411764705882365));
+    let link_20_seen_by_parent_19 = q[172] * n(-0.29585901553954347);
+    let link_20_seen_by_parent_20 = q[175] * n(-0.29585901553954347);
     let link_20_seen_by_parent_21 = q[173]
-        .mul_add(n(-0.002941176470588235), q[171] * n(-0.029411764705882353));
+        .mul_add(n(-0.0029411764705882353), q[171] * n(-0.029411764705882356));
     let link_20_seen_by_parent_22 = q[176]
-        .mul_add(n(-0.002941176470588235), q[174] * n(-0.029411764705882353));
+        .mul_add(n(-0.0029411764705882353), q[174] * n(-0.029411764705882356));
     let link_20_seen_by_parent_23 = q[173]
         .mul_add(
             link_20_seen_by_parent_21,
@@ -547,14 +541,14 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         );
     let link_20_seen_by_parent_28 = q[178]
         .mul_add(
-            q[178] * n(-0.2958590155395434),
+            q[178] * n(-0.29585901553954347),
             q[177]
                 * (q[179]
-                    .mul_add(n(-0.029411764705882353), q[177] * n(-0.2941176470588236))),
+                    .mul_add(n(-0.029411764705882356), q[177] * n(-0.29411764705882365))),
         );
     let link_20_seen_by_parent_29 = q[179]
         .mul_add(
-            q[179].mul_add(n(-0.002941176470588235), q[177] * n(-0.029411764705882353)),
+            q[179].mul_add(n(-0.0029411764705882353), q[177] * n(-0.029411764705882356)),
             link_20_seen_by_parent_28,
         );
     let link_20_seen_by_parent_30 = link_20_seen_by_parent_24
@@ -569,31 +563,21 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         .mul_add(n(0.2), q[178] * link_20_seen_by_parent_8);
     let link_20_seen_by_parent_35 = link_20_seen_by_parent_25
         .mul_add(n(-0.2), q[178] * link_20_seen_by_parent_9);
-    let link_20_seen_by_parent_36 = (-link_20_seen_by_parent_14)
-        .mul_add(
-            n(-0.2),
-            link_20_seen_by_parent_32.mul_add(n(0.2), q[171] * link_20_seen_by_parent_5),
-        );
-    let link_20_seen_by_parent_37 = (-link_20_seen_by_parent_11)
-        .mul_add(
-            n(0.2),
-            link_20_seen_by_parent_33.mul_add(n(0.2), q[174] * link_20_seen_by_parent_5),
-        );
+    let link_20_seen_by_parent_36 = (link_20_seen_by_parent_14
+        + link_20_seen_by_parent_32)
+        .mul_add(n(0.2), q[171] * link_20_seen_by_parent_5);
+    let link_20_seen_by_parent_37 = (-(link_20_seen_by_parent_11
+        - link_20_seen_by_parent_33))
+        .mul_add(n(0.2), q[174] * link_20_seen_by_parent_5);
     let link_20_seen_by_parent_38 = link_20_seen_by_parent_15
         .mul_add(n(0.2), q[177] * link_20_seen_by_parent_5);
-    let link_20_seen_by_parent_39 = (-link_20_seen_by_parent_12)
-        .mul_add(
-            n(0.2),
-            link_20_seen_by_parent_31.mul_add(n(-0.2), q[174] * link_20_seen_by_parent_6),
-        );
+    let link_20_seen_by_parent_39 = (link_20_seen_by_parent_12
+        + link_20_seen_by_parent_31)
+        .mul_add(n(-0.2), q[174] * link_20_seen_by_parent_6);
     let link_20_seen_by_parent_40 = link_20_seen_by_parent_13
         .mul_add(n(-0.2), q[177] * link_20_seen_by_parent_6);
-    let link_20_seen_by_parent_41 = (-q[179])
-        .mul_add(
-            link_20_articulated_inertia_12,
-            q[178]
-                .mul_add(link_20_articulated_inertia_8, q[177] * link_20_seen_by_parent),
-        );
+    let link_20_seen_by_parent_41 = q[179]
+        .mul_add(tau[59], q[178].mul_add(tau[58], q[177] * link_20_seen_by_parent));
     let link_20_seen_by_parent_42 = (-q[173])
         .mul_add(
             link_20_seen_by_parent_4,
@@ -606,30 +590,22 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             (-q[175])
                 .mul_add(link_20_seen_by_parent_3, q[174] * link_20_seen_by_parent_2),
         );
-    let link_20_seen_by_parent_44 = (-q[173])
+    let link_20_seen_by_parent_44 = link_20_seen_by_parent_43
         .mul_add(
-            link_20_articulated_inertia_12,
-            link_20_seen_by_parent_43
+            n(-0.2),
+            q[173]
                 .mul_add(
-                    n(-0.2),
-                    q[172]
-                        .mul_add(
-                            link_20_articulated_inertia_8,
-                            q[171] * link_20_seen_by_parent,
-                        ),
+                    tau[59],
+                    q[172].mul_add(tau[58], q[171] * link_20_seen_by_parent),
                 ),
         );
     let link_20_seen_by_parent_45 = (-link_20_seen_by_parent_42)
         .mul_add(
             n(-0.2),
-            (-q[176])
+            q[176]
                 .mul_add(
-                    link_20_articulated_inertia_12,
-                    q[175]
-                        .mul_add(
-                            link_20_articulated_inertia_8,
-                            q[174] * link_20_seen_by_parent,
-                        ),
+                    tau[59],
+                    q[175].mul_add(tau[58], q[174] * link_20_seen_by_parent),
                 ),
         );
     let link_20_seen_by_parent_46 = -link_20_seen_by_parent_42;
@@ -643,302 +619,325 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     let link_19_carried = link_20_seen_by_parent_36 + n(0.021500000000000005);
     let link_19_carried_2 = link_20_seen_by_parent_38 + n(0.00041000000000000005);
     let link_19_carried_3 = link_20_seen_by_parent_32 + n(0.12000000000000002);
-    let link_19_carried_4 = rows_of_15[17][3] + link_20_seen_by_parent_44;
-    let link_19_carried_5 = rows_of_15[17][4] + link_20_seen_by_parent_45;
-    let link_19_carried_6 = rows_of_15[17][5] + link_20_seen_by_parent_41;
-    // link_19: articulated inertia (64 additions, 91 multiplications, 3 divisions)
-    let link_19_articulated_inertia = link_19_carried_4 - tau[54];
+    // link_19: articulated inertia (55 additions, 79 multiplications, 3 divisions)
+    let link_19_articulated_inertia = rows_of_15[17][3] + link_20_seen_by_parent_44
+        - tau[54];
     let link_19_inverse_inertia = n(1.0) / link_19_carried;
-    let link_19_articulated_inertia_2 = link_19_carried * link_19_inverse_inertia;
-    let link_19_articulated_inertia_3 = link_20_seen_by_parent_37
+    let link_19_articulated_inertia_2 = link_20_seen_by_parent_37
         * link_19_inverse_inertia;
-    let link_19_articulated_inertia_4 = link_19_carried_2 * link_19_inverse_inertia;
-    let link_19_articulated_inertia_5 = link_20_seen_by_parent_30
+    let link_19_articulated_inertia_3 = link_19_carried_2 * link_19_inverse_inertia;
+    let link_19_articulated_inertia_4 = link_20_seen_by_parent_30
         * link_19_inverse_inertia;
-    let link_19_articulated_inertia_6 = link_19_carried_3 * link_19_inverse_inertia;
-    let link_19_articulated_inertia_7 = link_20_seen_by_parent_34
+    let link_19_articulated_inertia_5 = link_19_carried_3 * link_19_inverse_inertia;
+    let link_19_articulated_inertia_6 = link_20_seen_by_parent_34
         * link_19_inverse_inertia;
-    let link_19_articulated_inertia_8 = (-link_19_articulated_inertia)
-        .mul_add(link_19_articulated_inertia_3, link_19_carried_5 - tau[55]);
-    let link_19_articulated_inertia_9 = (-link_19_carried)
-        .mul_add(link_19_articulated_inertia_3, link_20_seen_by_parent_37);
-    let link_19_articulated_inertia_10 = (-link_20_seen_by_parent_37)
+    let link_19_articulated_inertia_7 = (-link_19_articulated_inertia)
         .mul_add(
-            link_19_articulated_inertia_3,
+            link_19_articulated_inertia_2,
+            rows_of_15[17][4] + link_20_seen_by_parent_45 - tau[55],
+        );
+    let link_19_articulated_inertia_8 = (-link_19_carried)
+        .mul_add(link_19_articulated_inertia_2, link_20_seen_by_parent_37);
+    let link_19_articulated_inertia_9 = (-link_20_seen_by_parent_37)
+        .mul_add(
+            link_19_articulated_inertia_2,
             link_20_seen_by_parent_39 + n(0.021440000000000004),
         );
-    let link_19_articulated_inertia_11 = (-link_19_carried_2)
-        .mul_add(link_19_articulated_inertia_3, link_20_seen_by_parent_40);
-    let link_19_articulated_inertia_12 = (-link_20_seen_by_parent_30)
+    let link_19_articulated_inertia_10 = (-link_19_carried_2)
+        .mul_add(link_19_articulated_inertia_2, link_20_seen_by_parent_40);
+    let link_19_articulated_inertia_11 = (-link_20_seen_by_parent_30)
         .mul_add(
-            link_19_articulated_inertia_3,
+            link_19_articulated_inertia_2,
             link_20_seen_by_parent_31 + n(-0.12000000000000002),
         );
-    let link_19_articulated_inertia_13 = (-link_19_carried_3)
-        .mul_add(link_19_articulated_inertia_3, link_20_seen_by_parent_33);
-    let link_19_articulated_inertia_14 = (-link_20_seen_by_parent_34)
-        .mul_add(link_19_articulated_inertia_3, link_20_seen_by_parent_35 + n(-0.004));
-    let link_19_articulated_inertia_15 = link_19_articulated_inertia
+    let link_19_articulated_inertia_12 = (-link_19_carried_3)
+        .mul_add(link_19_articulated_inertia_2, link_20_seen_by_parent_33);
+    let link_19_articulated_inertia_13 = (-link_20_seen_by_parent_34)
+        .mul_add(link_19_articulated_inertia_2, link_20_seen_by_parent_35 + n(-0.004));
+    let link_19_articulated_inertia_14 = link_19_articulated_inertia
         * link_19_inverse_inertia;
-    let link_19_inverse_inertia_2 = n(1.0) / link_19_articulated_inertia_10;
-    let link_19_articulated_inertia_16 = link_19_articulated_inertia_9
+    let link_19_inverse_inertia_2 = n(1.0) / link_19_articulated_inertia_9;
+    let link_19_articulated_inertia_15 = link_19_articulated_inertia_8
         * link_19_inverse_inertia_2;
-    let link_19_articulated_inertia_17 = link_19_articulated_inertia_10
+    let link_19_articulated_inertia_16 = link_19_articulated_inertia_10
         * link_19_inverse_inertia_2;
-    let link_19_articulated_inertia_18 = link_19_articulated_inertia_11
+    let link_19_articulated_inertia_17 = link_19_articulated_inertia_11
         * link_19_inverse_inertia_2;
-    let link_19_articulated_inertia_19 = link_19_articulated_inertia_12
+    let link_19_articulated_inertia_18 = link_19_articulated_inertia_12
         * link_19_inverse_inertia_2;
-    let link_19_articulated_inertia_20 = link_19_articulated_inertia_13
+    let link_19_articulated_inertia_19 = link_19_articulated_inertia_13
         * link_19_inverse_inertia_2;
-    let link_19_articulated_inertia_21 = link_19_articulated_inertia_14
-        * link_19_inverse_inertia_2;
-    let link_19_articulated_inertia_22 = (-link_19_articulated_inertia_9)
+    let link_19_articulated_inertia_20 = (-link_19_articulated_inertia_8)
         .mul_add(
-            link_19_articulated_inertia_18,
-            (-link_19_carried).mul_add(link_19_articulated_inertia_4, link_19_carried_2),
+            link_19_articulated_inertia_16,
+            (-link_19_carried).mul_add(link_19_articulated_inertia_3, link_19_carried_2),
         );
-    let link_19_articulated_inertia_23 = (-link_19_articulated_inertia_10)
+    let link_19_articulated_inertia_21 = (-link_19_articulated_inertia_9)
         .mul_add(
-            link_19_articulated_inertia_18,
+            link_19_articulated_inertia_16,
             (-link_20_seen_by_parent_37)
-                .mul_add(link_19_articulated_inertia_4, link_20_seen_by_parent_40),
+                .mul_add(link_19_articulated_inertia_3, link_20_seen_by_parent_40),
         );
-    let link_19_articulated_inertia_24 = (-link_19_articulated_inertia_11)
+    let link_19_articulated_inertia_22 = (-link_19_articulated_inertia_11)
         .mul_add(
-            link_19_articulated_inertia_18,
-            (-link_19_carried_2)
-                .mul_add(
-                    link_19_articulated_inertia_4,
-                    link_20_seen_by_parent_7 + n(0.00023999999999999976),
-                ),
-        );
-    let link_19_articulated_inertia_25 = (-link_19_articulated_inertia_12)
-        .mul_add(
-            link_19_articulated_inertia_18,
+            link_19_articulated_inertia_16,
             (-link_20_seen_by_parent_30)
-                .mul_add(link_19_articulated_inertia_4, link_20_seen_by_parent_13),
+                .mul_add(link_19_articulated_inertia_3, link_20_seen_by_parent_13),
         );
-    let link_19_articulated_inertia_26 = (-link_19_articulated_inertia_13)
+    let link_19_articulated_inertia_23 = (-link_19_articulated_inertia_12)
         .mul_add(
-            link_19_articulated_inertia_18,
+            link_19_articulated_inertia_16,
             (-link_19_carried_3)
                 .mul_add(
-                    link_19_articulated_inertia_4,
+                    link_19_articulated_inertia_3,
                     link_20_seen_by_parent_15 + n(0.004),
                 ),
         );
-    let link_19_articulated_inertia_27 = (-link_19_articulated_inertia_14)
+    let link_19_articulated_inertia_24 = (-link_19_articulated_inertia_13)
         .mul_add(
-            link_19_articulated_inertia_18,
+            link_19_articulated_inertia_16,
             (-link_20_seen_by_parent_34)
-                .mul_add(link_19_articulated_inertia_4, link_20_seen_by_parent_16),
+                .mul_add(link_19_articulated_inertia_3, link_20_seen_by_parent_16),
         );
-    let link_19_articulated_inertia_28 = link_19_articulated_inertia_8
+    let link_19_articulated_inertia_25 = link_19_articulated_inertia_7
         * link_19_inverse_inertia_2;
-    let link_19_inverse_inertia_3 = n(1.0) / link_19_articulated_inertia_24;
-    let link_19_articulated_inertia_29 = link_19_articulated_inertia_22
+    let link_19_inverse_inertia_3 = n(1.0)
+        / ((-link_19_articulated_inertia_10)
+            .mul_add(
+                link_19_articulated_inertia_16,
+                (-link_19_carried_2)
+                    .mul_add(
+                        link_19_articulated_inertia_3,
+                        link_20_seen_by_parent_7 + n(0.00024),
+                    ),
+            ));
+    let link_19_articulated_inertia_26 = link_19_articulated_inertia_20
         * link_19_inverse_inertia_3;
-    let link_19_articulated_inertia_30 = link_19_articulated_inertia_23
+    let link_19_articulated_inertia_27 = link_19_articulated_inertia_21
         * link_19_inverse_inertia_3;
-    let link_19_articulated_inertia_31 = link_19_articulated_inertia_24
+    let link_19_articulated_inertia_28 = link_19_articulated_inertia_22
         * link_19_inverse_inertia_3;
-    let link_19_articulated_inertia_32 = link_19_articulated_inertia_25
+    let link_19_articulated_inertia_29 = link_19_articulated_inertia_23
         * link_19_inverse_inertia_3;
-    let link_19_articulated_inertia_33 = link_19_articulated_inertia_26
+    let link_19_articulated_inertia_30 = link_19_articulated_inertia_24
         * link_19_inverse_inertia_3;
-    let link_19_articulated_inertia_34 = link_19_articulated_inertia_27
-        * link_19_inverse_inertia_3;
-    let link_19_articulated_inertia_35 = link_19_articulated_inertia_22
+    let link_19_articulated_inertia_31 = link_19_articulated_inertia_20
+        .mul_add(
+            link_19_articulated_inertia_26,
+            link_19_articulated_inertia_8 * link_19_articulated_inertia_15,
+        );
+    let link_19_articulated_inertia_32 = link_19_articulated_inertia_20
+        * link_19_articulated_inertia_27;
+    let link_19_articulated_inertia_33 = link_19_articulated_inertia_21
+        * link_19_articulated_inertia_27;
+    let link_19_articulated_inertia_34 = link_19_articulated_inertia_20
+        .mul_add(
+            link_19_articulated_inertia_28,
+            link_19_articulated_inertia_8 * link_19_articulated_inertia_17,
+        );
+    let link_19_articulated_inertia_35 = link_19_articulated_inertia_21
+        * link_19_articulated_inertia_28;
+    let link_19_articulated_inertia_36 = link_19_articulated_inertia_20
         .mul_add(
             link_19_articulated_inertia_29,
-            link_19_articulated_inertia_9 * link_19_articulated_inertia_16,
+            link_19_articulated_inertia_8 * link_19_articulated_inertia_18,
         );
-    let link_19_articulated_inertia_36 = link_19_articulated_inertia_22
+    let link_19_articulated_inertia_37 = link_19_articulated_inertia_21
+        * link_19_articulated_inertia_29;
+    let link_19_articulated_inertia_38 = link_19_articulated_inertia_20
+        .mul_add(
+            link_19_articulated_inertia_30,
+            link_19_articulated_inertia_8 * link_19_articulated_inertia_19,
+        );
+    let link_19_articulated_inertia_39 = link_19_articulated_inertia_21
         * link_19_articulated_inertia_30;
-    let link_19_articulated_inertia_37 = link_19_articulated_inertia_23
-        * link_19_articulated_inertia_30;
-    let link_19_articulated_inertia_38 = link_19_articulated_inertia_22
+    let link_19_articulated_inertia_40 = (-link_19_articulated_inertia_22)
         .mul_add(
-            link_19_articulated_inertia_32,
-            link_19_articulated_inertia_9 * link_19_articulated_inertia_19,
-        );
-    let link_19_articulated_inertia_39 = link_19_articulated_inertia_23
-        * link_19_articulated_inertia_32;
-    let link_19_articulated_inertia_40 = link_19_articulated_inertia_22
-        .mul_add(
-            link_19_articulated_inertia_33,
-            link_19_articulated_inertia_9 * link_19_articulated_inertia_20,
-        );
-    let link_19_articulated_inertia_41 = link_19_articulated_inertia_23
-        * link_19_articulated_inertia_33;
-    let link_19_articulated_inertia_42 = link_19_articulated_inertia_22
-        .mul_add(
-            link_19_articulated_inertia_34,
-            link_19_articulated_inertia_9 * link_19_articulated_inertia_21,
-        );
-    let link_19_articulated_inertia_43 = link_19_articulated_inertia_23
-        * link_19_articulated_inertia_34;
-    let link_19_articulated_inertia_44 = (-link_19_articulated_inertia_25)
-        .mul_add(
-            link_19_articulated_inertia_32,
-            (-link_19_articulated_inertia_12)
+            link_19_articulated_inertia_28,
+            (-link_19_articulated_inertia_11)
                 .mul_add(
-                    link_19_articulated_inertia_19,
+                    link_19_articulated_inertia_17,
                     (-link_20_seen_by_parent_30)
                         .mul_add(
-                            link_19_articulated_inertia_5,
+                            link_19_articulated_inertia_4,
                             link_20_seen_by_parent_23,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_45 = (-link_19_articulated_inertia_25)
+    let link_19_articulated_inertia_41 = (-link_19_articulated_inertia_22)
         .mul_add(
-            link_19_articulated_inertia_33,
-            (-link_19_articulated_inertia_12)
+            link_19_articulated_inertia_29,
+            (-link_19_articulated_inertia_11)
                 .mul_add(
-                    link_19_articulated_inertia_20,
+                    link_19_articulated_inertia_18,
                     (-link_20_seen_by_parent_30)
                         .mul_add(
-                            link_19_articulated_inertia_6,
+                            link_19_articulated_inertia_5,
                             link_20_seen_by_parent_24,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_46 = (-link_19_articulated_inertia_25)
+    let link_19_articulated_inertia_42 = (-link_19_articulated_inertia_22)
         .mul_add(
-            link_19_articulated_inertia_34,
-            (-link_19_articulated_inertia_12)
+            link_19_articulated_inertia_30,
+            (-link_19_articulated_inertia_11)
                 .mul_add(
-                    link_19_articulated_inertia_21,
+                    link_19_articulated_inertia_19,
                     (-link_20_seen_by_parent_30)
                         .mul_add(
-                            link_19_articulated_inertia_7,
+                            link_19_articulated_inertia_6,
                             link_20_seen_by_parent_25,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_47 = (-link_19_articulated_inertia_26)
+    let link_19_articulated_inertia_43 = (-link_19_articulated_inertia_23)
         .mul_add(
-            link_19_articulated_inertia_33,
-            (-link_19_articulated_inertia_13)
+            link_19_articulated_inertia_29,
+            (-link_19_articulated_inertia_12)
                 .mul_add(
-                    link_19_articulated_inertia_20,
+                    link_19_articulated_inertia_18,
                     (-link_19_carried_3)
                         .mul_add(
-                            link_19_articulated_inertia_6,
+                            link_19_articulated_inertia_5,
                             link_20_seen_by_parent_26,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_48 = (-link_19_articulated_inertia_26)
+    let link_19_articulated_inertia_44 = (-link_19_articulated_inertia_23)
         .mul_add(
-            link_19_articulated_inertia_34,
-            (-link_19_articulated_inertia_13)
+            link_19_articulated_inertia_30,
+            (-link_19_articulated_inertia_12)
                 .mul_add(
-                    link_19_articulated_inertia_21,
+                    link_19_articulated_inertia_19,
                     (-link_19_carried_3)
                         .mul_add(
-                            link_19_articulated_inertia_7,
+                            link_19_articulated_inertia_6,
                             link_20_seen_by_parent_27,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_49 = (-link_19_articulated_inertia_27)
+    let link_19_articulated_inertia_45 = (-link_19_articulated_inertia_24)
         .mul_add(
-            link_19_articulated_inertia_34,
-            (-link_19_articulated_inertia_14)
+            link_19_articulated_inertia_30,
+            (-link_19_articulated_inertia_13)
                 .mul_add(
-                    link_19_articulated_inertia_21,
+                    link_19_articulated_inertia_19,
                     (-link_20_seen_by_parent_34)
                         .mul_add(
-                            link_19_articulated_inertia_7,
+                            link_19_articulated_inertia_6,
                             link_20_seen_by_parent_29,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_50 = ((-link_19_articulated_inertia_8)
+    let link_19_articulated_inertia_46 = ((-link_19_articulated_inertia_7)
         .mul_add(
-            link_19_articulated_inertia_18,
+            link_19_articulated_inertia_16,
             (-link_19_articulated_inertia)
-                .mul_add(link_19_articulated_inertia_4, link_19_carried_6 - tau[56]),
-        )) * link_19_inverse_inertia_3;
-    let link_19_articulated_inertia_51 = (-link_19_articulated_inertia_24)
-        .mul_add(
-            link_19_articulated_inertia_50,
-            (-link_19_articulated_inertia_11)
                 .mul_add(
-                    link_19_articulated_inertia_28,
-                    (-link_19_carried_2)
-                        .mul_add(link_19_articulated_inertia_15, link_19_carried_6),
+                    link_19_articulated_inertia_3,
+                    rows_of_15[17][5] + link_20_seen_by_parent_41 - tau[56],
                 ),
-        );
-    let link_19_articulated_inertia_52 = link_19_articulated_inertia_25
+        )) * link_19_inverse_inertia_3;
+    let link_19_articulated_inertia_47 = link_19_articulated_inertia_22
         .mul_add(
-            link_19_articulated_inertia_50,
-            link_19_articulated_inertia_12
+            link_19_articulated_inertia_46,
+            link_19_articulated_inertia_11
                 .mul_add(
-                    link_19_articulated_inertia_28,
+                    link_19_articulated_inertia_25,
                     link_20_seen_by_parent_30
                         .mul_add(
-                            link_19_articulated_inertia_15,
+                            link_19_articulated_inertia_14,
                             rows_of_15[17][6] - link_20_seen_by_parent_46,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_53 = (-link_19_articulated_inertia_26)
+    let link_19_articulated_inertia_48 = (-link_19_articulated_inertia_23)
         .mul_add(
-            link_19_articulated_inertia_50,
-            (-link_19_articulated_inertia_13)
+            link_19_articulated_inertia_46,
+            (-link_19_articulated_inertia_12)
                 .mul_add(
-                    link_19_articulated_inertia_28,
+                    link_19_articulated_inertia_25,
                     (-link_19_carried_3)
                         .mul_add(
-                            link_19_articulated_inertia_15,
+                            link_19_articulated_inertia_14,
                             rows_of_15[17][7] + link_20_seen_by_parent_47,
                         ),
                 ),
         );
-    let link_19_articulated_inertia_54 = (-link_19_articulated_inertia_27)
+    let link_19_articulated_inertia_49 = (-link_19_articulated_inertia_24)
         .mul_add(
-            link_19_articulated_inertia_50,
-            (-link_19_articulated_inertia_14)
+            link_19_articulated_inertia_46,
+            (-link_19_articulated_inertia_13)
                 .mul_add(
-                    link_19_articulated_inertia_28,
+                    link_19_articulated_inertia_25,
                     (-link_20_seen_by_parent_34)
                         .mul_add(
-                            link_19_articulated_inertia_15,
+                            link_19_articulated_inertia_14,
                             rows_of_15[17][8] + link_20_seen_by_parent_48,
                         ),
                 ),
         );
-    // link_19: seen by parent (122 additions, 173 multiplications)
+    // link_19: seen by parent (122 additions, 170 multiplications)
     let link_19_seen_by_parent = rows_of_15[17][14]
         .mul_add(
-            link_19_articulated_inertia_42,
+            link_19_articulated_inertia_38,
             rows_of_15[17][13]
                 .mul_add(
-                    link_19_articulated_inertia_40,
+                    link_19_articulated_inertia_36,
                     rows_of_15[17][12]
                         .mul_add(
-                            link_19_articulated_inertia_38,
+                            link_19_articulated_inertia_34,
                             rows_of_15[17][10]
                                 .mul_add(
-                                    link_19_articulated_inertia_36,
-                                    rows_of_15[17][9] * link_19_articulated_inertia_35,
+                                    link_19_articulated_inertia_32,
+                                    rows_of_15[17][9] * link_19_articulated_inertia_31,
                                 ),
                         ),
                 ),
         );
     let link_19_seen_by_parent_2 = rows_of_15[17][14]
         .mul_add(
-            link_19_articulated_inertia_43,
+            link_19_articulated_inertia_39,
             rows_of_15[17][13]
                 .mul_add(
-                    link_19_articulated_inertia_41,
+                    link_19_articulated_inertia_37,
                     rows_of_15[17][12]
                         .mul_add(
-                            link_19_articulated_inertia_39,
+                            link_19_articulated_inertia_35,
+                            rows_of_15[17][10]
+                                .mul_add(
+                                    link_19_articulated_inertia_33,
+                                    rows_of_15[17][9] * link_19_articulated_inertia_32,
+                                ),
+                        ),
+                ),
+        );
+    let link_19_seen_by_parent_3 = (-rows_of_15[17][14])
+        .mul_add(
+            link_19_articulated_inertia_42,
+            (-rows_of_15[17][13])
+                .mul_add(
+                    link_19_articulated_inertia_41,
+                    (-rows_of_15[17][12])
+                        .mul_add(
+                            link_19_articulated_inertia_40,
+                            rows_of_15[17][10]
+                                .mul_add(
+                                    link_19_articulated_inertia_35,
+                                    rows_of_15[17][9] * link_19_articulated_inertia_34,
+                                ),
+                        ),
+                ),
+        );
+    let link_19_seen_by_parent_4 = (-rows_of_15[17][14])
+        .mul_add(
+            link_19_articulated_inertia_44,
+            (-rows_of_15[17][13])
+                .mul_add(
+                    link_19_articulated_inertia_43,
+                    (-rows_of_15[17][12])
+                        .mul_add(
+                            link_19_articulated_inertia_41,
                             rows_of_15[17][10]
                                 .mul_add(
                                     link_19_articulated_inertia_37,
@@ -947,15 +946,15 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_19_seen_by_parent_3 = (-rows_of_15[17][14])
+    let link_19_seen_by_parent_5 = (-rows_of_15[17][14])
         .mul_add(
-            link_19_articulated_inertia_46,
+            link_19_articulated_inertia_45,
             (-rows_of_15[17][13])
                 .mul_add(
-                    link_19_articulated_inertia_45,
+                    link_19_articulated_inertia_44,
                     (-rows_of_15[17][12])
                         .mul_add(
-                            link_19_articulated_inertia_44,
+                            link_19_articulated_inertia_42,
                             rows_of_15[17][10]
                                 .mul_add(
                                     link_19_articulated_inertia_39,
@@ -964,150 +963,92 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_19_seen_by_parent_4 = (-rows_of_15[17][14])
-        .mul_add(
-            link_19_articulated_inertia_48,
-            (-rows_of_15[17][13])
-                .mul_add(
-                    link_19_articulated_inertia_47,
-                    (-rows_of_15[17][12])
-                        .mul_add(
-                            link_19_articulated_inertia_45,
-                            rows_of_15[17][10]
-                                .mul_add(
-                                    link_19_articulated_inertia_41,
-                                    rows_of_15[17][9] * link_19_articulated_inertia_40,
-                                ),
-                        ),
-                ),
-        );
-    let link_19_seen_by_parent_5 = (-rows_of_15[17][14])
-        .mul_add(
-            link_19_articulated_inertia_49,
-            (-rows_of_15[17][13])
-                .mul_add(
-                    link_19_articulated_inertia_48,
-                    (-rows_of_15[17][12])
-                        .mul_add(
-                            link_19_articulated_inertia_46,
-                            rows_of_15[17][10]
-                                .mul_add(
-                                    link_19_articulated_inertia_43,
-                                    rows_of_15[17][9] * link_19_articulated_inertia_42,
-                                ),
-                        ),
-                ),
-        );
-    let link_19_seen_by_parent_6 = (-link_19_articulated_inertia_22)
-        .mul_add(
-            link_19_articulated_inertia_50,
-            (-link_19_articulated_inertia_9)
-                .mul_add(
-                    link_19_articulated_inertia_28,
-                    (-link_19_carried)
-                        .mul_add(
-                            link_19_articulated_inertia_15,
-                            link_19_carried_4 - link_19_seen_by_parent,
-                        ),
-                ),
-        );
-    let link_19_seen_by_parent_7 = (-link_19_articulated_inertia_23)
-        .mul_add(
-            link_19_articulated_inertia_50,
-            (-link_19_articulated_inertia_10)
-                .mul_add(
-                    link_19_articulated_inertia_28,
-                    (-link_20_seen_by_parent_37)
-                        .mul_add(
-                            link_19_articulated_inertia_15,
-                            link_19_carried_5 - link_19_seen_by_parent_2,
-                        ),
-                ),
-        );
-    let link_19_seen_by_parent_8 = link_19_articulated_inertia_52
+    let link_19_seen_by_parent_6 = tau[54] - link_19_seen_by_parent;
+    let link_19_seen_by_parent_7 = tau[55] - link_19_seen_by_parent_2;
+    let link_19_seen_by_parent_8 = link_19_articulated_inertia_47
         + link_19_seen_by_parent_3;
-    let link_19_seen_by_parent_9 = link_19_articulated_inertia_53
+    let link_19_seen_by_parent_9 = link_19_articulated_inertia_48
         - link_19_seen_by_parent_4;
-    let link_19_seen_by_parent_10 = link_19_articulated_inertia_54
+    let link_19_seen_by_parent_10 = link_19_articulated_inertia_49
         - link_19_seen_by_parent_5;
     let link_19_seen_by_parent_11 = q[163]
         .mul_add(
-            link_19_articulated_inertia_36,
-            q[162] * link_19_articulated_inertia_35,
+            link_19_articulated_inertia_32,
+            q[162] * link_19_articulated_inertia_31,
         );
     let link_19_seen_by_parent_12 = q[166]
         .mul_add(
-            link_19_articulated_inertia_36,
-            q[165] * link_19_articulated_inertia_35,
+            link_19_articulated_inertia_32,
+            q[165] * link_19_articulated_inertia_31,
         );
     let link_19_seen_by_parent_13 = q[163]
         .mul_add(
-            link_19_articulated_inertia_37,
-            q[162] * link_19_articulated_inertia_36,
+            link_19_articulated_inertia_33,
+            q[162] * link_19_articulated_inertia_32,
         );
     let link_19_seen_by_parent_14 = q[166]
         .mul_add(
-            link_19_articulated_inertia_37,
-            q[165] * link_19_articulated_inertia_36,
+            link_19_articulated_inertia_33,
+            q[165] * link_19_articulated_inertia_32,
         );
     let link_19_seen_by_parent_15 = q[169]
         .mul_add(
             q[169]
                 .mul_add(
-                    link_19_articulated_inertia_37,
-                    q[168] * link_19_articulated_inertia_36,
+                    link_19_articulated_inertia_33,
+                    q[168] * link_19_articulated_inertia_32,
                 ),
             q[168]
                 * (q[169]
                     .mul_add(
-                        link_19_articulated_inertia_36,
-                        q[168] * link_19_articulated_inertia_35,
+                        link_19_articulated_inertia_32,
+                        q[168] * link_19_articulated_inertia_31,
                     )),
         );
     let link_19_seen_by_parent_16 = q[163]
         .mul_add(
+            link_19_articulated_inertia_35,
+            q[162] * link_19_articulated_inertia_34,
+        );
+    let link_19_seen_by_parent_17 = q[166]
+        .mul_add(
+            link_19_articulated_inertia_35,
+            q[165] * link_19_articulated_inertia_34,
+        );
+    let link_19_seen_by_parent_18 = q[169]
+        .mul_add(
+            link_19_articulated_inertia_35,
+            q[168] * link_19_articulated_inertia_34,
+        );
+    let link_19_seen_by_parent_19 = q[163]
+        .mul_add(
+            link_19_articulated_inertia_37,
+            q[162] * link_19_articulated_inertia_36,
+        );
+    let link_19_seen_by_parent_20 = q[166]
+        .mul_add(
+            link_19_articulated_inertia_37,
+            q[165] * link_19_articulated_inertia_36,
+        );
+    let link_19_seen_by_parent_21 = q[169]
+        .mul_add(
+            link_19_articulated_inertia_37,
+            q[168] * link_19_articulated_inertia_36,
+        );
+    let link_19_seen_by_parent_22 = q[163]
+        .mul_add(
             link_19_articulated_inertia_39,
             q[162] * link_19_articulated_inertia_38,
         );
-    let link_19_seen_by_parent_17 = q[166]
+    let link_19_seen_by_parent_23 = q[166]
         .mul_add(
             link_19_articulated_inertia_39,
             q[165] * link_19_articulated_inertia_38,
         );
-    let link_19_seen_by_parent_18 = q[169]
+    let link_19_seen_by_parent_24 = q[169]
         .mul_add(
             link_19_articulated_inertia_39,
             q[168] * link_19_articulated_inertia_38,
-        );
-    let link_19_seen_by_parent_19 = q[163]
-        .mul_add(
-            link_19_articulated_inertia_41,
-            q[162] * link_19_articulated_inertia_40,
-        );
-    let link_19_seen_by_parent_20 = q[166]
-        .mul_add(
-            link_19_articulated_inertia_41,
-            q[165] * link_19_articulated_inertia_40,
-        );
-    let link_19_seen_by_parent_21 = q[169]
-        .mul_add(
-            link_19_articulated_inertia_41,
-            q[168] * link_19_articulated_inertia_40,
-        );
-    let link_19_seen_by_parent_22 = q[163]
-        .mul_add(
-            link_19_articulated_inertia_43,
-            q[162] * link_19_articulated_inertia_42,
-        );
-    let link_19_seen_by_parent_23 = q[166]
-        .mul_add(
-            link_19_articulated_inertia_43,
-            q[165] * link_19_articulated_inertia_42,
-        );
-    let link_19_seen_by_parent_24 = q[169]
-        .mul_add(
-            link_19_articulated_inertia_43,
-            q[168] * link_19_articulated_inertia_42,
         );
     let link_19_seen_by_parent_25 = q[164]
         .mul_add(
@@ -1136,56 +1077,56 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         );
     let link_19_seen_by_parent_30 = q[164]
         .mul_add(
-            link_19_articulated_inertia_46,
+            link_19_articulated_inertia_42,
             q[163]
                 .mul_add(
-                    link_19_articulated_inertia_45,
-                    q[162] * link_19_articulated_inertia_44,
+                    link_19_articulated_inertia_41,
+                    q[162] * link_19_articulated_inertia_40,
                 ),
         );
     let link_19_seen_by_parent_31 = q[167]
         .mul_add(
-            link_19_articulated_inertia_46,
+            link_19_articulated_inertia_42,
             q[166]
                 .mul_add(
-                    link_19_articulated_inertia_45,
-                    q[165] * link_19_articulated_inertia_44,
+                    link_19_articulated_inertia_41,
+                    q[165] * link_19_articulated_inertia_40,
                 ),
         );
     let link_19_seen_by_parent_32 = q[164]
         .mul_add(
-            link_19_articulated_inertia_48,
+            link_19_articulated_inertia_44,
             q[163]
                 .mul_add(
-                    link_19_articulated_inertia_47,
-                    q[162] * link_19_articulated_inertia_45,
+                    link_19_articulated_inertia_43,
+                    q[162] * link_19_articulated_inertia_41,
                 ),
         );
     let link_19_seen_by_parent_33 = q[167]
         .mul_add(
-            link_19_articulated_inertia_48,
+            link_19_articulated_inertia_44,
             q[166]
                 .mul_add(
-                    link_19_articulated_inertia_47,
-                    q[165] * link_19_articulated_inertia_45,
+                    link_19_articulated_inertia_43,
+                    q[165] * link_19_articulated_inertia_41,
                 ),
         );
     let link_19_seen_by_parent_34 = q[164]
         .mul_add(
-            link_19_articulated_inertia_49,
+            link_19_articulated_inertia_45,
             q[163]
                 .mul_add(
-                    link_19_articulated_inertia_48,
-                    q[162] * link_19_articulated_inertia_46,
+                    link_19_articulated_inertia_44,
+                    q[162] * link_19_articulated_inertia_42,
                 ),
         );
     let link_19_seen_by_parent_35 = q[167]
         .mul_add(
-            link_19_articulated_inertia_49,
+            link_19_articulated_inertia_45,
             q[166]
                 .mul_add(
-                    link_19_articulated_inertia_48,
-                    q[165] * link_19_articulated_inertia_46,
+                    link_19_articulated_inertia_44,
+                    q[165] * link_19_articulated_inertia_42,
                 ),
         );
     let link_19_seen_by_parent_36 = q[164]
@@ -1217,21 +1158,21 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         .mul_add(
             q[170]
                 .mul_add(
-                    link_19_articulated_inertia_48,
+                    link_19_articulated_inertia_44,
                     q[169]
                         .mul_add(
-                            link_19_articulated_inertia_47,
-                            q[168] * link_19_articulated_inertia_45,
+                            link_19_articulated_inertia_43,
+                            q[168] * link_19_articulated_inertia_41,
                         ),
                 ),
             q[168]
                 * (q[170]
                     .mul_add(
-                        link_19_articulated_inertia_46,
+                        link_19_articulated_inertia_42,
                         q[169]
                             .mul_add(
-                                link_19_articulated_inertia_45,
-                                q[168] * link_19_articulated_inertia_44,
+                                link_19_articulated_inertia_41,
+                                q[168] * link_19_articulated_inertia_40,
                             ),
                     )),
         );
@@ -1239,11 +1180,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         .mul_add(
             q[170]
                 .mul_add(
-                    link_19_articulated_inertia_49,
+                    link_19_articulated_inertia_45,
                     q[169]
                         .mul_add(
-                            link_19_articulated_inertia_48,
-                            q[168] * link_19_articulated_inertia_46,
+                            link_19_articulated_inertia_44,
+                            q[168] * link_19_articulated_inertia_42,
                         ),
                 ),
             link_19_seen_by_parent_41,
@@ -1291,48 +1232,26 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_19_seen_by_parent_48 = (-link_19_seen_by_parent_28)
-        .mul_add(
-            n(-0.2),
-            link_19_seen_by_parent_44
-                .mul_add(
-                    n(0.2),
-                    q[163]
-                        .mul_add(
-                            link_19_seen_by_parent_13,
-                            q[162] * link_19_seen_by_parent_11,
-                        ),
-                ),
-        );
-    let link_19_seen_by_parent_49 = (-link_19_seen_by_parent_25)
+    let link_19_seen_by_parent_48 = (-(link_19_seen_by_parent_28
+        + link_19_seen_by_parent_44))
         .mul_add(
             n(0.2),
-            link_19_seen_by_parent_45
+            (-q[163])
                 .mul_add(
-                    n(0.2),
-                    q[166]
-                        .mul_add(
-                            link_19_seen_by_parent_13,
-                            q[165] * link_19_seen_by_parent_11,
-                        ),
+                    link_19_seen_by_parent_13,
+                    -(q[162] * link_19_seen_by_parent_11),
                 ),
         );
-    let link_19_seen_by_parent_50 = (-link_19_seen_by_parent_26)
+    let link_19_seen_by_parent_49 = (-q[166])
         .mul_add(
-            n(0.2),
-            link_19_seen_by_parent_43
+            link_19_seen_by_parent_13,
+            (-q[165])
                 .mul_add(
-                    n(-0.2),
-                    q[166]
-                        .mul_add(
-                            link_19_seen_by_parent_14,
-                            q[165] * link_19_seen_by_parent_12,
-                        ),
+                    link_19_seen_by_parent_11,
+                    (link_19_seen_by_parent_25 - link_19_seen_by_parent_45) * n(0.2),
                 ),
         );
-    let link_19_seen_by_parent_51 = -link_19_seen_by_parent_48;
-    let link_19_seen_by_parent_52 = -link_19_seen_by_parent_49;
-    let link_19_seen_by_parent_53 = (-link_19_seen_by_parent_29)
+    let link_19_seen_by_parent_50 = (-link_19_seen_by_parent_29)
         .mul_add(
             n(0.2),
             (-q[169])
@@ -1341,8 +1260,17 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                     -(q[168] * link_19_seen_by_parent_11),
                 ),
         );
-    let link_19_seen_by_parent_54 = -link_19_seen_by_parent_50;
-    let link_19_seen_by_parent_55 = (-link_19_seen_by_parent_27)
+    let link_19_seen_by_parent_51 = (-(link_19_seen_by_parent_26
+        + link_19_seen_by_parent_43))
+        .mul_add(
+            n(-0.2),
+            (-q[166])
+                .mul_add(
+                    link_19_seen_by_parent_14,
+                    -(q[165] * link_19_seen_by_parent_12),
+                ),
+        );
+    let link_19_seen_by_parent_52 = (-link_19_seen_by_parent_27)
         .mul_add(
             n(-0.2),
             (-q[169])
@@ -1351,17 +1279,17 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                     -(q[168] * link_19_seen_by_parent_12),
                 ),
         );
-    let link_19_seen_by_parent_56 = -link_19_seen_by_parent_15;
-    let link_19_seen_by_parent_57 = link_19_seen_by_parent_37
+    let link_19_seen_by_parent_53 = -link_19_seen_by_parent_15;
+    let link_19_seen_by_parent_54 = link_19_seen_by_parent_37
         .mul_add(n(0.2), -link_19_seen_by_parent_25);
-    let link_19_seen_by_parent_58 = -link_19_seen_by_parent_43;
-    let link_19_seen_by_parent_59 = -link_19_seen_by_parent_27;
-    let link_19_seen_by_parent_60 = -link_19_seen_by_parent_44;
-    let link_19_seen_by_parent_61 = -link_19_seen_by_parent_45;
-    let link_19_seen_by_parent_62 = -link_19_seen_by_parent_29;
-    let link_19_seen_by_parent_63 = -link_19_seen_by_parent_46;
-    let link_19_seen_by_parent_64 = -link_19_seen_by_parent_47;
-    let link_19_seen_by_parent_65 = (-q[170])
+    let link_19_seen_by_parent_55 = -link_19_seen_by_parent_43;
+    let link_19_seen_by_parent_56 = -link_19_seen_by_parent_27;
+    let link_19_seen_by_parent_57 = -link_19_seen_by_parent_44;
+    let link_19_seen_by_parent_58 = -link_19_seen_by_parent_45;
+    let link_19_seen_by_parent_59 = -link_19_seen_by_parent_29;
+    let link_19_seen_by_parent_60 = -link_19_seen_by_parent_46;
+    let link_19_seen_by_parent_61 = -link_19_seen_by_parent_47;
+    let link_19_seen_by_parent_62 = (-q[170])
         .mul_add(
             link_19_seen_by_parent_24,
             (-q[169])
@@ -1370,29 +1298,29 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                     -(q[168] * link_19_seen_by_parent_18),
                 ),
         );
-    let link_19_seen_by_parent_66 = q[170]
+    let link_19_seen_by_parent_63 = q[170]
         .mul_add(
-            link_19_articulated_inertia_51,
+            tau[56],
             q[169].mul_add(link_19_seen_by_parent_7, q[168] * link_19_seen_by_parent_6),
         );
-    let link_19_seen_by_parent_67 = (-q[164])
+    let link_19_seen_by_parent_64 = (-q[164])
         .mul_add(
             link_19_seen_by_parent_10,
             (-q[163])
                 .mul_add(link_19_seen_by_parent_9, q[162] * link_19_seen_by_parent_8),
         );
-    let link_19_seen_by_parent_68 = (-q[167])
+    let link_19_seen_by_parent_65 = (-q[167])
         .mul_add(
             link_19_seen_by_parent_10,
             (-q[166])
                 .mul_add(link_19_seen_by_parent_9, q[165] * link_19_seen_by_parent_8),
         );
-    let link_19_seen_by_parent_69 = link_19_seen_by_parent_68
+    let link_19_seen_by_parent_66 = link_19_seen_by_parent_65
         .mul_add(
             n(-0.2),
             q[164]
                 .mul_add(
-                    link_19_articulated_inertia_51,
+                    tau[56],
                     q[163]
                         .mul_add(
                             link_19_seen_by_parent_7,
@@ -1400,12 +1328,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_19_seen_by_parent_70 = (-link_19_seen_by_parent_67)
+    let link_19_seen_by_parent_67 = (-link_19_seen_by_parent_64)
         .mul_add(
             n(-0.2),
             q[167]
                 .mul_add(
-                    link_19_articulated_inertia_51,
+                    tau[56],
                     q[166]
                         .mul_add(
                             link_19_seen_by_parent_7,
@@ -1413,41 +1341,41 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_19_seen_by_parent_71 = -link_19_seen_by_parent_67;
-    let link_19_seen_by_parent_72 = -link_19_seen_by_parent_68;
-    let link_19_seen_by_parent_73 = (-q[168])
+    let link_19_seen_by_parent_68 = -link_19_seen_by_parent_64;
+    let link_19_seen_by_parent_69 = -link_19_seen_by_parent_65;
+    let link_19_seen_by_parent_70 = (-q[168])
         .mul_add(
             link_19_seen_by_parent_8,
             q[170].mul_add(link_19_seen_by_parent_10, q[169] * link_19_seen_by_parent_9),
         );
-    rows_of_48[0] = [
+    rows_of_45[0] = [
         link_19_articulated_inertia_2,
         link_19_articulated_inertia_3,
         link_19_articulated_inertia_4,
         link_19_articulated_inertia_5,
         link_19_articulated_inertia_6,
-        link_19_articulated_inertia_7,
+        link_19_articulated_inertia_14,
         link_19_articulated_inertia_15,
         link_19_articulated_inertia_16,
         link_19_articulated_inertia_17,
         link_19_articulated_inertia_18,
         link_19_articulated_inertia_19,
-        link_19_articulated_inertia_20,
-        link_19_articulated_inertia_21,
+        link_19_articulated_inertia_25,
+        link_19_articulated_inertia_26,
+        link_19_articulated_inertia_27,
         link_19_articulated_inertia_28,
         link_19_articulated_inertia_29,
         link_19_articulated_inertia_30,
-        link_19_articulated_inertia_31,
-        link_19_articulated_inertia_32,
-        link_19_articulated_inertia_33,
-        link_19_articulated_inertia_34,
-        link_19_articulated_inertia_50,
+        link_19_articulated_inertia_46,
         link_19_seen_by_parent_36,
         link_19_seen_by_parent_37,
         link_19_seen_by_parent_38,
         link_19_seen_by_parent_39,
         link_19_seen_by_parent_40,
         link_19_seen_by_parent_42,
+        link_19_seen_by_parent_48,
+        link_19_seen_by_parent_49,
+        link_19_seen_by_parent_50,
         link_19_seen_by_parent_51,
         link_19_seen_by_parent_52,
         link_19_seen_by_parent_53,
@@ -1461,14 +1389,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         link_19_seen_by_parent_61,
         link_19_seen_by_parent_62,
         link_19_seen_by_parent_63,
-        link_19_seen_by_parent_64,
-        link_19_seen_by_parent_65,
         link_19_seen_by_parent_66,
+        link_19_seen_by_parent_67,
+        link_19_seen_by_parent_68,
         link_19_seen_by_parent_69,
         link_19_seen_by_parent_70,
-        link_19_seen_by_parent_71,
-        link_19_seen_by_parent_72,
-        link_19_seen_by_parent_73,
     ];
     // each of link_18, link_17, … link_9 (10 bodies):
     const LIKE_4_NUMBERS: [[f64; 4]; 10] = [
@@ -1478,21 +1403,16 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             -0.20000000000000004,
             0.20000000000000004,
         ],
-        [0.05350000000000002, 0.053440000000000015, -0.28, 0.28],
+        [0.05350000000000001, 0.053440000000000015, -0.28, 0.28],
         [
             0.06950000000000002,
-            0.06944000000000002,
+            0.06944000000000003,
             -0.3600000000000001,
             0.3600000000000001,
         ],
-        [
-            0.08550000000000002,
-            0.08544000000000002,
-            -0.44000000000000006,
-            0.44000000000000006,
-        ],
-        [0.10150000000000002, 0.10144000000000002, -0.52, 0.52],
-        [0.11750000000000002, 0.11744000000000002, -0.6, 0.6],
+        [0.0855, 0.08544000000000002, -0.44000000000000006, 0.44000000000000006],
+        [0.10150000000000002, 0.10144000000000003, -0.52, 0.52],
+        [0.11750000000000001, 0.11744000000000002, -0.6, 0.6],
         [0.1335, 0.13344, -0.68, 0.68],
         [0.14950000000000002, 0.14944000000000002, -0.76, 0.76],
         [0.1655, 0.16544, -0.84, 0.84],
@@ -1505,263 +1425,276 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     ];
     for i in 0..10 {
         let numbers = &LIKE_4_NUMBERS[i];
-        let child = &rows_of_48[i];
+        let child = &rows_of_45[i];
         let own_3 = &rows_of_15[16 - 1 * i];
         // each: carried (14 additions)
-        let each_carried = child[27] + n(numbers[0]);
-        let each_carried_2 = child[29] + n(0.00041000000000000005);
-        let each_carried_3 = child[36] + n(numbers[3]);
-        let each_carried_4 = own_3[3] + child[43];
-        let each_carried_5 = own_3[4] + child[44];
-        let each_carried_6 = own_3[5] + child[42];
-        // each: articulated inertia (64 additions, 91 multiplications, 3 divisions)
-        let each_articulated_inertia = each_carried_4 - tau[51 - 3 * i];
+        let each_carried = child[24] + n(numbers[0]);
+        let each_carried_2 = child[26] + n(0.00041000000000000005);
+        let each_carried_3 = child[33] + n(numbers[3]);
+        // each: articulated inertia (55 additions, 79 multiplications, 3 divisions)
+        let each_articulated_inertia = own_3[3] + child[40] - tau[51 - 3 * i];
         let each_inverse_inertia = n(1.0) / each_carried;
-        let each_articulated_inertia_2 = each_carried * each_inverse_inertia;
-        let each_articulated_inertia_3 = child[28] * each_inverse_inertia;
-        let each_articulated_inertia_4 = each_carried_2 * each_inverse_inertia;
-        let each_articulated_inertia_5 = child[33] * each_inverse_inertia;
-        let each_articulated_inertia_6 = each_carried_3 * each_inverse_inertia;
-        let each_articulated_inertia_7 = child[39] * each_inverse_inertia;
-        let each_articulated_inertia_8 = (-each_articulated_inertia)
-            .mul_add(each_articulated_inertia_3, each_carried_5 - tau[52 - 3 * i]);
-        let each_articulated_inertia_9 = (-each_carried)
-            .mul_add(each_articulated_inertia_3, child[28]);
-        let each_articulated_inertia_10 = (-child[28])
-            .mul_add(each_articulated_inertia_3, child[30] + n(numbers[1]));
-        let each_articulated_inertia_11 = (-each_carried_2)
-            .mul_add(each_articulated_inertia_3, child[31]);
-        let each_articulated_inertia_12 = (-child[33])
-            .mul_add(each_articulated_inertia_3, child[34] + n(numbers[2]));
-        let each_articulated_inertia_13 = (-each_carried_3)
-            .mul_add(each_articulated_inertia_3, child[37]);
-        let each_articulated_inertia_14 = (-child[39])
-            .mul_add(each_articulated_inertia_3, child[40] + n(-0.004));
-        let each_articulated_inertia_15 = each_articulated_inertia
+        let each_articulated_inertia_2 = child[25] * each_inverse_inertia;
+        let each_articulated_inertia_3 = each_carried_2 * each_inverse_inertia;
+        let each_articulated_inertia_4 = child[30] * each_inverse_inertia;
+        let each_articulated_inertia_5 = each_carried_3 * each_inverse_inertia;
+        let each_articulated_inertia_6 = child[36] * each_inverse_inertia;
+        let each_articulated_inertia_7 = (-each_articulated_inertia)
+            .mul_add(each_articulated_inertia_2, own_3[4] + child[41] - tau[52 - 3 * i]);
+        let each_articulated_inertia_8 = (-each_carried)
+            .mul_add(each_articulated_inertia_2, child[25]);
+        let each_articulated_inertia_9 = (-child[25])
+            .mul_add(each_articulated_inertia_2, child[27] + n(numbers[1]));
+        let each_articulated_inertia_10 = (-each_carried_2)
+            .mul_add(each_articulated_inertia_2, child[28]);
+        let each_articulated_inertia_11 = (-child[30])
+            .mul_add(each_articulated_inertia_2, child[31] + n(numbers[2]));
+        let each_articulated_inertia_12 = (-each_carried_3)
+            .mul_add(each_articulated_inertia_2, child[34]);
+        let each_articulated_inertia_13 = (-child[36])
+            .mul_add(each_articulated_inertia_2, child[37] + n(-0.004));
+        let each_articulated_inertia_14 = each_articulated_inertia
             * each_inverse_inertia;
-        let each_inverse_inertia_2 = n(1.0) / each_articulated_inertia_10;
-        let each_articulated_inertia_16 = each_articulated_inertia_9
+        let each_inverse_inertia_2 = n(1.0) / each_articulated_inertia_9;
+        let each_articulated_inertia_15 = each_articulated_inertia_8
             * each_inverse_inertia_2;
-        let each_articulated_inertia_17 = each_articulated_inertia_10
+        let each_articulated_inertia_16 = each_articulated_inertia_10
             * each_inverse_inertia_2;
-        let each_articulated_inertia_18 = each_articulated_inertia_11
+        let each_articulated_inertia_17 = each_articulated_inertia_11
             * each_inverse_inertia_2;
-        let each_articulated_inertia_19 = each_articulated_inertia_12
+        let each_articulated_inertia_18 = each_articulated_inertia_12
             * each_inverse_inertia_2;
-        let each_articulated_inertia_20 = each_articulated_inertia_13
+        let each_articulated_inertia_19 = each_articulated_inertia_13
             * each_inverse_inertia_2;
-        let each_articulated_inertia_21 = each_articulated_inertia_14
-            * each_inverse_inertia_2;
-        let each_articulated_inertia_22 = (-each_articulated_inertia_9)
+        let each_articulated_inertia_20 = (-each_articulated_inertia_8)
             .mul_add(
-                each_articulated_inertia_18,
-                (-each_carried).mul_add(each_articulated_inertia_4, each_carried_2),
+                each_articulated_inertia_16,
+                (-each_carried).mul_add(each_articulated_inertia_3, each_carried_2),
             );
-        let each_articulated_inertia_23 = (-each_articulated_inertia_10)
+        let each_articulated_inertia_21 = (-each_articulated_inertia_9)
             .mul_add(
-                each_articulated_inertia_18,
-                (-child[28]).mul_add(each_articulated_inertia_4, child[31]),
+                each_articulated_inertia_16,
+                (-child[25]).mul_add(each_articulated_inertia_3, child[28]),
             );
-        let each_articulated_inertia_24 = (-each_articulated_inertia_11)
+        let each_articulated_inertia_22 = (-each_articulated_inertia_11)
             .mul_add(
-                each_articulated_inertia_18,
-                (-each_carried_2)
-                    .mul_add(
-                        each_articulated_inertia_4,
-                        child[32] + n(0.00023999999999999976),
-                    ),
+                each_articulated_inertia_16,
+                (-child[30]).mul_add(each_articulated_inertia_3, child[32]),
             );
-        let each_articulated_inertia_25 = (-each_articulated_inertia_12)
+        let each_articulated_inertia_23 = (-each_articulated_inertia_12)
             .mul_add(
-                each_articulated_inertia_18,
-                (-child[33]).mul_add(each_articulated_inertia_4, child[35]),
-            );
-        let each_articulated_inertia_26 = (-each_articulated_inertia_13)
-            .mul_add(
-                each_articulated_inertia_18,
+                each_articulated_inertia_16,
                 (-each_carried_3)
-                    .mul_add(each_articulated_inertia_4, child[38] + n(0.004)),
+                    .mul_add(each_articulated_inertia_3, child[35] + n(0.004)),
             );
-        let each_articulated_inertia_27 = (-each_articulated_inertia_14)
+        let each_articulated_inertia_24 = (-each_articulated_inertia_13)
             .mul_add(
-                each_articulated_inertia_18,
-                (-child[39]).mul_add(each_articulated_inertia_4, child[41]),
+                each_articulated_inertia_16,
+                (-child[36]).mul_add(each_articulated_inertia_3, child[38]),
             );
-        let each_articulated_inertia_28 = each_articulated_inertia_8
+        let each_articulated_inertia_25 = each_articulated_inertia_7
             * each_inverse_inertia_2;
-        let each_inverse_inertia_3 = n(1.0) / each_articulated_inertia_24;
-        let each_articulated_inertia_29 = each_articulated_inertia_22
+        let each_inverse_inertia_3 = n(1.0)
+            / ((-each_articulated_inertia_10)
+                .mul_add(
+                    each_articulated_inertia_16,
+                    (-each_carried_2)
+                        .mul_add(each_articulated_inertia_3, child[29] + n(0.00024)),
+                ));
+        let each_articulated_inertia_26 = each_articulated_inertia_20
             * each_inverse_inertia_3;
-        let each_articulated_inertia_30 = each_articulated_inertia_23
+        let each_articulated_inertia_27 = each_articulated_inertia_21
             * each_inverse_inertia_3;
-        let each_articulated_inertia_31 = each_articulated_inertia_24
+        let each_articulated_inertia_28 = each_articulated_inertia_22
             * each_inverse_inertia_3;
-        let each_articulated_inertia_32 = each_articulated_inertia_25
+        let each_articulated_inertia_29 = each_articulated_inertia_23
             * each_inverse_inertia_3;
-        let each_articulated_inertia_33 = each_articulated_inertia_26
+        let each_articulated_inertia_30 = each_articulated_inertia_24
             * each_inverse_inertia_3;
-        let each_articulated_inertia_34 = each_articulated_inertia_27
-            * each_inverse_inertia_3;
-        let each_articulated_inertia_35 = each_articulated_inertia_22
+        let each_articulated_inertia_31 = each_articulated_inertia_20
+            .mul_add(
+                each_articulated_inertia_26,
+                each_articulated_inertia_8 * each_articulated_inertia_15,
+            );
+        let each_articulated_inertia_32 = each_articulated_inertia_20
+            * each_articulated_inertia_27;
+        let each_articulated_inertia_33 = each_articulated_inertia_21
+            * each_articulated_inertia_27;
+        let each_articulated_inertia_34 = each_articulated_inertia_20
+            .mul_add(
+                each_articulated_inertia_28,
+                each_articulated_inertia_8 * each_articulated_inertia_17,
+            );
+        let each_articulated_inertia_35 = each_articulated_inertia_21
+            * each_articulated_inertia_28;
+        let each_articulated_inertia_36 = each_articulated_inertia_20
             .mul_add(
                 each_articulated_inertia_29,
-                each_articulated_inertia_9 * each_articulated_inertia_16,
+                each_articulated_inertia_8 * each_articulated_inertia_18,
             );
-        let each_articulated_inertia_36 = each_articulated_inertia_22
+        let each_articulated_inertia_37 = each_articulated_inertia_21
+            * each_articulated_inertia_29;
+        let each_articulated_inertia_38 = each_articulated_inertia_20
+            .mul_add(
+                each_articulated_inertia_30,
+                each_articulated_inertia_8 * each_articulated_inertia_19,
+            );
+        let each_articulated_inertia_39 = each_articulated_inertia_21
             * each_articulated_inertia_30;
-        let each_articulated_inertia_37 = each_articulated_inertia_23
-            * each_articulated_inertia_30;
-        let each_articulated_inertia_38 = each_articulated_inertia_22
+        let each_articulated_inertia_40 = (-each_articulated_inertia_22)
             .mul_add(
-                each_articulated_inertia_32,
-                each_articulated_inertia_9 * each_articulated_inertia_19,
+                each_articulated_inertia_28,
+                (-each_articulated_inertia_11)
+                    .mul_add(
+                        each_articulated_inertia_17,
+                        (-child[30]).mul_add(each_articulated_inertia_4, child[18]),
+                    ),
             );
-        let each_articulated_inertia_39 = each_articulated_inertia_23
-            * each_articulated_inertia_32;
-        let each_articulated_inertia_40 = each_articulated_inertia_22
+        let each_articulated_inertia_41 = (-each_articulated_inertia_22)
             .mul_add(
-                each_articulated_inertia_33,
-                each_articulated_inertia_9 * each_articulated_inertia_20,
+                each_articulated_inertia_29,
+                (-each_articulated_inertia_11)
+                    .mul_add(
+                        each_articulated_inertia_18,
+                        (-child[30]).mul_add(each_articulated_inertia_5, child[19]),
+                    ),
             );
-        let each_articulated_inertia_41 = each_articulated_inertia_23
-            * each_articulated_inertia_33;
-        let each_articulated_inertia_42 = each_articulated_inertia_22
+        let each_articulated_inertia_42 = (-each_articulated_inertia_22)
             .mul_add(
-                each_articulated_inertia_34,
-                each_articulated_inertia_9 * each_articulated_inertia_21,
+                each_articulated_inertia_30,
+                (-each_articulated_inertia_11)
+                    .mul_add(
+                        each_articulated_inertia_19,
+                        (-child[30]).mul_add(each_articulated_inertia_6, child[20]),
+                    ),
             );
-        let each_articulated_inertia_43 = each_articulated_inertia_23
-            * each_articulated_inertia_34;
-        let each_articulated_inertia_44 = (-each_articulated_inertia_25)
+        let each_articulated_inertia_43 = (-each_articulated_inertia_23)
             .mul_add(
-                each_articulated_inertia_32,
+                each_articulated_inertia_29,
+                (-each_articulated_inertia_12)
+                    .mul_add(
+                        each_articulated_inertia_18,
+                        (-each_carried_3).mul_add(each_articulated_inertia_5, child[21]),
+                    ),
+            );
+        let each_articulated_inertia_44 = (-each_articulated_inertia_23)
+            .mul_add(
+                each_articulated_inertia_30,
                 (-each_articulated_inertia_12)
                     .mul_add(
                         each_articulated_inertia_19,
-                        (-child[33]).mul_add(each_articulated_inertia_5, child[21]),
+                        (-each_carried_3).mul_add(each_articulated_inertia_6, child[22]),
                     ),
             );
-        let each_articulated_inertia_45 = (-each_articulated_inertia_25)
+        let each_articulated_inertia_45 = (-each_articulated_inertia_24)
             .mul_add(
-                each_articulated_inertia_33,
-                (-each_articulated_inertia_12)
-                    .mul_add(
-                        each_articulated_inertia_20,
-                        (-child[33]).mul_add(each_articulated_inertia_6, child[22]),
-                    ),
-            );
-        let each_articulated_inertia_46 = (-each_articulated_inertia_25)
-            .mul_add(
-                each_articulated_inertia_34,
-                (-each_articulated_inertia_12)
-                    .mul_add(
-                        each_articulated_inertia_21,
-                        (-child[33]).mul_add(each_articulated_inertia_7, child[23]),
-                    ),
-            );
-        let each_articulated_inertia_47 = (-each_articulated_inertia_26)
-            .mul_add(
-                each_articulated_inertia_33,
+                each_articulated_inertia_30,
                 (-each_articulated_inertia_13)
                     .mul_add(
-                        each_articulated_inertia_20,
-                        (-each_carried_3).mul_add(each_articulated_inertia_6, child[24]),
+                        each_articulated_inertia_19,
+                        (-child[36]).mul_add(each_articulated_inertia_6, child[23]),
                     ),
             );
-        let each_articulated_inertia_48 = (-each_articulated_inertia_26)
+        let each_articulated_inertia_46 = ((-each_articulated_inertia_7)
             .mul_add(
-                each_articulated_inertia_34,
-                (-each_articulated_inertia_13)
-                    .mul_add(
-                        each_articulated_inertia_21,
-                        (-each_carried_3).mul_add(each_articulated_inertia_7, child[25]),
-                    ),
-            );
-        let each_articulated_inertia_49 = (-each_articulated_inertia_27)
-            .mul_add(
-                each_articulated_inertia_34,
-                (-each_articulated_inertia_14)
-                    .mul_add(
-                        each_articulated_inertia_21,
-                        (-child[39]).mul_add(each_articulated_inertia_7, child[26]),
-                    ),
-            );
-        let each_articulated_inertia_50 = ((-each_articulated_inertia_8)
-            .mul_add(
-                each_articulated_inertia_18,
+                each_articulated_inertia_16,
                 (-each_articulated_inertia)
                     .mul_add(
-                        each_articulated_inertia_4,
-                        each_carried_6 - tau[53 - 3 * i],
+                        each_articulated_inertia_3,
+                        own_3[5] + child[39] - tau[53 - 3 * i],
                     ),
             )) * each_inverse_inertia_3;
-        let each_articulated_inertia_51 = (-each_articulated_inertia_24)
+        let each_articulated_inertia_47 = each_articulated_inertia_22
             .mul_add(
-                each_articulated_inertia_50,
-                (-each_articulated_inertia_11)
+                each_articulated_inertia_46,
+                each_articulated_inertia_11
                     .mul_add(
-                        each_articulated_inertia_28,
-                        (-each_carried_2)
-                            .mul_add(each_articulated_inertia_15, each_carried_6),
+                        each_articulated_inertia_25,
+                        child[30]
+                            .mul_add(each_articulated_inertia_14, own_3[6] - child[42]),
                     ),
             );
-        let each_articulated_inertia_52 = each_articulated_inertia_25
+        let each_articulated_inertia_48 = (-each_articulated_inertia_23)
             .mul_add(
-                each_articulated_inertia_50,
-                each_articulated_inertia_12
+                each_articulated_inertia_46,
+                (-each_articulated_inertia_12)
                     .mul_add(
-                        each_articulated_inertia_28,
-                        child[33]
-                            .mul_add(each_articulated_inertia_15, own_3[6] - child[45]),
+                        each_articulated_inertia_25,
+                        (-each_carried_3)
+                            .mul_add(each_articulated_inertia_14, own_3[7] + child[43]),
                     ),
             );
-        let each_articulated_inertia_53 = (-each_articulated_inertia_26)
+        let each_articulated_inertia_49 = (-each_articulated_inertia_24)
             .mul_add(
-                each_articulated_inertia_50,
+                each_articulated_inertia_46,
                 (-each_articulated_inertia_13)
                     .mul_add(
-                        each_articulated_inertia_28,
-                        (-each_carried_3)
-                            .mul_add(each_articulated_inertia_15, own_3[7] + child[46]),
+                        each_articulated_inertia_25,
+                        (-child[36])
+                            .mul_add(each_articulated_inertia_14, own_3[8] + child[44]),
                     ),
             );
-        let each_articulated_inertia_54 = (-each_articulated_inertia_27)
-            .mul_add(
-                each_articulated_inertia_50,
-                (-each_articulated_inertia_14)
-                    .mul_add(
-                        each_articulated_inertia_28,
-                        (-child[39])
-                            .mul_add(each_articulated_inertia_15, own_3[8] + child[47]),
-                    ),
-            );
-        // each: seen by parent (122 additions, 173 multiplications)
+        // each: seen by parent (122 additions, 170 multiplications)
         let each_seen_by_parent = own_3[14]
             .mul_add(
-                each_articulated_inertia_42,
+                each_articulated_inertia_38,
                 own_3[13]
                     .mul_add(
-                        each_articulated_inertia_40,
+                        each_articulated_inertia_36,
                         own_3[12]
                             .mul_add(
-                                each_articulated_inertia_38,
+                                each_articulated_inertia_34,
                                 own_3[10]
                                     .mul_add(
-                                        each_articulated_inertia_36,
-                                        own_3[9] * each_articulated_inertia_35,
+                                        each_articulated_inertia_32,
+                                        own_3[9] * each_articulated_inertia_31,
                                     ),
                             ),
                     ),
             );
         let each_seen_by_parent_2 = own_3[14]
             .mul_add(
-                each_articulated_inertia_43,
+                each_articulated_inertia_39,
                 own_3[13]
                     .mul_add(
-                        each_articulated_inertia_41,
+                        each_articulated_inertia_37,
                         own_3[12]
                             .mul_add(
-                                each_articulated_inertia_39,
+                                each_articulated_inertia_35,
+                                own_3[10]
+                                    .mul_add(
+                                        each_articulated_inertia_33,
+                                        own_3[9] * each_articulated_inertia_32,
+                                    ),
+                            ),
+                    ),
+            );
+        let each_seen_by_parent_3 = (-own_3[14])
+            .mul_add(
+                each_articulated_inertia_42,
+                (-own_3[13])
+                    .mul_add(
+                        each_articulated_inertia_41,
+                        (-own_3[12])
+                            .mul_add(
+                                each_articulated_inertia_40,
+                                own_3[10]
+                                    .mul_add(
+                                        each_articulated_inertia_35,
+                                        own_3[9] * each_articulated_inertia_34,
+                                    ),
+                            ),
+                    ),
+            );
+        let each_seen_by_parent_4 = (-own_3[14])
+            .mul_add(
+                each_articulated_inertia_44,
+                (-own_3[13])
+                    .mul_add(
+                        each_articulated_inertia_43,
+                        (-own_3[12])
+                            .mul_add(
+                                each_articulated_inertia_41,
                                 own_3[10]
                                     .mul_add(
                                         each_articulated_inertia_37,
@@ -1770,15 +1703,15 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                             ),
                     ),
             );
-        let each_seen_by_parent_3 = (-own_3[14])
+        let each_seen_by_parent_5 = (-own_3[14])
             .mul_add(
-                each_articulated_inertia_46,
+                each_articulated_inertia_45,
                 (-own_3[13])
                     .mul_add(
-                        each_articulated_inertia_45,
+                        each_articulated_inertia_44,
                         (-own_3[12])
                             .mul_add(
-                                each_articulated_inertia_44,
+                                each_articulated_inertia_42,
                                 own_3[10]
                                     .mul_add(
                                         each_articulated_inertia_39,
@@ -1787,147 +1720,89 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                             ),
                     ),
             );
-        let each_seen_by_parent_4 = (-own_3[14])
-            .mul_add(
-                each_articulated_inertia_48,
-                (-own_3[13])
-                    .mul_add(
-                        each_articulated_inertia_47,
-                        (-own_3[12])
-                            .mul_add(
-                                each_articulated_inertia_45,
-                                own_3[10]
-                                    .mul_add(
-                                        each_articulated_inertia_41,
-                                        own_3[9] * each_articulated_inertia_40,
-                                    ),
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_5 = (-own_3[14])
-            .mul_add(
-                each_articulated_inertia_49,
-                (-own_3[13])
-                    .mul_add(
-                        each_articulated_inertia_48,
-                        (-own_3[12])
-                            .mul_add(
-                                each_articulated_inertia_46,
-                                own_3[10]
-                                    .mul_add(
-                                        each_articulated_inertia_43,
-                                        own_3[9] * each_articulated_inertia_42,
-                                    ),
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_6 = (-each_articulated_inertia_22)
-            .mul_add(
-                each_articulated_inertia_50,
-                (-each_articulated_inertia_9)
-                    .mul_add(
-                        each_articulated_inertia_28,
-                        (-each_carried)
-                            .mul_add(
-                                each_articulated_inertia_15,
-                                each_carried_4 - each_seen_by_parent,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_7 = (-each_articulated_inertia_23)
-            .mul_add(
-                each_articulated_inertia_50,
-                (-each_articulated_inertia_10)
-                    .mul_add(
-                        each_articulated_inertia_28,
-                        (-child[28])
-                            .mul_add(
-                                each_articulated_inertia_15,
-                                each_carried_5 - each_seen_by_parent_2,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_8 = each_articulated_inertia_52 + each_seen_by_parent_3;
-        let each_seen_by_parent_9 = each_articulated_inertia_53 - each_seen_by_parent_4;
-        let each_seen_by_parent_10 = each_articulated_inertia_54 - each_seen_by_parent_5;
+        let each_seen_by_parent_6 = tau[51 - 3 * i] - each_seen_by_parent;
+        let each_seen_by_parent_7 = tau[52 - 3 * i] - each_seen_by_parent_2;
+        let each_seen_by_parent_8 = each_articulated_inertia_47 + each_seen_by_parent_3;
+        let each_seen_by_parent_9 = each_articulated_inertia_48 - each_seen_by_parent_4;
+        let each_seen_by_parent_10 = each_articulated_inertia_49 - each_seen_by_parent_5;
         let each_seen_by_parent_11 = q[154 - 9 * i]
             .mul_add(
-                each_articulated_inertia_36,
-                q[153 - 9 * i] * each_articulated_inertia_35,
+                each_articulated_inertia_32,
+                q[153 - 9 * i] * each_articulated_inertia_31,
             );
         let each_seen_by_parent_12 = q[157 - 9 * i]
             .mul_add(
-                each_articulated_inertia_36,
-                q[156 - 9 * i] * each_articulated_inertia_35,
+                each_articulated_inertia_32,
+                q[156 - 9 * i] * each_articulated_inertia_31,
             );
         let each_seen_by_parent_13 = q[154 - 9 * i]
             .mul_add(
-                each_articulated_inertia_37,
-                q[153 - 9 * i] * each_articulated_inertia_36,
+                each_articulated_inertia_33,
+                q[153 - 9 * i] * each_articulated_inertia_32,
             );
         let each_seen_by_parent_14 = q[157 - 9 * i]
             .mul_add(
-                each_articulated_inertia_37,
-                q[156 - 9 * i] * each_articulated_inertia_36,
+                each_articulated_inertia_33,
+                q[156 - 9 * i] * each_articulated_inertia_32,
             );
         let each_seen_by_parent_15 = q[160 - 9 * i]
             .mul_add(
                 q[160 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_37,
-                        q[159 - 9 * i] * each_articulated_inertia_36,
+                        each_articulated_inertia_33,
+                        q[159 - 9 * i] * each_articulated_inertia_32,
                     ),
                 q[159 - 9 * i]
                     * (q[160 - 9 * i]
                         .mul_add(
-                            each_articulated_inertia_36,
-                            q[159 - 9 * i] * each_articulated_inertia_35,
+                            each_articulated_inertia_32,
+                            q[159 - 9 * i] * each_articulated_inertia_31,
                         )),
             );
         let each_seen_by_parent_16 = q[154 - 9 * i]
             .mul_add(
+                each_articulated_inertia_35,
+                q[153 - 9 * i] * each_articulated_inertia_34,
+            );
+        let each_seen_by_parent_17 = q[157 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_35,
+                q[156 - 9 * i] * each_articulated_inertia_34,
+            );
+        let each_seen_by_parent_18 = q[160 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_35,
+                q[159 - 9 * i] * each_articulated_inertia_34,
+            );
+        let each_seen_by_parent_19 = q[154 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_37,
+                q[153 - 9 * i] * each_articulated_inertia_36,
+            );
+        let each_seen_by_parent_20 = q[157 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_37,
+                q[156 - 9 * i] * each_articulated_inertia_36,
+            );
+        let each_seen_by_parent_21 = q[160 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_37,
+                q[159 - 9 * i] * each_articulated_inertia_36,
+            );
+        let each_seen_by_parent_22 = q[154 - 9 * i]
+            .mul_add(
                 each_articulated_inertia_39,
                 q[153 - 9 * i] * each_articulated_inertia_38,
             );
-        let each_seen_by_parent_17 = q[157 - 9 * i]
+        let each_seen_by_parent_23 = q[157 - 9 * i]
             .mul_add(
                 each_articulated_inertia_39,
                 q[156 - 9 * i] * each_articulated_inertia_38,
             );
-        let each_seen_by_parent_18 = q[160 - 9 * i]
+        let each_seen_by_parent_24 = q[160 - 9 * i]
             .mul_add(
                 each_articulated_inertia_39,
                 q[159 - 9 * i] * each_articulated_inertia_38,
-            );
-        let each_seen_by_parent_19 = q[154 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_41,
-                q[153 - 9 * i] * each_articulated_inertia_40,
-            );
-        let each_seen_by_parent_20 = q[157 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_41,
-                q[156 - 9 * i] * each_articulated_inertia_40,
-            );
-        let each_seen_by_parent_21 = q[160 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_41,
-                q[159 - 9 * i] * each_articulated_inertia_40,
-            );
-        let each_seen_by_parent_22 = q[154 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_43,
-                q[153 - 9 * i] * each_articulated_inertia_42,
-            );
-        let each_seen_by_parent_23 = q[157 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_43,
-                q[156 - 9 * i] * each_articulated_inertia_42,
-            );
-        let each_seen_by_parent_24 = q[160 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_43,
-                q[159 - 9 * i] * each_articulated_inertia_42,
             );
         let each_seen_by_parent_25 = q[155 - 9 * i]
             .mul_add(
@@ -1976,56 +1851,56 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             );
         let each_seen_by_parent_30 = q[155 - 9 * i]
             .mul_add(
-                each_articulated_inertia_46,
+                each_articulated_inertia_42,
                 q[154 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_45,
-                        q[153 - 9 * i] * each_articulated_inertia_44,
+                        each_articulated_inertia_41,
+                        q[153 - 9 * i] * each_articulated_inertia_40,
                     ),
             );
         let each_seen_by_parent_31 = q[158 - 9 * i]
             .mul_add(
-                each_articulated_inertia_46,
+                each_articulated_inertia_42,
                 q[157 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_45,
-                        q[156 - 9 * i] * each_articulated_inertia_44,
+                        each_articulated_inertia_41,
+                        q[156 - 9 * i] * each_articulated_inertia_40,
                     ),
             );
         let each_seen_by_parent_32 = q[155 - 9 * i]
             .mul_add(
-                each_articulated_inertia_48,
+                each_articulated_inertia_44,
                 q[154 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_47,
-                        q[153 - 9 * i] * each_articulated_inertia_45,
+                        each_articulated_inertia_43,
+                        q[153 - 9 * i] * each_articulated_inertia_41,
                     ),
             );
         let each_seen_by_parent_33 = q[158 - 9 * i]
             .mul_add(
-                each_articulated_inertia_48,
+                each_articulated_inertia_44,
                 q[157 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_47,
-                        q[156 - 9 * i] * each_articulated_inertia_45,
+                        each_articulated_inertia_43,
+                        q[156 - 9 * i] * each_articulated_inertia_41,
                     ),
             );
         let each_seen_by_parent_34 = q[155 - 9 * i]
             .mul_add(
-                each_articulated_inertia_49,
+                each_articulated_inertia_45,
                 q[154 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_48,
-                        q[153 - 9 * i] * each_articulated_inertia_46,
+                        each_articulated_inertia_44,
+                        q[153 - 9 * i] * each_articulated_inertia_42,
                     ),
             );
         let each_seen_by_parent_35 = q[158 - 9 * i]
             .mul_add(
-                each_articulated_inertia_49,
+                each_articulated_inertia_45,
                 q[157 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_48,
-                        q[156 - 9 * i] * each_articulated_inertia_46,
+                        each_articulated_inertia_44,
+                        q[156 - 9 * i] * each_articulated_inertia_42,
                     ),
             );
         let each_seen_by_parent_36 = q[155 - 9 * i]
@@ -2077,21 +1952,21 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             .mul_add(
                 q[161 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_48,
+                        each_articulated_inertia_44,
                         q[160 - 9 * i]
                             .mul_add(
-                                each_articulated_inertia_47,
-                                q[159 - 9 * i] * each_articulated_inertia_45,
+                                each_articulated_inertia_43,
+                                q[159 - 9 * i] * each_articulated_inertia_41,
                             ),
                     ),
                 q[159 - 9 * i]
                     * (q[161 - 9 * i]
                         .mul_add(
-                            each_articulated_inertia_46,
+                            each_articulated_inertia_42,
                             q[160 - 9 * i]
                                 .mul_add(
-                                    each_articulated_inertia_45,
-                                    q[159 - 9 * i] * each_articulated_inertia_44,
+                                    each_articulated_inertia_41,
+                                    q[159 - 9 * i] * each_articulated_inertia_40,
                                 ),
                         )),
             );
@@ -2099,11 +1974,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             .mul_add(
                 q[161 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_49,
+                        each_articulated_inertia_45,
                         q[160 - 9 * i]
                             .mul_add(
-                                each_articulated_inertia_48,
-                                q[159 - 9 * i] * each_articulated_inertia_46,
+                                each_articulated_inertia_44,
+                                q[159 - 9 * i] * each_articulated_inertia_42,
                             ),
                     ),
                 each_seen_by_parent_41,
@@ -2151,48 +2026,25 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                             ),
                     ),
             );
-        let each_seen_by_parent_48 = (-each_seen_by_parent_28)
-            .mul_add(
-                n(-0.2),
-                each_seen_by_parent_44
-                    .mul_add(
-                        n(0.2),
-                        q[154 - 9 * i]
-                            .mul_add(
-                                each_seen_by_parent_13,
-                                q[153 - 9 * i] * each_seen_by_parent_11,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_49 = (-each_seen_by_parent_25)
+        let each_seen_by_parent_48 = (-(each_seen_by_parent_28 + each_seen_by_parent_44))
             .mul_add(
                 n(0.2),
-                each_seen_by_parent_45
+                (-q[154 - 9 * i])
                     .mul_add(
-                        n(0.2),
-                        q[157 - 9 * i]
-                            .mul_add(
-                                each_seen_by_parent_13,
-                                q[156 - 9 * i] * each_seen_by_parent_11,
-                            ),
+                        each_seen_by_parent_13,
+                        -(q[153 - 9 * i] * each_seen_by_parent_11),
                     ),
             );
-        let each_seen_by_parent_50 = (-each_seen_by_parent_26)
+        let each_seen_by_parent_49 = (-q[157 - 9 * i])
             .mul_add(
-                n(0.2),
-                each_seen_by_parent_43
+                each_seen_by_parent_13,
+                (-q[156 - 9 * i])
                     .mul_add(
-                        n(-0.2),
-                        q[157 - 9 * i]
-                            .mul_add(
-                                each_seen_by_parent_14,
-                                q[156 - 9 * i] * each_seen_by_parent_12,
-                            ),
+                        each_seen_by_parent_11,
+                        (each_seen_by_parent_25 - each_seen_by_parent_45) * n(0.2),
                     ),
             );
-        let each_seen_by_parent_51 = -each_seen_by_parent_48;
-        let each_seen_by_parent_52 = -each_seen_by_parent_49;
-        let each_seen_by_parent_53 = (-each_seen_by_parent_29)
+        let each_seen_by_parent_50 = (-each_seen_by_parent_29)
             .mul_add(
                 n(0.2),
                 (-q[160 - 9 * i])
@@ -2201,8 +2053,16 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         -(q[159 - 9 * i] * each_seen_by_parent_11),
                     ),
             );
-        let each_seen_by_parent_54 = -each_seen_by_parent_50;
-        let each_seen_by_parent_55 = (-each_seen_by_parent_27)
+        let each_seen_by_parent_51 = (-(each_seen_by_parent_26 + each_seen_by_parent_43))
+            .mul_add(
+                n(-0.2),
+                (-q[157 - 9 * i])
+                    .mul_add(
+                        each_seen_by_parent_14,
+                        -(q[156 - 9 * i] * each_seen_by_parent_12),
+                    ),
+            );
+        let each_seen_by_parent_52 = (-each_seen_by_parent_27)
             .mul_add(
                 n(-0.2),
                 (-q[160 - 9 * i])
@@ -2211,17 +2071,17 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         -(q[159 - 9 * i] * each_seen_by_parent_12),
                     ),
             );
-        let each_seen_by_parent_56 = -each_seen_by_parent_15;
-        let each_seen_by_parent_57 = each_seen_by_parent_37
+        let each_seen_by_parent_53 = -each_seen_by_parent_15;
+        let each_seen_by_parent_54 = each_seen_by_parent_37
             .mul_add(n(0.2), -each_seen_by_parent_25);
-        let each_seen_by_parent_58 = -each_seen_by_parent_43;
-        let each_seen_by_parent_59 = -each_seen_by_parent_27;
-        let each_seen_by_parent_60 = -each_seen_by_parent_44;
-        let each_seen_by_parent_61 = -each_seen_by_parent_45;
-        let each_seen_by_parent_62 = -each_seen_by_parent_29;
-        let each_seen_by_parent_63 = -each_seen_by_parent_46;
-        let each_seen_by_parent_64 = -each_seen_by_parent_47;
-        let each_seen_by_parent_65 = (-q[161 - 9 * i])
+        let each_seen_by_parent_55 = -each_seen_by_parent_43;
+        let each_seen_by_parent_56 = -each_seen_by_parent_27;
+        let each_seen_by_parent_57 = -each_seen_by_parent_44;
+        let each_seen_by_parent_58 = -each_seen_by_parent_45;
+        let each_seen_by_parent_59 = -each_seen_by_parent_29;
+        let each_seen_by_parent_60 = -each_seen_by_parent_46;
+        let each_seen_by_parent_61 = -each_seen_by_parent_47;
+        let each_seen_by_parent_62 = (-q[161 - 9 * i])
             .mul_add(
                 each_seen_by_parent_24,
                 (-q[160 - 9 * i])
@@ -2230,16 +2090,16 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         -(q[159 - 9 * i] * each_seen_by_parent_18),
                     ),
             );
-        let each_seen_by_parent_66 = q[161 - 9 * i]
+        let each_seen_by_parent_63 = q[161 - 9 * i]
             .mul_add(
-                each_articulated_inertia_51,
+                tau[53 - 3 * i],
                 q[160 - 9 * i]
                     .mul_add(
                         each_seen_by_parent_7,
                         q[159 - 9 * i] * each_seen_by_parent_6,
                     ),
             );
-        let each_seen_by_parent_67 = (-q[155 - 9 * i])
+        let each_seen_by_parent_64 = (-q[155 - 9 * i])
             .mul_add(
                 each_seen_by_parent_10,
                 (-q[154 - 9 * i])
@@ -2248,7 +2108,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         q[153 - 9 * i] * each_seen_by_parent_8,
                     ),
             );
-        let each_seen_by_parent_68 = (-q[158 - 9 * i])
+        let each_seen_by_parent_65 = (-q[158 - 9 * i])
             .mul_add(
                 each_seen_by_parent_10,
                 (-q[157 - 9 * i])
@@ -2257,12 +2117,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         q[156 - 9 * i] * each_seen_by_parent_8,
                     ),
             );
-        let each_seen_by_parent_69 = each_seen_by_parent_68
+        let each_seen_by_parent_66 = each_seen_by_parent_65
             .mul_add(
                 n(-0.2),
                 q[155 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_51,
+                        tau[53 - 3 * i],
                         q[154 - 9 * i]
                             .mul_add(
                                 each_seen_by_parent_7,
@@ -2270,12 +2130,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                             ),
                     ),
             );
-        let each_seen_by_parent_70 = (-each_seen_by_parent_67)
+        let each_seen_by_parent_67 = (-each_seen_by_parent_64)
             .mul_add(
                 n(-0.2),
                 q[158 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_51,
+                        tau[53 - 3 * i],
                         q[157 - 9 * i]
                             .mul_add(
                                 each_seen_by_parent_7,
@@ -2283,9 +2143,9 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                             ),
                     ),
             );
-        let each_seen_by_parent_71 = -each_seen_by_parent_67;
-        let each_seen_by_parent_72 = -each_seen_by_parent_68;
-        let each_seen_by_parent_73 = (-q[159 - 9 * i])
+        let each_seen_by_parent_68 = -each_seen_by_parent_64;
+        let each_seen_by_parent_69 = -each_seen_by_parent_65;
+        let each_seen_by_parent_70 = (-q[159 - 9 * i])
             .mul_add(
                 each_seen_by_parent_8,
                 q[161 - 9 * i]
@@ -2294,34 +2154,34 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         q[160 - 9 * i] * each_seen_by_parent_9,
                     ),
             );
-        rows_of_48[i + 1] = [
+        rows_of_45[i + 1] = [
             each_articulated_inertia_2,
             each_articulated_inertia_3,
             each_articulated_inertia_4,
             each_articulated_inertia_5,
             each_articulated_inertia_6,
-            each_articulated_inertia_7,
+            each_articulated_inertia_14,
             each_articulated_inertia_15,
             each_articulated_inertia_16,
             each_articulated_inertia_17,
             each_articulated_inertia_18,
             each_articulated_inertia_19,
-            each_articulated_inertia_20,
-            each_articulated_inertia_21,
+            each_articulated_inertia_25,
+            each_articulated_inertia_26,
+            each_articulated_inertia_27,
             each_articulated_inertia_28,
             each_articulated_inertia_29,
             each_articulated_inertia_30,
-            each_articulated_inertia_31,
-            each_articulated_inertia_32,
-            each_articulated_inertia_33,
-            each_articulated_inertia_34,
-            each_articulated_inertia_50,
+            each_articulated_inertia_46,
             each_seen_by_parent_36,
             each_seen_by_parent_37,
             each_seen_by_parent_38,
             each_seen_by_parent_39,
             each_seen_by_parent_40,
             each_seen_by_parent_42,
+            each_seen_by_parent_48,
+            each_seen_by_parent_49,
+            each_seen_by_parent_50,
             each_seen_by_parent_51,
             each_seen_by_parent_52,
             each_seen_by_parent_53,
@@ -2335,289 +2195,308 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             each_seen_by_parent_61,
             each_seen_by_parent_62,
             each_seen_by_parent_63,
-            each_seen_by_parent_64,
-            each_seen_by_parent_65,
             each_seen_by_parent_66,
+            each_seen_by_parent_67,
+            each_seen_by_parent_68,
             each_seen_by_parent_69,
             each_seen_by_parent_70,
-            each_seen_by_parent_71,
-            each_seen_by_parent_72,
-            each_seen_by_parent_73,
         ];
     }
     // link_8: carried (14 additions)
-    let link_8_carried = rows_of_48[10][27] + n(0.19750000000000004);
-    let link_8_carried_2 = rows_of_48[10][29] + n(0.00041000000000000005);
-    let link_8_carried_3 = rows_of_48[10][36] + n(1.0);
-    let link_8_carried_4 = link_8_bias_8 + rows_of_48[10][43];
-    let link_8_carried_5 = link_8_bias_9 + rows_of_48[10][44];
-    let link_8_carried_6 = link_8_bias_10 + rows_of_48[10][42];
-    // link_8: articulated inertia (64 additions, 91 multiplications, 3 divisions)
-    let link_8_articulated_inertia = link_8_carried_4 - tau[21];
+    let link_8_carried = rows_of_45[10][24] + n(0.19750000000000004);
+    let link_8_carried_2 = rows_of_45[10][26] + n(0.00041000000000000005);
+    let link_8_carried_3 = rows_of_45[10][33] + n(1.0);
+    // link_8: articulated inertia (55 additions, 79 multiplications, 3 divisions)
+    let link_8_articulated_inertia = link_8_bias_8 + rows_of_45[10][40] - tau[21];
     let link_8_inverse_inertia = n(1.0) / link_8_carried;
-    let link_8_articulated_inertia_2 = link_8_carried * link_8_inverse_inertia;
-    let link_8_articulated_inertia_3 = rows_of_48[10][28] * link_8_inverse_inertia;
-    let link_8_articulated_inertia_4 = link_8_carried_2 * link_8_inverse_inertia;
-    let link_8_articulated_inertia_5 = rows_of_48[10][33] * link_8_inverse_inertia;
-    let link_8_articulated_inertia_6 = link_8_carried_3 * link_8_inverse_inertia;
-    let link_8_articulated_inertia_7 = rows_of_48[10][39] * link_8_inverse_inertia;
-    let link_8_articulated_inertia_8 = (-link_8_articulated_inertia)
-        .mul_add(link_8_articulated_inertia_3, link_8_carried_5 - tau[22]);
-    let link_8_articulated_inertia_9 = (-link_8_carried)
-        .mul_add(link_8_articulated_inertia_3, rows_of_48[10][28]);
-    let link_8_articulated_inertia_10 = (-rows_of_48[10][28])
+    let link_8_articulated_inertia_2 = rows_of_45[10][25] * link_8_inverse_inertia;
+    let link_8_articulated_inertia_3 = link_8_carried_2 * link_8_inverse_inertia;
+    let link_8_articulated_inertia_4 = rows_of_45[10][30] * link_8_inverse_inertia;
+    let link_8_articulated_inertia_5 = link_8_carried_3 * link_8_inverse_inertia;
+    let link_8_articulated_inertia_6 = rows_of_45[10][36] * link_8_inverse_inertia;
+    let link_8_articulated_inertia_7 = (-link_8_articulated_inertia)
         .mul_add(
-            link_8_articulated_inertia_3,
-            rows_of_48[10][30] + n(0.19744000000000003),
+            link_8_articulated_inertia_2,
+            link_8_bias_9 + rows_of_45[10][41] - tau[22],
         );
-    let link_8_articulated_inertia_11 = (-link_8_carried_2)
-        .mul_add(link_8_articulated_inertia_3, rows_of_48[10][31]);
-    let link_8_articulated_inertia_12 = (-rows_of_48[10][33])
-        .mul_add(link_8_articulated_inertia_3, rows_of_48[10][34] + n(-1.0));
-    let link_8_articulated_inertia_13 = (-link_8_carried_3)
-        .mul_add(link_8_articulated_inertia_3, rows_of_48[10][37]);
-    let link_8_articulated_inertia_14 = (-rows_of_48[10][39])
-        .mul_add(link_8_articulated_inertia_3, rows_of_48[10][40] + n(-0.004));
-    let link_8_articulated_inertia_15 = link_8_articulated_inertia
+    let link_8_articulated_inertia_8 = (-link_8_carried)
+        .mul_add(link_8_articulated_inertia_2, rows_of_45[10][25]);
+    let link_8_articulated_inertia_9 = (-rows_of_45[10][25])
+        .mul_add(
+            link_8_articulated_inertia_2,
+            rows_of_45[10][27] + n(0.19744000000000003),
+        );
+    let link_8_articulated_inertia_10 = (-link_8_carried_2)
+        .mul_add(link_8_articulated_inertia_2, rows_of_45[10][28]);
+    let link_8_articulated_inertia_11 = (-rows_of_45[10][30])
+        .mul_add(link_8_articulated_inertia_2, rows_of_45[10][31] + n(-1.0));
+    let link_8_articulated_inertia_12 = (-link_8_carried_3)
+        .mul_add(link_8_articulated_inertia_2, rows_of_45[10][34]);
+    let link_8_articulated_inertia_13 = (-rows_of_45[10][36])
+        .mul_add(link_8_articulated_inertia_2, rows_of_45[10][37] + n(-0.004));
+    let link_8_articulated_inertia_14 = link_8_articulated_inertia
         * link_8_inverse_inertia;
-    let link_8_inverse_inertia_2 = n(1.0) / link_8_articulated_inertia_10;
-    let link_8_articulated_inertia_16 = link_8_articulated_inertia_9
+    let link_8_inverse_inertia_2 = n(1.0) / link_8_articulated_inertia_9;
+    let link_8_articulated_inertia_15 = link_8_articulated_inertia_8
         * link_8_inverse_inertia_2;
-    let link_8_articulated_inertia_17 = link_8_articulated_inertia_10
+    let link_8_articulated_inertia_16 = link_8_articulated_inertia_10
         * link_8_inverse_inertia_2;
-    let link_8_articulated_inertia_18 = link_8_articulated_inertia_11
+    let link_8_articulated_inertia_17 = link_8_articulated_inertia_11
         * link_8_inverse_inertia_2;
-    let link_8_articulated_inertia_19 = link_8_articulated_inertia_12
+    let link_8_articulated_inertia_18 = link_8_articulated_inertia_12
         * link_8_inverse_inertia_2;
-    let link_8_articulated_inertia_20 = link_8_articulated_inertia_13
+    let link_8_articulated_inertia_19 = link_8_articulated_inertia_13
         * link_8_inverse_inertia_2;
-    let link_8_articulated_inertia_21 = link_8_articulated_inertia_14
-        * link_8_inverse_inertia_2;
-    let link_8_articulated_inertia_22 = (-link_8_articulated_inertia_9)
+    let link_8_articulated_inertia_20 = (-link_8_articulated_inertia_8)
         .mul_add(
-            link_8_articulated_inertia_18,
-            (-link_8_carried).mul_add(link_8_articulated_inertia_4, link_8_carried_2),
+            link_8_articulated_inertia_16,
+            (-link_8_carried).mul_add(link_8_articulated_inertia_3, link_8_carried_2),
         );
-    let link_8_articulated_inertia_23 = (-link_8_articulated_inertia_10)
+    let link_8_articulated_inertia_21 = (-link_8_articulated_inertia_9)
         .mul_add(
-            link_8_articulated_inertia_18,
-            (-rows_of_48[10][28])
-                .mul_add(link_8_articulated_inertia_4, rows_of_48[10][31]),
+            link_8_articulated_inertia_16,
+            (-rows_of_45[10][25])
+                .mul_add(link_8_articulated_inertia_3, rows_of_45[10][28]),
         );
-    let link_8_articulated_inertia_24 = (-link_8_articulated_inertia_11)
+    let link_8_articulated_inertia_22 = (-link_8_articulated_inertia_11)
         .mul_add(
-            link_8_articulated_inertia_18,
-            (-link_8_carried_2)
-                .mul_add(
-                    link_8_articulated_inertia_4,
-                    rows_of_48[10][32] + n(0.00023999999999999976),
-                ),
+            link_8_articulated_inertia_16,
+            (-rows_of_45[10][30])
+                .mul_add(link_8_articulated_inertia_3, rows_of_45[10][32]),
         );
-    let link_8_articulated_inertia_25 = (-link_8_articulated_inertia_12)
+    let link_8_articulated_inertia_23 = (-link_8_articulated_inertia_12)
         .mul_add(
-            link_8_articulated_inertia_18,
-            (-rows_of_48[10][33])
-                .mul_add(link_8_articulated_inertia_4, rows_of_48[10][35]),
-        );
-    let link_8_articulated_inertia_26 = (-link_8_articulated_inertia_13)
-        .mul_add(
-            link_8_articulated_inertia_18,
+            link_8_articulated_inertia_16,
             (-link_8_carried_3)
-                .mul_add(link_8_articulated_inertia_4, rows_of_48[10][38] + n(0.004)),
+                .mul_add(link_8_articulated_inertia_3, rows_of_45[10][35] + n(0.004)),
         );
-    let link_8_articulated_inertia_27 = (-link_8_articulated_inertia_14)
+    let link_8_articulated_inertia_24 = (-link_8_articulated_inertia_13)
         .mul_add(
-            link_8_articulated_inertia_18,
-            (-rows_of_48[10][39])
-                .mul_add(link_8_articulated_inertia_4, rows_of_48[10][41]),
+            link_8_articulated_inertia_16,
+            (-rows_of_45[10][36])
+                .mul_add(link_8_articulated_inertia_3, rows_of_45[10][38]),
         );
-    let link_8_articulated_inertia_28 = link_8_articulated_inertia_8
+    let link_8_articulated_inertia_25 = link_8_articulated_inertia_7
         * link_8_inverse_inertia_2;
-    let link_8_inverse_inertia_3 = n(1.0) / link_8_articulated_inertia_24;
-    let link_8_articulated_inertia_29 = link_8_articulated_inertia_22
+    let link_8_inverse_inertia_3 = n(1.0)
+        / ((-link_8_articulated_inertia_10)
+            .mul_add(
+                link_8_articulated_inertia_16,
+                (-link_8_carried_2)
+                    .mul_add(
+                        link_8_articulated_inertia_3,
+                        rows_of_45[10][29] + n(0.00024),
+                    ),
+            ));
+    let link_8_articulated_inertia_26 = link_8_articulated_inertia_20
         * link_8_inverse_inertia_3;
-    let link_8_articulated_inertia_30 = link_8_articulated_inertia_23
+    let link_8_articulated_inertia_27 = link_8_articulated_inertia_21
         * link_8_inverse_inertia_3;
-    let link_8_articulated_inertia_31 = link_8_articulated_inertia_24
+    let link_8_articulated_inertia_28 = link_8_articulated_inertia_22
         * link_8_inverse_inertia_3;
-    let link_8_articulated_inertia_32 = link_8_articulated_inertia_25
+    let link_8_articulated_inertia_29 = link_8_articulated_inertia_23
         * link_8_inverse_inertia_3;
-    let link_8_articulated_inertia_33 = link_8_articulated_inertia_26
+    let link_8_articulated_inertia_30 = link_8_articulated_inertia_24
         * link_8_inverse_inertia_3;
-    let link_8_articulated_inertia_34 = link_8_articulated_inertia_27
-        * link_8_inverse_inertia_3;
-    let link_8_articulated_inertia_35 = link_8_articulated_inertia_22
+    let link_8_articulated_inertia_31 = link_8_articulated_inertia_20
+        .mul_add(
+            link_8_articulated_inertia_26,
+            link_8_articulated_inertia_8 * link_8_articulated_inertia_15,
+        );
+    let link_8_articulated_inertia_32 = link_8_articulated_inertia_20
+        * link_8_articulated_inertia_27;
+    let link_8_articulated_inertia_33 = link_8_articulated_inertia_21
+        * link_8_articulated_inertia_27;
+    let link_8_articulated_inertia_34 = link_8_articulated_inertia_20
+        .mul_add(
+            link_8_articulated_inertia_28,
+            link_8_articulated_inertia_8 * link_8_articulated_inertia_17,
+        );
+    let link_8_articulated_inertia_35 = link_8_articulated_inertia_21
+        * link_8_articulated_inertia_28;
+    let link_8_articulated_inertia_36 = link_8_articulated_inertia_20
         .mul_add(
             link_8_articulated_inertia_29,
-            link_8_articulated_inertia_9 * link_8_articulated_inertia_16,
+            link_8_articulated_inertia_8 * link_8_articulated_inertia_18,
         );
-    let link_8_articulated_inertia_36 = link_8_articulated_inertia_22
+    let link_8_articulated_inertia_37 = link_8_articulated_inertia_21
+        * link_8_articulated_inertia_29;
+    let link_8_articulated_inertia_38 = link_8_articulated_inertia_20
+        .mul_add(
+            link_8_articulated_inertia_30,
+            link_8_articulated_inertia_8 * link_8_articulated_inertia_19,
+        );
+    let link_8_articulated_inertia_39 = link_8_articulated_inertia_21
         * link_8_articulated_inertia_30;
-    let link_8_articulated_inertia_37 = link_8_articulated_inertia_23
-        * link_8_articulated_inertia_30;
-    let link_8_articulated_inertia_38 = link_8_articulated_inertia_22
+    let link_8_articulated_inertia_40 = (-link_8_articulated_inertia_22)
         .mul_add(
-            link_8_articulated_inertia_32,
-            link_8_articulated_inertia_9 * link_8_articulated_inertia_19,
+            link_8_articulated_inertia_28,
+            (-link_8_articulated_inertia_11)
+                .mul_add(
+                    link_8_articulated_inertia_17,
+                    (-rows_of_45[10][30])
+                        .mul_add(link_8_articulated_inertia_4, rows_of_45[10][18]),
+                ),
         );
-    let link_8_articulated_inertia_39 = link_8_articulated_inertia_23
-        * link_8_articulated_inertia_32;
-    let link_8_articulated_inertia_40 = link_8_articulated_inertia_22
+    let link_8_articulated_inertia_41 = (-link_8_articulated_inertia_22)
         .mul_add(
-            link_8_articulated_inertia_33,
-            link_8_articulated_inertia_9 * link_8_articulated_inertia_20,
+            link_8_articulated_inertia_29,
+            (-link_8_articulated_inertia_11)
+                .mul_add(
+                    link_8_articulated_inertia_18,
+                    (-rows_of_45[10][30])
+                        .mul_add(link_8_articulated_inertia_5, rows_of_45[10][19]),
+                ),
         );
-    let link_8_articulated_inertia_41 = link_8_articulated_inertia_23
-        * link_8_articulated_inertia_33;
-    let link_8_articulated_inertia_42 = link_8_articulated_inertia_22
+    let link_8_articulated_inertia_42 = (-link_8_articulated_inertia_22)
         .mul_add(
-            link_8_articulated_inertia_34,
-            link_8_articulated_inertia_9 * link_8_articulated_inertia_21,
+            link_8_articulated_inertia_30,
+            (-link_8_articulated_inertia_11)
+                .mul_add(
+                    link_8_articulated_inertia_19,
+                    (-rows_of_45[10][30])
+                        .mul_add(link_8_articulated_inertia_6, rows_of_45[10][20]),
+                ),
         );
-    let link_8_articulated_inertia_43 = link_8_articulated_inertia_23
-        * link_8_articulated_inertia_34;
-    let link_8_articulated_inertia_44 = (-link_8_articulated_inertia_25)
+    let link_8_articulated_inertia_43 = (-link_8_articulated_inertia_23)
         .mul_add(
-            link_8_articulated_inertia_32,
+            link_8_articulated_inertia_29,
+            (-link_8_articulated_inertia_12)
+                .mul_add(
+                    link_8_articulated_inertia_18,
+                    (-link_8_carried_3)
+                        .mul_add(link_8_articulated_inertia_5, rows_of_45[10][21]),
+                ),
+        );
+    let link_8_articulated_inertia_44 = (-link_8_articulated_inertia_23)
+        .mul_add(
+            link_8_articulated_inertia_30,
             (-link_8_articulated_inertia_12)
                 .mul_add(
                     link_8_articulated_inertia_19,
-                    (-rows_of_48[10][33])
-                        .mul_add(link_8_articulated_inertia_5, rows_of_48[10][21]),
+                    (-link_8_carried_3)
+                        .mul_add(link_8_articulated_inertia_6, rows_of_45[10][22]),
                 ),
         );
-    let link_8_articulated_inertia_45 = (-link_8_articulated_inertia_25)
+    let link_8_articulated_inertia_45 = (-link_8_articulated_inertia_24)
         .mul_add(
-            link_8_articulated_inertia_33,
-            (-link_8_articulated_inertia_12)
-                .mul_add(
-                    link_8_articulated_inertia_20,
-                    (-rows_of_48[10][33])
-                        .mul_add(link_8_articulated_inertia_6, rows_of_48[10][22]),
-                ),
-        );
-    let link_8_articulated_inertia_46 = (-link_8_articulated_inertia_25)
-        .mul_add(
-            link_8_articulated_inertia_34,
-            (-link_8_articulated_inertia_12)
-                .mul_add(
-                    link_8_articulated_inertia_21,
-                    (-rows_of_48[10][33])
-                        .mul_add(link_8_articulated_inertia_7, rows_of_48[10][23]),
-                ),
-        );
-    let link_8_articulated_inertia_47 = (-link_8_articulated_inertia_26)
-        .mul_add(
-            link_8_articulated_inertia_33,
+            link_8_articulated_inertia_30,
             (-link_8_articulated_inertia_13)
                 .mul_add(
-                    link_8_articulated_inertia_20,
-                    (-link_8_carried_3)
-                        .mul_add(link_8_articulated_inertia_6, rows_of_48[10][24]),
+                    link_8_articulated_inertia_19,
+                    (-rows_of_45[10][36])
+                        .mul_add(link_8_articulated_inertia_6, rows_of_45[10][23]),
                 ),
         );
-    let link_8_articulated_inertia_48 = (-link_8_articulated_inertia_26)
+    let link_8_articulated_inertia_46 = ((-link_8_articulated_inertia_7)
         .mul_add(
-            link_8_articulated_inertia_34,
-            (-link_8_articulated_inertia_13)
-                .mul_add(
-                    link_8_articulated_inertia_21,
-                    (-link_8_carried_3)
-                        .mul_add(link_8_articulated_inertia_7, rows_of_48[10][25]),
-                ),
-        );
-    let link_8_articulated_inertia_49 = (-link_8_articulated_inertia_27)
-        .mul_add(
-            link_8_articulated_inertia_34,
-            (-link_8_articulated_inertia_14)
-                .mul_add(
-                    link_8_articulated_inertia_21,
-                    (-rows_of_48[10][39])
-                        .mul_add(link_8_articulated_inertia_7, rows_of_48[10][26]),
-                ),
-        );
-    let link_8_articulated_inertia_50 = ((-link_8_articulated_inertia_8)
-        .mul_add(
-            link_8_articulated_inertia_18,
+            link_8_articulated_inertia_16,
             (-link_8_articulated_inertia)
-                .mul_add(link_8_articulated_inertia_4, link_8_carried_6 - tau[23]),
-        )) * link_8_inverse_inertia_3;
-    let link_8_articulated_inertia_51 = (-link_8_articulated_inertia_24)
-        .mul_add(
-            link_8_articulated_inertia_50,
-            (-link_8_articulated_inertia_11)
                 .mul_add(
-                    link_8_articulated_inertia_28,
-                    (-link_8_carried_2)
-                        .mul_add(link_8_articulated_inertia_15, link_8_carried_6),
+                    link_8_articulated_inertia_3,
+                    link_8_bias_10 + rows_of_45[10][39] - tau[23],
+                ),
+        )) * link_8_inverse_inertia_3;
+    let link_8_articulated_inertia_47 = link_8_articulated_inertia_22
+        .mul_add(
+            link_8_articulated_inertia_46,
+            link_8_articulated_inertia_11
+                .mul_add(
+                    link_8_articulated_inertia_25,
+                    rows_of_45[10][30]
+                        .mul_add(
+                            link_8_articulated_inertia_14,
+                            link_8_bias_11 - rows_of_45[10][42],
+                        ),
                 ),
         );
-    let link_8_articulated_inertia_52 = link_8_articulated_inertia_25
+    let link_8_articulated_inertia_48 = link_8_articulated_inertia_23
         .mul_add(
-            link_8_articulated_inertia_50,
+            link_8_articulated_inertia_46,
             link_8_articulated_inertia_12
                 .mul_add(
-                    link_8_articulated_inertia_28,
-                    rows_of_48[10][33]
-                        .mul_add(
-                            link_8_articulated_inertia_15,
-                            link_8_bias_11 - rows_of_48[10][45],
-                        ),
-                ),
-        );
-    let link_8_articulated_inertia_53 = link_8_articulated_inertia_26
-        .mul_add(
-            link_8_articulated_inertia_50,
-            link_8_articulated_inertia_13
-                .mul_add(
-                    link_8_articulated_inertia_28,
+                    link_8_articulated_inertia_25,
                     link_8_carried_3
                         .mul_add(
-                            link_8_articulated_inertia_15,
-                            link_8_bias_12 - rows_of_48[10][46],
+                            link_8_articulated_inertia_14,
+                            link_8_bias_12 - rows_of_45[10][43],
                         ),
                 ),
         );
-    let link_8_articulated_inertia_54 = (-link_8_articulated_inertia_27)
+    let link_8_articulated_inertia_49 = (-link_8_articulated_inertia_24)
         .mul_add(
-            link_8_articulated_inertia_50,
-            (-link_8_articulated_inertia_14)
+            link_8_articulated_inertia_46,
+            (-link_8_articulated_inertia_13)
                 .mul_add(
-                    link_8_articulated_inertia_28,
-                    (-rows_of_48[10][39])
+                    link_8_articulated_inertia_25,
+                    (-rows_of_45[10][36])
                         .mul_add(
-                            link_8_articulated_inertia_15,
-                            link_8_bias_13 + rows_of_48[10][47],
+                            link_8_articulated_inertia_14,
+                            link_8_bias_13 + rows_of_45[10][44],
                         ),
                 ),
         );
-    // link_8: seen by parent (122 additions, 173 multiplications)
+    // link_8: seen by parent (122 additions, 170 multiplications)
     let link_8_seen_by_parent = link_8_bias_22
         .mul_add(
-            link_8_articulated_inertia_42,
+            link_8_articulated_inertia_38,
             link_8_bias_21
                 .mul_add(
-                    link_8_articulated_inertia_40,
+                    link_8_articulated_inertia_36,
                     link_8_bias_20
                         .mul_add(
-                            link_8_articulated_inertia_38,
+                            link_8_articulated_inertia_34,
                             link_8_bias_15
                                 .mul_add(
-                                    link_8_articulated_inertia_36,
-                                    link_8_bias_14 * link_8_articulated_inertia_35,
+                                    link_8_articulated_inertia_32,
+                                    link_8_bias_14 * link_8_articulated_inertia_31,
                                 ),
                         ),
                 ),
         );
     let link_8_seen_by_parent_2 = link_8_bias_22
         .mul_add(
-            link_8_articulated_inertia_43,
+            link_8_articulated_inertia_39,
             link_8_bias_21
                 .mul_add(
-                    link_8_articulated_inertia_41,
+                    link_8_articulated_inertia_37,
                     link_8_bias_20
                         .mul_add(
-                            link_8_articulated_inertia_39,
+                            link_8_articulated_inertia_35,
+                            link_8_bias_15
+                                .mul_add(
+                                    link_8_articulated_inertia_33,
+                                    link_8_bias_14 * link_8_articulated_inertia_32,
+                                ),
+                        ),
+                ),
+        );
+    let link_8_seen_by_parent_3 = (-link_8_bias_22)
+        .mul_add(
+            link_8_articulated_inertia_42,
+            (-link_8_bias_21)
+                .mul_add(
+                    link_8_articulated_inertia_41,
+                    (-link_8_bias_20)
+                        .mul_add(
+                            link_8_articulated_inertia_40,
+                            link_8_bias_15
+                                .mul_add(
+                                    link_8_articulated_inertia_35,
+                                    link_8_bias_14 * link_8_articulated_inertia_34,
+                                ),
+                        ),
+                ),
+        );
+    let link_8_seen_by_parent_4 = (-link_8_bias_22)
+        .mul_add(
+            link_8_articulated_inertia_44,
+            (-link_8_bias_21)
+                .mul_add(
+                    link_8_articulated_inertia_43,
+                    (-link_8_bias_20)
+                        .mul_add(
+                            link_8_articulated_inertia_41,
                             link_8_bias_15
                                 .mul_add(
                                     link_8_articulated_inertia_37,
@@ -2626,15 +2505,15 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_8_seen_by_parent_3 = (-link_8_bias_22)
+    let link_8_seen_by_parent_5 = (-link_8_bias_22)
         .mul_add(
-            link_8_articulated_inertia_46,
+            link_8_articulated_inertia_45,
             (-link_8_bias_21)
                 .mul_add(
-                    link_8_articulated_inertia_45,
+                    link_8_articulated_inertia_44,
                     (-link_8_bias_20)
                         .mul_add(
-                            link_8_articulated_inertia_44,
+                            link_8_articulated_inertia_42,
                             link_8_bias_15
                                 .mul_add(
                                     link_8_articulated_inertia_39,
@@ -2643,112 +2522,54 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_8_seen_by_parent_4 = (-link_8_bias_22)
-        .mul_add(
-            link_8_articulated_inertia_48,
-            (-link_8_bias_21)
-                .mul_add(
-                    link_8_articulated_inertia_47,
-                    (-link_8_bias_20)
-                        .mul_add(
-                            link_8_articulated_inertia_45,
-                            link_8_bias_15
-                                .mul_add(
-                                    link_8_articulated_inertia_41,
-                                    link_8_bias_14 * link_8_articulated_inertia_40,
-                                ),
-                        ),
-                ),
-        );
-    let link_8_seen_by_parent_5 = (-link_8_bias_22)
-        .mul_add(
-            link_8_articulated_inertia_49,
-            (-link_8_bias_21)
-                .mul_add(
-                    link_8_articulated_inertia_48,
-                    (-link_8_bias_20)
-                        .mul_add(
-                            link_8_articulated_inertia_46,
-                            link_8_bias_15
-                                .mul_add(
-                                    link_8_articulated_inertia_43,
-                                    link_8_bias_14 * link_8_articulated_inertia_42,
-                                ),
-                        ),
-                ),
-        );
-    let link_8_seen_by_parent_6 = (-link_8_articulated_inertia_22)
-        .mul_add(
-            link_8_articulated_inertia_50,
-            (-link_8_articulated_inertia_9)
-                .mul_add(
-                    link_8_articulated_inertia_28,
-                    (-link_8_carried)
-                        .mul_add(
-                            link_8_articulated_inertia_15,
-                            link_8_carried_4 - link_8_seen_by_parent,
-                        ),
-                ),
-        );
-    let link_8_seen_by_parent_7 = (-link_8_articulated_inertia_23)
-        .mul_add(
-            link_8_articulated_inertia_50,
-            (-link_8_articulated_inertia_10)
-                .mul_add(
-                    link_8_articulated_inertia_28,
-                    (-rows_of_48[10][28])
-                        .mul_add(
-                            link_8_articulated_inertia_15,
-                            link_8_carried_5 - link_8_seen_by_parent_2,
-                        ),
-                ),
-        );
-    let link_8_seen_by_parent_8 = link_8_articulated_inertia_52
+    let link_8_seen_by_parent_6 = tau[21] - link_8_seen_by_parent;
+    let link_8_seen_by_parent_7 = tau[22] - link_8_seen_by_parent_2;
+    let link_8_seen_by_parent_8 = link_8_articulated_inertia_47
         + link_8_seen_by_parent_3;
-    let link_8_seen_by_parent_9 = link_8_articulated_inertia_53
+    let link_8_seen_by_parent_9 = link_8_articulated_inertia_48
         + link_8_seen_by_parent_4;
-    let link_8_seen_by_parent_10 = link_8_articulated_inertia_54
+    let link_8_seen_by_parent_10 = link_8_articulated_inertia_49
         - link_8_seen_by_parent_5;
     let link_8_seen_by_parent_11 = q[64]
-        .mul_add(link_8_articulated_inertia_36, q[63] * link_8_articulated_inertia_35);
+        .mul_add(link_8_articulated_inertia_32, q[63] * link_8_articulated_inertia_31);
     let link_8_seen_by_parent_12 = q[67]
-        .mul_add(link_8_articulated_inertia_36, q[66] * link_8_articulated_inertia_35);
+        .mul_add(link_8_articulated_inertia_32, q[66] * link_8_articulated_inertia_31);
     let link_8_seen_by_parent_13 = q[64]
-        .mul_add(link_8_articulated_inertia_37, q[63] * link_8_articulated_inertia_36);
+        .mul_add(link_8_articulated_inertia_33, q[63] * link_8_articulated_inertia_32);
     let link_8_seen_by_parent_14 = q[67]
-        .mul_add(link_8_articulated_inertia_37, q[66] * link_8_articulated_inertia_36);
+        .mul_add(link_8_articulated_inertia_33, q[66] * link_8_articulated_inertia_32);
     let link_8_seen_by_parent_15 = q[70]
         .mul_add(
             q[70]
                 .mul_add(
-                    link_8_articulated_inertia_37,
-                    q[69] * link_8_articulated_inertia_36,
+                    link_8_articulated_inertia_33,
+                    q[69] * link_8_articulated_inertia_32,
                 ),
             q[69]
                 * (q[70]
                     .mul_add(
-                        link_8_articulated_inertia_36,
-                        q[69] * link_8_articulated_inertia_35,
+                        link_8_articulated_inertia_32,
+                        q[69] * link_8_articulated_inertia_31,
                     )),
         );
     let link_8_seen_by_parent_16 = q[64]
-        .mul_add(link_8_articulated_inertia_39, q[63] * link_8_articulated_inertia_38);
+        .mul_add(link_8_articulated_inertia_35, q[63] * link_8_articulated_inertia_34);
     let link_8_seen_by_parent_17 = q[67]
-        .mul_add(link_8_articulated_inertia_39, q[66] * link_8_articulated_inertia_38);
+        .mul_add(link_8_articulated_inertia_35, q[66] * link_8_articulated_inertia_34);
     let link_8_seen_by_parent_18 = q[70]
-        .mul_add(link_8_articulated_inertia_39, q[69] * link_8_articulated_inertia_38);
+        .mul_add(link_8_articulated_inertia_35, q[69] * link_8_articulated_inertia_34);
     let link_8_seen_by_parent_19 = q[64]
-        .mul_add(link_8_articulated_inertia_41, q[63] * link_8_articulated_inertia_40);
+        .mul_add(link_8_articulated_inertia_37, q[63] * link_8_articulated_inertia_36);
     let link_8_seen_by_parent_20 = q[67]
-        .mul_add(link_8_articulated_inertia_41, q[66] * link_8_articulated_inertia_40);
+        .mul_add(link_8_articulated_inertia_37, q[66] * link_8_articulated_inertia_36);
     let link_8_seen_by_parent_21 = q[70]
-        .mul_add(link_8_articulated_inertia_41, q[69] * link_8_articulated_inertia_40);
+        .mul_add(link_8_articulated_inertia_37, q[69] * link_8_articulated_inertia_36);
     let link_8_seen_by_parent_22 = q[64]
-        .mul_add(link_8_articulated_inertia_43, q[63] * link_8_articulated_inertia_42);
+        .mul_add(link_8_articulated_inertia_39, q[63] * link_8_articulated_inertia_38);
     let link_8_seen_by_parent_23 = q[67]
-        .mul_add(link_8_articulated_inertia_43, q[66] * link_8_articulated_inertia_42);
+        .mul_add(link_8_articulated_inertia_39, q[66] * link_8_articulated_inertia_38);
     let link_8_seen_by_parent_24 = q[70]
-        .mul_add(link_8_articulated_inertia_43, q[69] * link_8_articulated_inertia_42);
+        .mul_add(link_8_articulated_inertia_39, q[69] * link_8_articulated_inertia_38);
     let link_8_seen_by_parent_25 = q[65]
         .mul_add(
             link_8_seen_by_parent_22,
@@ -2776,56 +2597,56 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         );
     let link_8_seen_by_parent_30 = q[65]
         .mul_add(
-            link_8_articulated_inertia_46,
+            link_8_articulated_inertia_42,
             q[64]
                 .mul_add(
-                    link_8_articulated_inertia_45,
-                    q[63] * link_8_articulated_inertia_44,
+                    link_8_articulated_inertia_41,
+                    q[63] * link_8_articulated_inertia_40,
                 ),
         );
     let link_8_seen_by_parent_31 = q[68]
         .mul_add(
-            link_8_articulated_inertia_46,
+            link_8_articulated_inertia_42,
             q[67]
                 .mul_add(
-                    link_8_articulated_inertia_45,
-                    q[66] * link_8_articulated_inertia_44,
+                    link_8_articulated_inertia_41,
+                    q[66] * link_8_articulated_inertia_40,
                 ),
         );
     let link_8_seen_by_parent_32 = q[65]
         .mul_add(
-            link_8_articulated_inertia_48,
+            link_8_articulated_inertia_44,
             q[64]
                 .mul_add(
-                    link_8_articulated_inertia_47,
-                    q[63] * link_8_articulated_inertia_45,
+                    link_8_articulated_inertia_43,
+                    q[63] * link_8_articulated_inertia_41,
                 ),
         );
     let link_8_seen_by_parent_33 = q[68]
         .mul_add(
-            link_8_articulated_inertia_48,
+            link_8_articulated_inertia_44,
             q[67]
                 .mul_add(
-                    link_8_articulated_inertia_47,
-                    q[66] * link_8_articulated_inertia_45,
+                    link_8_articulated_inertia_43,
+                    q[66] * link_8_articulated_inertia_41,
                 ),
         );
     let link_8_seen_by_parent_34 = q[65]
         .mul_add(
-            link_8_articulated_inertia_49,
+            link_8_articulated_inertia_45,
             q[64]
                 .mul_add(
-                    link_8_articulated_inertia_48,
-                    q[63] * link_8_articulated_inertia_46,
+                    link_8_articulated_inertia_44,
+                    q[63] * link_8_articulated_inertia_42,
                 ),
         );
     let link_8_seen_by_parent_35 = q[68]
         .mul_add(
-            link_8_articulated_inertia_49,
+            link_8_articulated_inertia_45,
             q[67]
                 .mul_add(
-                    link_8_articulated_inertia_48,
-                    q[66] * link_8_articulated_inertia_46,
+                    link_8_articulated_inertia_44,
+                    q[66] * link_8_articulated_inertia_42,
                 ),
         );
     let link_8_seen_by_parent_36 = q[65]
@@ -2857,21 +2678,21 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         .mul_add(
             q[71]
                 .mul_add(
-                    link_8_articulated_inertia_48,
+                    link_8_articulated_inertia_44,
                     q[70]
                         .mul_add(
-                            link_8_articulated_inertia_47,
-                            q[69] * link_8_articulated_inertia_45,
+                            link_8_articulated_inertia_43,
+                            q[69] * link_8_articulated_inertia_41,
                         ),
                 ),
             q[69]
                 * (q[71]
                     .mul_add(
-                        link_8_articulated_inertia_46,
+                        link_8_articulated_inertia_42,
                         q[70]
                             .mul_add(
-                                link_8_articulated_inertia_45,
-                                q[69] * link_8_articulated_inertia_44,
+                                link_8_articulated_inertia_41,
+                                q[69] * link_8_articulated_inertia_40,
                             ),
                     )),
         );
@@ -2879,11 +2700,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         .mul_add(
             q[71]
                 .mul_add(
-                    link_8_articulated_inertia_49,
+                    link_8_articulated_inertia_45,
                     q[70]
                         .mul_add(
-                            link_8_articulated_inertia_48,
-                            q[69] * link_8_articulated_inertia_46,
+                            link_8_articulated_inertia_44,
+                            q[69] * link_8_articulated_inertia_42,
                         ),
                 ),
             link_8_seen_by_parent_41,
@@ -2931,97 +2752,78 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_8_seen_by_parent_48 = (-link_8_seen_by_parent_28)
-        .mul_add(
-            n(-0.2),
-            link_8_seen_by_parent_44
-                .mul_add(
-                    n(0.2),
-                    q[64]
-                        .mul_add(
-                            link_8_seen_by_parent_13,
-                            q[63] * link_8_seen_by_parent_11,
-                        ),
-                ),
-        );
-    let link_8_seen_by_parent_49 = (-link_8_seen_by_parent_25)
+    let link_8_seen_by_parent_48 = (-(link_8_seen_by_parent_28
+        + link_8_seen_by_parent_44))
         .mul_add(
             n(0.2),
-            link_8_seen_by_parent_45
-                .mul_add(
-                    n(0.2),
-                    q[67]
-                        .mul_add(
-                            link_8_seen_by_parent_13,
-                            q[66] * link_8_seen_by_parent_11,
-                        ),
-                ),
+            (-q[64])
+                .mul_add(link_8_seen_by_parent_13, -(q[63] * link_8_seen_by_parent_11)),
         );
-    let link_8_seen_by_parent_50 = (-link_8_seen_by_parent_26)
+    let link_8_seen_by_parent_49 = (-q[67])
         .mul_add(
-            n(0.2),
-            link_8_seen_by_parent_43
+            link_8_seen_by_parent_13,
+            (-q[66])
                 .mul_add(
-                    n(-0.2),
-                    q[67]
-                        .mul_add(
-                            link_8_seen_by_parent_14,
-                            q[66] * link_8_seen_by_parent_12,
-                        ),
+                    link_8_seen_by_parent_11,
+                    (link_8_seen_by_parent_25 - link_8_seen_by_parent_45) * n(0.2),
                 ),
         );
-    let link_8_seen_by_parent_51 = -link_8_seen_by_parent_48;
-    let link_8_seen_by_parent_52 = -link_8_seen_by_parent_49;
-    let link_8_seen_by_parent_53 = (-link_8_seen_by_parent_29)
+    let link_8_seen_by_parent_50 = (-link_8_seen_by_parent_29)
         .mul_add(
             n(0.2),
             (-q[70])
                 .mul_add(link_8_seen_by_parent_13, -(q[69] * link_8_seen_by_parent_11)),
         );
-    let link_8_seen_by_parent_54 = -link_8_seen_by_parent_50;
-    let link_8_seen_by_parent_55 = (-link_8_seen_by_parent_27)
+    let link_8_seen_by_parent_51 = (-(link_8_seen_by_parent_26
+        + link_8_seen_by_parent_43))
+        .mul_add(
+            n(-0.2),
+            (-q[67])
+                .mul_add(link_8_seen_by_parent_14, -(q[66] * link_8_seen_by_parent_12)),
+        );
+    let link_8_seen_by_parent_52 = (-link_8_seen_by_parent_27)
         .mul_add(
             n(-0.2),
             (-q[70])
                 .mul_add(link_8_seen_by_parent_14, -(q[69] * link_8_seen_by_parent_12)),
         );
-    let link_8_seen_by_parent_56 = -link_8_seen_by_parent_15;
-    let link_8_seen_by_parent_57 = link_8_seen_by_parent_37
+    let link_8_seen_by_parent_53 = -link_8_seen_by_parent_15;
+    let link_8_seen_by_parent_54 = link_8_seen_by_parent_37
         .mul_add(n(0.2), -link_8_seen_by_parent_25);
-    let link_8_seen_by_parent_58 = -link_8_seen_by_parent_43;
-    let link_8_seen_by_parent_59 = -link_8_seen_by_parent_27;
-    let link_8_seen_by_parent_60 = -link_8_seen_by_parent_44;
-    let link_8_seen_by_parent_61 = -link_8_seen_by_parent_45;
-    let link_8_seen_by_parent_62 = -link_8_seen_by_parent_29;
-    let link_8_seen_by_parent_63 = -link_8_seen_by_parent_46;
-    let link_8_seen_by_parent_64 = -link_8_seen_by_parent_47;
-    let link_8_seen_by_parent_65 = (-q[71])
+    let link_8_seen_by_parent_55 = -link_8_seen_by_parent_43;
+    let link_8_seen_by_parent_56 = -link_8_seen_by_parent_27;
+    let link_8_seen_by_parent_57 = -link_8_seen_by_parent_44;
+    let link_8_seen_by_parent_58 = -link_8_seen_by_parent_45;
+    let link_8_seen_by_parent_59 = -link_8_seen_by_parent_29;
+    let link_8_seen_by_parent_60 = -link_8_seen_by_parent_46;
+    let link_8_seen_by_parent_61 = -link_8_seen_by_parent_47;
+    let link_8_seen_by_parent_62 = (-q[71])
         .mul_add(
             link_8_seen_by_parent_24,
             (-q[70])
                 .mul_add(link_8_seen_by_parent_21, -(q[69] * link_8_seen_by_parent_18)),
         );
-    let link_8_seen_by_parent_66 = q[71]
+    let link_8_seen_by_parent_63 = q[71]
         .mul_add(
-            link_8_articulated_inertia_51,
+            tau[23],
             q[70].mul_add(link_8_seen_by_parent_7, q[69] * link_8_seen_by_parent_6),
         );
-    let link_8_seen_by_parent_67 = (-q[65])
+    let link_8_seen_by_parent_64 = (-q[65])
         .mul_add(
             link_8_seen_by_parent_10,
             q[64].mul_add(link_8_seen_by_parent_9, q[63] * link_8_seen_by_parent_8),
         );
-    let link_8_seen_by_parent_68 = (-q[68])
+    let link_8_seen_by_parent_65 = (-q[68])
         .mul_add(
             link_8_seen_by_parent_10,
             q[67].mul_add(link_8_seen_by_parent_9, q[66] * link_8_seen_by_parent_8),
         );
-    let link_8_seen_by_parent_69 = link_8_seen_by_parent_68
+    let link_8_seen_by_parent_66 = link_8_seen_by_parent_65
         .mul_add(
             n(-0.2),
             q[65]
                 .mul_add(
-                    link_8_articulated_inertia_51,
+                    tau[23],
                     q[64]
                         .mul_add(
                             link_8_seen_by_parent_7,
@@ -3029,12 +2831,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_8_seen_by_parent_70 = (-link_8_seen_by_parent_67)
+    let link_8_seen_by_parent_67 = (-link_8_seen_by_parent_64)
         .mul_add(
             n(-0.2),
             q[68]
                 .mul_add(
-                    link_8_articulated_inertia_51,
+                    tau[23],
                     q[67]
                         .mul_add(
                             link_8_seen_by_parent_7,
@@ -3042,41 +2844,41 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_8_seen_by_parent_71 = -link_8_seen_by_parent_67;
-    let link_8_seen_by_parent_72 = -link_8_seen_by_parent_68;
-    let link_8_seen_by_parent_73 = (-q[70])
+    let link_8_seen_by_parent_68 = -link_8_seen_by_parent_64;
+    let link_8_seen_by_parent_69 = -link_8_seen_by_parent_65;
+    let link_8_seen_by_parent_70 = (-q[70])
         .mul_add(
             link_8_seen_by_parent_9,
             (-q[69]).mul_add(link_8_seen_by_parent_8, q[71] * link_8_seen_by_parent_10),
         );
-    rows_of_48[11] = [
+    rows_of_45[11] = [
         link_8_articulated_inertia_2,
         link_8_articulated_inertia_3,
         link_8_articulated_inertia_4,
         link_8_articulated_inertia_5,
         link_8_articulated_inertia_6,
-        link_8_articulated_inertia_7,
+        link_8_articulated_inertia_14,
         link_8_articulated_inertia_15,
         link_8_articulated_inertia_16,
         link_8_articulated_inertia_17,
         link_8_articulated_inertia_18,
         link_8_articulated_inertia_19,
-        link_8_articulated_inertia_20,
-        link_8_articulated_inertia_21,
+        link_8_articulated_inertia_25,
+        link_8_articulated_inertia_26,
+        link_8_articulated_inertia_27,
         link_8_articulated_inertia_28,
         link_8_articulated_inertia_29,
         link_8_articulated_inertia_30,
-        link_8_articulated_inertia_31,
-        link_8_articulated_inertia_32,
-        link_8_articulated_inertia_33,
-        link_8_articulated_inertia_34,
-        link_8_articulated_inertia_50,
+        link_8_articulated_inertia_46,
         link_8_seen_by_parent_36,
         link_8_seen_by_parent_37,
         link_8_seen_by_parent_38,
         link_8_seen_by_parent_39,
         link_8_seen_by_parent_40,
         link_8_seen_by_parent_42,
+        link_8_seen_by_parent_48,
+        link_8_seen_by_parent_49,
+        link_8_seen_by_parent_50,
         link_8_seen_by_parent_51,
         link_8_seen_by_parent_52,
         link_8_seen_by_parent_53,
@@ -3090,14 +2892,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         link_8_seen_by_parent_61,
         link_8_seen_by_parent_62,
         link_8_seen_by_parent_63,
-        link_8_seen_by_parent_64,
-        link_8_seen_by_parent_65,
         link_8_seen_by_parent_66,
+        link_8_seen_by_parent_67,
+        link_8_seen_by_parent_68,
         link_8_seen_by_parent_69,
         link_8_seen_by_parent_70,
-        link_8_seen_by_parent_71,
-        link_8_seen_by_parent_72,
-        link_8_seen_by_parent_73,
     ];
     // each of link_7, link_6, … link_3 (5 bodies):
     const LIKE_5_NUMBERS: [[f64; 4]; 5] = [
@@ -3129,828 +2928,776 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     ];
     for i in 0..5 {
         let numbers = &LIKE_5_NUMBERS[i];
-        let child_2 = &rows_of_48[i + 11];
+        let child_2 = &rows_of_45[i + 11];
         let own_4 = &rows_of_15[5 - 1 * i];
         // each: carried (14 additions)
-        let each_carried_7 = child_2[27] + n(numbers[0]);
-        let each_carried_8 = child_2[29] + n(0.00041000000000000005);
-        let each_carried_9 = child_2[36] + n(numbers[3]);
-        let each_carried_10 = own_4[3] + child_2[43];
-        let each_carried_11 = own_4[4] + child_2[44];
-        let each_carried_12 = own_4[5] + child_2[42];
-        // each: articulated inertia (64 additions, 91 multiplications, 3 divisions)
-        let each_articulated_inertia_55 = each_carried_10 - tau[18 - 3 * i];
-        let each_inverse_inertia_4 = n(1.0) / each_carried_7;
-        let each_articulated_inertia_56 = each_carried_7 * each_inverse_inertia_4;
-        let each_articulated_inertia_57 = child_2[28] * each_inverse_inertia_4;
-        let each_articulated_inertia_58 = each_carried_8 * each_inverse_inertia_4;
-        let each_articulated_inertia_59 = child_2[33] * each_inverse_inertia_4;
-        let each_articulated_inertia_60 = each_carried_9 * each_inverse_inertia_4;
-        let each_articulated_inertia_61 = child_2[39] * each_inverse_inertia_4;
-        let each_articulated_inertia_62 = (-each_articulated_inertia_55)
-            .mul_add(each_articulated_inertia_57, each_carried_11 - tau[19 - 3 * i]);
-        let each_articulated_inertia_63 = (-each_carried_7)
-            .mul_add(each_articulated_inertia_57, child_2[28]);
-        let each_articulated_inertia_64 = (-child_2[28])
-            .mul_add(each_articulated_inertia_57, child_2[30] + n(numbers[1]));
-        let each_articulated_inertia_65 = (-each_carried_8)
-            .mul_add(each_articulated_inertia_57, child_2[31]);
-        let each_articulated_inertia_66 = (-child_2[33])
-            .mul_add(each_articulated_inertia_57, child_2[34] + n(numbers[2]));
-        let each_articulated_inertia_67 = (-each_carried_9)
-            .mul_add(each_articulated_inertia_57, child_2[37]);
-        let each_articulated_inertia_68 = (-child_2[39])
-            .mul_add(each_articulated_inertia_57, child_2[40] + n(-0.004));
-        let each_articulated_inertia_69 = each_articulated_inertia_55
+        let each_carried_4 = child_2[24] + n(numbers[0]);
+        let each_carried_5 = child_2[26] + n(0.00041000000000000005);
+        let each_carried_6 = child_2[33] + n(numbers[3]);
+        // each: articulated inertia (55 additions, 79 multiplications, 3 divisions)
+        let each_articulated_inertia_50 = own_4[3] + child_2[40] - tau[18 - 3 * i];
+        let each_inverse_inertia_4 = n(1.0) / each_carried_4;
+        let each_articulated_inertia_51 = child_2[25] * each_inverse_inertia_4;
+        let each_articulated_inertia_52 = each_carried_5 * each_inverse_inertia_4;
+        let each_articulated_inertia_53 = child_2[30] * each_inverse_inertia_4;
+        let each_articulated_inertia_54 = each_carried_6 * each_inverse_inertia_4;
+        let each_articulated_inertia_55 = child_2[36] * each_inverse_inertia_4;
+        let each_articulated_inertia_56 = (-each_articulated_inertia_50)
+            .mul_add(
+                each_articulated_inertia_51,
+                own_4[4] + child_2[41] - tau[19 - 3 * i],
+            );
+        let each_articulated_inertia_57 = (-each_carried_4)
+            .mul_add(each_articulated_inertia_51, child_2[25]);
+        let each_articulated_inertia_58 = (-child_2[25])
+            .mul_add(each_articulated_inertia_51, child_2[27] + n(numbers[1]));
+        let each_articulated_inertia_59 = (-each_carried_5)
+            .mul_add(each_articulated_inertia_51, child_2[28]);
+        let each_articulated_inertia_60 = (-child_2[30])
+            .mul_add(each_articulated_inertia_51, child_2[31] + n(numbers[2]));
+        let each_articulated_inertia_61 = (-each_carried_6)
+            .mul_add(each_articulated_inertia_51, child_2[34]);
+        let each_articulated_inertia_62 = (-child_2[36])
+            .mul_add(each_articulated_inertia_51, child_2[37] + n(-0.004));
+        let each_articulated_inertia_63 = each_articulated_inertia_50
             * each_inverse_inertia_4;
-        let each_inverse_inertia_5 = n(1.0) / each_articulated_inertia_64;
-        let each_articulated_inertia_70 = each_articulated_inertia_63
+        let each_inverse_inertia_5 = n(1.0) / each_articulated_inertia_58;
+        let each_articulated_inertia_64 = each_articulated_inertia_57
             * each_inverse_inertia_5;
-        let each_articulated_inertia_71 = each_articulated_inertia_64
+        let each_articulated_inertia_65 = each_articulated_inertia_59
             * each_inverse_inertia_5;
-        let each_articulated_inertia_72 = each_articulated_inertia_65
+        let each_articulated_inertia_66 = each_articulated_inertia_60
             * each_inverse_inertia_5;
-        let each_articulated_inertia_73 = each_articulated_inertia_66
+        let each_articulated_inertia_67 = each_articulated_inertia_61
             * each_inverse_inertia_5;
-        let each_articulated_inertia_74 = each_articulated_inertia_67
+        let each_articulated_inertia_68 = each_articulated_inertia_62
             * each_inverse_inertia_5;
-        let each_articulated_inertia_75 = each_articulated_inertia_68
-            * each_inverse_inertia_5;
-        let each_articulated_inertia_76 = (-each_articulated_inertia_63)
+        let each_articulated_inertia_69 = (-each_articulated_inertia_57)
             .mul_add(
-                each_articulated_inertia_72,
-                (-each_carried_7).mul_add(each_articulated_inertia_58, each_carried_8),
+                each_articulated_inertia_65,
+                (-each_carried_4).mul_add(each_articulated_inertia_52, each_carried_5),
             );
-        let each_articulated_inertia_77 = (-each_articulated_inertia_64)
+        let each_articulated_inertia_70 = (-each_articulated_inertia_58)
             .mul_add(
-                each_articulated_inertia_72,
-                (-child_2[28]).mul_add(each_articulated_inertia_58, child_2[31]),
+                each_articulated_inertia_65,
+                (-child_2[25]).mul_add(each_articulated_inertia_52, child_2[28]),
             );
-        let each_articulated_inertia_78 = (-each_articulated_inertia_65)
+        let each_articulated_inertia_71 = (-each_articulated_inertia_60)
             .mul_add(
-                each_articulated_inertia_72,
-                (-each_carried_8)
-                    .mul_add(
-                        each_articulated_inertia_58,
-                        child_2[32] + n(0.00023999999999999976),
-                    ),
+                each_articulated_inertia_65,
+                (-child_2[30]).mul_add(each_articulated_inertia_52, child_2[32]),
             );
-        let each_articulated_inertia_79 = (-each_articulated_inertia_66)
+        let each_articulated_inertia_72 = (-each_articulated_inertia_61)
             .mul_add(
-                each_articulated_inertia_72,
-                (-child_2[33]).mul_add(each_articulated_inertia_58, child_2[35]),
+                each_articulated_inertia_65,
+                (-each_carried_6)
+                    .mul_add(each_articulated_inertia_52, child_2[35] + n(0.004)),
             );
-        let each_articulated_inertia_80 = (-each_articulated_inertia_67)
+        let each_articulated_inertia_73 = (-each_articulated_inertia_62)
             .mul_add(
-                each_articulated_inertia_72,
-                (-each_carried_9)
-                    .mul_add(each_articulated_inertia_58, child_2[38] + n(0.004)),
+                each_articulated_inertia_65,
+                (-child_2[36]).mul_add(each_articulated_inertia_52, child_2[38]),
             );
-        let each_articulated_inertia_81 = (-each_articulated_inertia_68)
-            .mul_add(
-                each_articulated_inertia_72,
-                (-child_2[39]).mul_add(each_articulated_inertia_58, child_2[41]),
-            );
-        let each_articulated_inertia_82 = each_articulated_inertia_62
+        let each_articulated_inertia_74 = each_articulated_inertia_56
             * each_inverse_inertia_5;
-        let each_inverse_inertia_6 = n(1.0) / each_articulated_inertia_78;
-        let each_articulated_inertia_83 = each_articulated_inertia_76
+        let each_inverse_inertia_6 = n(1.0)
+            / ((-each_articulated_inertia_59)
+                .mul_add(
+                    each_articulated_inertia_65,
+                    (-each_carried_5)
+                        .mul_add(each_articulated_inertia_52, child_2[29] + n(0.00024)),
+                ));
+        let each_articulated_inertia_75 = each_articulated_inertia_69
             * each_inverse_inertia_6;
-        let each_articulated_inertia_84 = each_articulated_inertia_77
+        let each_articulated_inertia_76 = each_articulated_inertia_70
             * each_inverse_inertia_6;
-        let each_articulated_inertia_85 = each_articulated_inertia_78
+        let each_articulated_inertia_77 = each_articulated_inertia_71
             * each_inverse_inertia_6;
-        let each_articulated_inertia_86 = each_articulated_inertia_79
+        let each_articulated_inertia_78 = each_articulated_inertia_72
             * each_inverse_inertia_6;
-        let each_articulated_inertia_87 = each_articulated_inertia_80
+        let each_articulated_inertia_79 = each_articulated_inertia_73
             * each_inverse_inertia_6;
-        let each_articulated_inertia_88 = each_articulated_inertia_81
-            * each_inverse_inertia_6;
-        let each_articulated_inertia_89 = each_articulated_inertia_76
+        let each_articulated_inertia_80 = each_articulated_inertia_69
             .mul_add(
-                each_articulated_inertia_83,
-                each_articulated_inertia_63 * each_articulated_inertia_70,
+                each_articulated_inertia_75,
+                each_articulated_inertia_57 * each_articulated_inertia_64,
             );
-        let each_articulated_inertia_90 = each_articulated_inertia_76
-            * each_articulated_inertia_84;
-        let each_articulated_inertia_91 = each_articulated_inertia_77
-            * each_articulated_inertia_84;
-        let each_articulated_inertia_92 = each_articulated_inertia_76
+        let each_articulated_inertia_81 = each_articulated_inertia_69
+            * each_articulated_inertia_76;
+        let each_articulated_inertia_82 = each_articulated_inertia_70
+            * each_articulated_inertia_76;
+        let each_articulated_inertia_83 = each_articulated_inertia_69
             .mul_add(
-                each_articulated_inertia_86,
-                each_articulated_inertia_63 * each_articulated_inertia_73,
+                each_articulated_inertia_77,
+                each_articulated_inertia_57 * each_articulated_inertia_66,
             );
-        let each_articulated_inertia_93 = each_articulated_inertia_77
-            * each_articulated_inertia_86;
-        let each_articulated_inertia_94 = each_articulated_inertia_76
+        let each_articulated_inertia_84 = each_articulated_inertia_70
+            * each_articulated_inertia_77;
+        let each_articulated_inertia_85 = each_articulated_inertia_69
             .mul_add(
-                each_articulated_inertia_87,
-                each_articulated_inertia_63 * each_articulated_inertia_74,
+                each_articulated_inertia_78,
+                each_articulated_inertia_57 * each_articulated_inertia_67,
             );
-        let each_articulated_inertia_95 = each_articulated_inertia_77
-            * each_articulated_inertia_87;
-        let each_articulated_inertia_96 = each_articulated_inertia_76
+        let each_articulated_inertia_86 = each_articulated_inertia_70
+            * each_articulated_inertia_78;
+        let each_articulated_inertia_87 = each_articulated_inertia_69
             .mul_add(
-                each_articulated_inertia_88,
-                each_articulated_inertia_63 * each_articulated_inertia_75,
+                each_articulated_inertia_79,
+                each_articulated_inertia_57 * each_articulated_inertia_68,
             );
-        let each_articulated_inertia_97 = each_articulated_inertia_77
-            * each_articulated_inertia_88;
-        let each_articulated_inertia_98 = (-each_articulated_inertia_79)
+        let each_articulated_inertia_88 = each_articulated_inertia_70
+            * each_articulated_inertia_79;
+        let each_articulated_inertia_89 = (-each_articulated_inertia_71)
             .mul_add(
-                each_articulated_inertia_86,
-                (-each_articulated_inertia_66)
+                each_articulated_inertia_77,
+                (-each_articulated_inertia_60)
                     .mul_add(
-                        each_articulated_inertia_73,
-                        (-child_2[33]).mul_add(each_articulated_inertia_59, child_2[21]),
+                        each_articulated_inertia_66,
+                        (-child_2[30]).mul_add(each_articulated_inertia_53, child_2[18]),
                     ),
             );
-        let each_articulated_inertia_99 = (-each_articulated_inertia_79)
+        let each_articulated_inertia_90 = (-each_articulated_inertia_71)
             .mul_add(
-                each_articulated_inertia_87,
-                (-each_articulated_inertia_66)
+                each_articulated_inertia_78,
+                (-each_articulated_inertia_60)
                     .mul_add(
-                        each_articulated_inertia_74,
-                        (-child_2[33]).mul_add(each_articulated_inertia_60, child_2[22]),
+                        each_articulated_inertia_67,
+                        (-child_2[30]).mul_add(each_articulated_inertia_54, child_2[19]),
                     ),
             );
-        let each_articulated_inertia_100 = (-each_articulated_inertia_79)
+        let each_articulated_inertia_91 = (-each_articulated_inertia_71)
             .mul_add(
-                each_articulated_inertia_88,
-                (-each_articulated_inertia_66)
+                each_articulated_inertia_79,
+                (-each_articulated_inertia_60)
                     .mul_add(
-                        each_articulated_inertia_75,
-                        (-child_2[33]).mul_add(each_articulated_inertia_61, child_2[23]),
+                        each_articulated_inertia_68,
+                        (-child_2[30]).mul_add(each_articulated_inertia_55, child_2[20]),
                     ),
             );
-        let each_articulated_inertia_101 = (-each_articulated_inertia_80)
+        let each_articulated_inertia_92 = (-each_articulated_inertia_72)
             .mul_add(
-                each_articulated_inertia_87,
-                (-each_articulated_inertia_67)
+                each_articulated_inertia_78,
+                (-each_articulated_inertia_61)
                     .mul_add(
-                        each_articulated_inertia_74,
-                        (-each_carried_9)
-                            .mul_add(each_articulated_inertia_60, child_2[24]),
+                        each_articulated_inertia_67,
+                        (-each_carried_6)
+                            .mul_add(each_articulated_inertia_54, child_2[21]),
                     ),
             );
-        let each_articulated_inertia_102 = (-each_articulated_inertia_80)
+        let each_articulated_inertia_93 = (-each_articulated_inertia_72)
             .mul_add(
-                each_articulated_inertia_88,
-                (-each_articulated_inertia_67)
+                each_articulated_inertia_79,
+                (-each_articulated_inertia_61)
                     .mul_add(
-                        each_articulated_inertia_75,
-                        (-each_carried_9)
-                            .mul_add(each_articulated_inertia_61, child_2[25]),
+                        each_articulated_inertia_68,
+                        (-each_carried_6)
+                            .mul_add(each_articulated_inertia_55, child_2[22]),
                     ),
             );
-        let each_articulated_inertia_103 = (-each_articulated_inertia_81)
+        let each_articulated_inertia_94 = (-each_articulated_inertia_73)
             .mul_add(
-                each_articulated_inertia_88,
-                (-each_articulated_inertia_68)
+                each_articulated_inertia_79,
+                (-each_articulated_inertia_62)
                     .mul_add(
-                        each_articulated_inertia_75,
-                        (-child_2[39]).mul_add(each_articulated_inertia_61, child_2[26]),
+                        each_articulated_inertia_68,
+                        (-child_2[36]).mul_add(each_articulated_inertia_55, child_2[23]),
                     ),
             );
-        let each_articulated_inertia_104 = ((-each_articulated_inertia_62)
+        let each_articulated_inertia_95 = ((-each_articulated_inertia_56)
             .mul_add(
-                each_articulated_inertia_72,
-                (-each_articulated_inertia_55)
+                each_articulated_inertia_65,
+                (-each_articulated_inertia_50)
                     .mul_add(
-                        each_articulated_inertia_58,
-                        each_carried_12 - tau[20 - 3 * i],
+                        each_articulated_inertia_52,
+                        own_4[5] + child_2[39] - tau[20 - 3 * i],
                     ),
             )) * each_inverse_inertia_6;
-        let each_articulated_inertia_105 = (-each_articulated_inertia_78)
+        let each_articulated_inertia_96 = each_articulated_inertia_71
             .mul_add(
-                each_articulated_inertia_104,
-                (-each_articulated_inertia_65)
+                each_articulated_inertia_95,
+                each_articulated_inertia_60
                     .mul_add(
-                        each_articulated_inertia_82,
-                        (-each_carried_8)
-                            .mul_add(each_articulated_inertia_69, each_carried_12),
+                        each_articulated_inertia_74,
+                        child_2[30]
+                            .mul_add(each_articulated_inertia_63, own_4[6] - child_2[42]),
                     ),
             );
-        let each_articulated_inertia_106 = each_articulated_inertia_79
+        let each_articulated_inertia_97 = (-each_articulated_inertia_72)
             .mul_add(
-                each_articulated_inertia_104,
-                each_articulated_inertia_66
+                each_articulated_inertia_95,
+                (-each_articulated_inertia_61)
                     .mul_add(
-                        each_articulated_inertia_82,
-                        child_2[33]
-                            .mul_add(each_articulated_inertia_69, own_4[6] - child_2[45]),
+                        each_articulated_inertia_74,
+                        (-each_carried_6)
+                            .mul_add(each_articulated_inertia_63, own_4[7] + child_2[43]),
                     ),
             );
-        let each_articulated_inertia_107 = (-each_articulated_inertia_80)
+        let each_articulated_inertia_98 = (-each_articulated_inertia_73)
             .mul_add(
-                each_articulated_inertia_104,
-                (-each_articulated_inertia_67)
+                each_articulated_inertia_95,
+                (-each_articulated_inertia_62)
                     .mul_add(
-                        each_articulated_inertia_82,
-                        (-each_carried_9)
-                            .mul_add(each_articulated_inertia_69, own_4[7] + child_2[46]),
+                        each_articulated_inertia_74,
+                        (-child_2[36])
+                            .mul_add(each_articulated_inertia_63, own_4[8] + child_2[44]),
                     ),
             );
-        let each_articulated_inertia_108 = (-each_articulated_inertia_81)
+        // each: seen by parent (122 additions, 170 multiplications)
+        let each_seen_by_parent_71 = own_4[14]
             .mul_add(
-                each_articulated_inertia_104,
-                (-each_articulated_inertia_68)
-                    .mul_add(
-                        each_articulated_inertia_82,
-                        (-child_2[39])
-                            .mul_add(each_articulated_inertia_69, own_4[8] + child_2[47]),
-                    ),
-            );
-        // each: seen by parent (122 additions, 173 multiplications)
-        let each_seen_by_parent_74 = own_4[14]
-            .mul_add(
-                each_articulated_inertia_96,
+                each_articulated_inertia_87,
                 own_4[13]
                     .mul_add(
-                        each_articulated_inertia_94,
+                        each_articulated_inertia_85,
                         own_4[12]
                             .mul_add(
-                                each_articulated_inertia_92,
+                                each_articulated_inertia_83,
                                 own_4[10]
                                     .mul_add(
-                                        each_articulated_inertia_90,
-                                        own_4[9] * each_articulated_inertia_89,
+                                        each_articulated_inertia_81,
+                                        own_4[9] * each_articulated_inertia_80,
                                     ),
                             ),
                     ),
             );
-        let each_seen_by_parent_75 = own_4[14]
+        let each_seen_by_parent_72 = own_4[14]
             .mul_add(
-                each_articulated_inertia_97,
+                each_articulated_inertia_88,
                 own_4[13]
                     .mul_add(
-                        each_articulated_inertia_95,
+                        each_articulated_inertia_86,
                         own_4[12]
                             .mul_add(
-                                each_articulated_inertia_93,
+                                each_articulated_inertia_84,
                                 own_4[10]
                                     .mul_add(
-                                        each_articulated_inertia_91,
-                                        own_4[9] * each_articulated_inertia_90,
+                                        each_articulated_inertia_82,
+                                        own_4[9] * each_articulated_inertia_81,
                                     ),
                             ),
                     ),
             );
-        let each_seen_by_parent_76 = (-own_4[14])
-            .mul_add(
-                each_articulated_inertia_100,
-                (-own_4[13])
-                    .mul_add(
-                        each_articulated_inertia_99,
-                        (-own_4[12])
-                            .mul_add(
-                                each_articulated_inertia_98,
-                                own_4[10]
-                                    .mul_add(
-                                        each_articulated_inertia_93,
-                                        own_4[9] * each_articulated_inertia_92,
-                                    ),
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_77 = (-own_4[14])
-            .mul_add(
-                each_articulated_inertia_102,
-                (-own_4[13])
-                    .mul_add(
-                        each_articulated_inertia_101,
-                        (-own_4[12])
-                            .mul_add(
-                                each_articulated_inertia_99,
-                                own_4[10]
-                                    .mul_add(
-                                        each_articulated_inertia_95,
-                                        own_4[9] * each_articulated_inertia_94,
-                                    ),
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_78 = (-own_4[14])
-            .mul_add(
-                each_articulated_inertia_103,
-                (-own_4[13])
-                    .mul_add(
-                        each_articulated_inertia_102,
-                        (-own_4[12])
-                            .mul_add(
-                                each_articulated_inertia_100,
-                                own_4[10]
-                                    .mul_add(
-                                        each_articulated_inertia_97,
-                                        own_4[9] * each_articulated_inertia_96,
-                                    ),
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_79 = (-each_articulated_inertia_76)
-            .mul_add(
-                each_articulated_inertia_104,
-                (-each_articulated_inertia_63)
-                    .mul_add(
-                        each_articulated_inertia_82,
-                        (-each_carried_7)
-                            .mul_add(
-                                each_articulated_inertia_69,
-                                each_carried_10 - each_seen_by_parent_74,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_80 = (-each_articulated_inertia_77)
-            .mul_add(
-                each_articulated_inertia_104,
-                (-each_articulated_inertia_64)
-                    .mul_add(
-                        each_articulated_inertia_82,
-                        (-child_2[28])
-                            .mul_add(
-                                each_articulated_inertia_69,
-                                each_carried_11 - each_seen_by_parent_75,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_81 = each_articulated_inertia_106
-            + each_seen_by_parent_76;
-        let each_seen_by_parent_82 = each_articulated_inertia_107
-            - each_seen_by_parent_77;
-        let each_seen_by_parent_83 = each_articulated_inertia_108
-            - each_seen_by_parent_78;
-        let each_seen_by_parent_84 = q[55 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_90,
-                q[54 - 9 * i] * each_articulated_inertia_89,
-            );
-        let each_seen_by_parent_85 = q[58 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_90,
-                q[57 - 9 * i] * each_articulated_inertia_89,
-            );
-        let each_seen_by_parent_86 = q[55 - 9 * i]
+        let each_seen_by_parent_73 = (-own_4[14])
             .mul_add(
                 each_articulated_inertia_91,
-                q[54 - 9 * i] * each_articulated_inertia_90,
+                (-own_4[13])
+                    .mul_add(
+                        each_articulated_inertia_90,
+                        (-own_4[12])
+                            .mul_add(
+                                each_articulated_inertia_89,
+                                own_4[10]
+                                    .mul_add(
+                                        each_articulated_inertia_84,
+                                        own_4[9] * each_articulated_inertia_83,
+                                    ),
+                            ),
+                    ),
             );
-        let each_seen_by_parent_87 = q[58 - 9 * i]
+        let each_seen_by_parent_74 = (-own_4[14])
             .mul_add(
-                each_articulated_inertia_91,
-                q[57 - 9 * i] * each_articulated_inertia_90,
+                each_articulated_inertia_93,
+                (-own_4[13])
+                    .mul_add(
+                        each_articulated_inertia_92,
+                        (-own_4[12])
+                            .mul_add(
+                                each_articulated_inertia_90,
+                                own_4[10]
+                                    .mul_add(
+                                        each_articulated_inertia_86,
+                                        own_4[9] * each_articulated_inertia_85,
+                                    ),
+                            ),
+                    ),
             );
-        let each_seen_by_parent_88 = q[61 - 9 * i]
+        let each_seen_by_parent_75 = (-own_4[14])
+            .mul_add(
+                each_articulated_inertia_94,
+                (-own_4[13])
+                    .mul_add(
+                        each_articulated_inertia_93,
+                        (-own_4[12])
+                            .mul_add(
+                                each_articulated_inertia_91,
+                                own_4[10]
+                                    .mul_add(
+                                        each_articulated_inertia_88,
+                                        own_4[9] * each_articulated_inertia_87,
+                                    ),
+                            ),
+                    ),
+            );
+        let each_seen_by_parent_76 = tau[18 - 3 * i] - each_seen_by_parent_71;
+        let each_seen_by_parent_77 = tau[19 - 3 * i] - each_seen_by_parent_72;
+        let each_seen_by_parent_78 = each_articulated_inertia_96
+            + each_seen_by_parent_73;
+        let each_seen_by_parent_79 = each_articulated_inertia_97
+            - each_seen_by_parent_74;
+        let each_seen_by_parent_80 = each_articulated_inertia_98
+            - each_seen_by_parent_75;
+        let each_seen_by_parent_81 = q[55 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_81,
+                q[54 - 9 * i] * each_articulated_inertia_80,
+            );
+        let each_seen_by_parent_82 = q[58 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_81,
+                q[57 - 9 * i] * each_articulated_inertia_80,
+            );
+        let each_seen_by_parent_83 = q[55 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_82,
+                q[54 - 9 * i] * each_articulated_inertia_81,
+            );
+        let each_seen_by_parent_84 = q[58 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_82,
+                q[57 - 9 * i] * each_articulated_inertia_81,
+            );
+        let each_seen_by_parent_85 = q[61 - 9 * i]
             .mul_add(
                 q[61 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_91,
-                        q[60 - 9 * i] * each_articulated_inertia_90,
+                        each_articulated_inertia_82,
+                        q[60 - 9 * i] * each_articulated_inertia_81,
                     ),
                 q[60 - 9 * i]
                     * (q[61 - 9 * i]
                         .mul_add(
-                            each_articulated_inertia_90,
-                            q[60 - 9 * i] * each_articulated_inertia_89,
+                            each_articulated_inertia_81,
+                            q[60 - 9 * i] * each_articulated_inertia_80,
                         )),
+            );
+        let each_seen_by_parent_86 = q[55 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_84,
+                q[54 - 9 * i] * each_articulated_inertia_83,
+            );
+        let each_seen_by_parent_87 = q[58 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_84,
+                q[57 - 9 * i] * each_articulated_inertia_83,
+            );
+        let each_seen_by_parent_88 = q[61 - 9 * i]
+            .mul_add(
+                each_articulated_inertia_84,
+                q[60 - 9 * i] * each_articulated_inertia_83,
             );
         let each_seen_by_parent_89 = q[55 - 9 * i]
             .mul_add(
-                each_articulated_inertia_93,
-                q[54 - 9 * i] * each_articulated_inertia_92,
+                each_articulated_inertia_86,
+                q[54 - 9 * i] * each_articulated_inertia_85,
             );
         let each_seen_by_parent_90 = q[58 - 9 * i]
             .mul_add(
-                each_articulated_inertia_93,
-                q[57 - 9 * i] * each_articulated_inertia_92,
+                each_articulated_inertia_86,
+                q[57 - 9 * i] * each_articulated_inertia_85,
             );
         let each_seen_by_parent_91 = q[61 - 9 * i]
             .mul_add(
-                each_articulated_inertia_93,
-                q[60 - 9 * i] * each_articulated_inertia_92,
+                each_articulated_inertia_86,
+                q[60 - 9 * i] * each_articulated_inertia_85,
             );
         let each_seen_by_parent_92 = q[55 - 9 * i]
             .mul_add(
-                each_articulated_inertia_95,
-                q[54 - 9 * i] * each_articulated_inertia_94,
+                each_articulated_inertia_88,
+                q[54 - 9 * i] * each_articulated_inertia_87,
             );
         let each_seen_by_parent_93 = q[58 - 9 * i]
             .mul_add(
-                each_articulated_inertia_95,
-                q[57 - 9 * i] * each_articulated_inertia_94,
+                each_articulated_inertia_88,
+                q[57 - 9 * i] * each_articulated_inertia_87,
             );
         let each_seen_by_parent_94 = q[61 - 9 * i]
             .mul_add(
-                each_articulated_inertia_95,
-                q[60 - 9 * i] * each_articulated_inertia_94,
+                each_articulated_inertia_88,
+                q[60 - 9 * i] * each_articulated_inertia_87,
             );
-        let each_seen_by_parent_95 = q[55 - 9 * i]
+        let each_seen_by_parent_95 = q[56 - 9 * i]
             .mul_add(
-                each_articulated_inertia_97,
-                q[54 - 9 * i] * each_articulated_inertia_96,
-            );
-        let each_seen_by_parent_96 = q[58 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_97,
-                q[57 - 9 * i] * each_articulated_inertia_96,
-            );
-        let each_seen_by_parent_97 = q[61 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_97,
-                q[60 - 9 * i] * each_articulated_inertia_96,
-            );
-        let each_seen_by_parent_98 = q[56 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_95,
+                each_seen_by_parent_92,
                 q[55 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_92,
-                        q[54 - 9 * i] * each_seen_by_parent_89,
+                        each_seen_by_parent_89,
+                        q[54 - 9 * i] * each_seen_by_parent_86,
                     ),
             );
-        let each_seen_by_parent_99 = q[56 - 9 * i]
+        let each_seen_by_parent_96 = q[56 - 9 * i]
             .mul_add(
-                each_seen_by_parent_96,
+                each_seen_by_parent_93,
                 q[55 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_93,
-                        q[54 - 9 * i] * each_seen_by_parent_90,
+                        each_seen_by_parent_90,
+                        q[54 - 9 * i] * each_seen_by_parent_87,
+                    ),
+            );
+        let each_seen_by_parent_97 = q[56 - 9 * i]
+            .mul_add(
+                each_seen_by_parent_94,
+                q[55 - 9 * i]
+                    .mul_add(
+                        each_seen_by_parent_91,
+                        q[54 - 9 * i] * each_seen_by_parent_88,
+                    ),
+            );
+        let each_seen_by_parent_98 = q[59 - 9 * i]
+            .mul_add(
+                each_seen_by_parent_92,
+                q[58 - 9 * i]
+                    .mul_add(
+                        each_seen_by_parent_89,
+                        q[57 - 9 * i] * each_seen_by_parent_86,
+                    ),
+            );
+        let each_seen_by_parent_99 = q[59 - 9 * i]
+            .mul_add(
+                each_seen_by_parent_94,
+                q[58 - 9 * i]
+                    .mul_add(
+                        each_seen_by_parent_91,
+                        q[57 - 9 * i] * each_seen_by_parent_88,
                     ),
             );
         let each_seen_by_parent_100 = q[56 - 9 * i]
             .mul_add(
-                each_seen_by_parent_97,
+                each_articulated_inertia_91,
                 q[55 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_94,
-                        q[54 - 9 * i] * each_seen_by_parent_91,
+                        each_articulated_inertia_90,
+                        q[54 - 9 * i] * each_articulated_inertia_89,
                     ),
             );
         let each_seen_by_parent_101 = q[59 - 9 * i]
             .mul_add(
-                each_seen_by_parent_95,
+                each_articulated_inertia_91,
                 q[58 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_92,
-                        q[57 - 9 * i] * each_seen_by_parent_89,
+                        each_articulated_inertia_90,
+                        q[57 - 9 * i] * each_articulated_inertia_89,
                     ),
             );
-        let each_seen_by_parent_102 = q[59 - 9 * i]
+        let each_seen_by_parent_102 = q[56 - 9 * i]
             .mul_add(
-                each_seen_by_parent_97,
-                q[58 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_94,
-                        q[57 - 9 * i] * each_seen_by_parent_91,
-                    ),
-            );
-        let each_seen_by_parent_103 = q[56 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_100,
+                each_articulated_inertia_93,
                 q[55 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_99,
-                        q[54 - 9 * i] * each_articulated_inertia_98,
+                        each_articulated_inertia_92,
+                        q[54 - 9 * i] * each_articulated_inertia_90,
                     ),
             );
-        let each_seen_by_parent_104 = q[59 - 9 * i]
+        let each_seen_by_parent_103 = q[59 - 9 * i]
             .mul_add(
-                each_articulated_inertia_100,
+                each_articulated_inertia_93,
                 q[58 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_99,
-                        q[57 - 9 * i] * each_articulated_inertia_98,
+                        each_articulated_inertia_92,
+                        q[57 - 9 * i] * each_articulated_inertia_90,
                     ),
             );
-        let each_seen_by_parent_105 = q[56 - 9 * i]
+        let each_seen_by_parent_104 = q[56 - 9 * i]
             .mul_add(
-                each_articulated_inertia_102,
+                each_articulated_inertia_94,
                 q[55 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_101,
-                        q[54 - 9 * i] * each_articulated_inertia_99,
+                        each_articulated_inertia_93,
+                        q[54 - 9 * i] * each_articulated_inertia_91,
                     ),
             );
-        let each_seen_by_parent_106 = q[59 - 9 * i]
+        let each_seen_by_parent_105 = q[59 - 9 * i]
             .mul_add(
-                each_articulated_inertia_102,
+                each_articulated_inertia_94,
                 q[58 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_101,
-                        q[57 - 9 * i] * each_articulated_inertia_99,
+                        each_articulated_inertia_93,
+                        q[57 - 9 * i] * each_articulated_inertia_91,
                     ),
             );
-        let each_seen_by_parent_107 = q[56 - 9 * i]
+        let each_seen_by_parent_106 = q[56 - 9 * i]
             .mul_add(
-                each_articulated_inertia_103,
+                each_seen_by_parent_104,
                 q[55 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_102,
-                        q[54 - 9 * i] * each_articulated_inertia_100,
+                        each_seen_by_parent_102,
+                        q[54 - 9 * i] * each_seen_by_parent_100,
                     ),
             );
-        let each_seen_by_parent_108 = q[59 - 9 * i]
+        let each_seen_by_parent_107 = q[59 - 9 * i]
             .mul_add(
-                each_articulated_inertia_103,
+                each_seen_by_parent_104,
                 q[58 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_102,
-                        q[57 - 9 * i] * each_articulated_inertia_100,
+                        each_seen_by_parent_102,
+                        q[57 - 9 * i] * each_seen_by_parent_100,
                     ),
             );
-        let each_seen_by_parent_109 = q[56 - 9 * i]
+        let each_seen_by_parent_108 = q[62 - 9 * i]
             .mul_add(
-                each_seen_by_parent_107,
-                q[55 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_105,
-                        q[54 - 9 * i] * each_seen_by_parent_103,
-                    ),
-            );
-        let each_seen_by_parent_110 = q[59 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_107,
-                q[58 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_105,
-                        q[57 - 9 * i] * each_seen_by_parent_103,
-                    ),
-            );
-        let each_seen_by_parent_111 = q[62 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_107,
+                each_seen_by_parent_104,
                 q[61 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_105,
-                        q[60 - 9 * i] * each_seen_by_parent_103,
+                        each_seen_by_parent_102,
+                        q[60 - 9 * i] * each_seen_by_parent_100,
                     ),
             );
-        let each_seen_by_parent_112 = q[59 - 9 * i]
+        let each_seen_by_parent_109 = q[59 - 9 * i]
             .mul_add(
-                each_seen_by_parent_108,
+                each_seen_by_parent_105,
                 q[58 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_106,
-                        q[57 - 9 * i] * each_seen_by_parent_104,
+                        each_seen_by_parent_103,
+                        q[57 - 9 * i] * each_seen_by_parent_101,
                     ),
             );
-        let each_seen_by_parent_113 = q[62 - 9 * i]
+        let each_seen_by_parent_110 = q[62 - 9 * i]
             .mul_add(
-                each_seen_by_parent_108,
+                each_seen_by_parent_105,
                 q[61 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_106,
-                        q[60 - 9 * i] * each_seen_by_parent_104,
+                        each_seen_by_parent_103,
+                        q[60 - 9 * i] * each_seen_by_parent_101,
                     ),
             );
-        let each_seen_by_parent_114 = q[61 - 9 * i]
+        let each_seen_by_parent_111 = q[61 - 9 * i]
             .mul_add(
                 q[62 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_102,
+                        each_articulated_inertia_93,
                         q[61 - 9 * i]
                             .mul_add(
-                                each_articulated_inertia_101,
-                                q[60 - 9 * i] * each_articulated_inertia_99,
+                                each_articulated_inertia_92,
+                                q[60 - 9 * i] * each_articulated_inertia_90,
                             ),
                     ),
                 q[60 - 9 * i]
                     * (q[62 - 9 * i]
                         .mul_add(
-                            each_articulated_inertia_100,
+                            each_articulated_inertia_91,
                             q[61 - 9 * i]
                                 .mul_add(
-                                    each_articulated_inertia_99,
-                                    q[60 - 9 * i] * each_articulated_inertia_98,
+                                    each_articulated_inertia_90,
+                                    q[60 - 9 * i] * each_articulated_inertia_89,
                                 ),
                         )),
             );
-        let each_seen_by_parent_115 = q[62 - 9 * i]
+        let each_seen_by_parent_112 = q[62 - 9 * i]
             .mul_add(
                 q[62 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_103,
+                        each_articulated_inertia_94,
                         q[61 - 9 * i]
                             .mul_add(
-                                each_articulated_inertia_102,
-                                q[60 - 9 * i] * each_articulated_inertia_100,
+                                each_articulated_inertia_93,
+                                q[60 - 9 * i] * each_articulated_inertia_91,
                             ),
                     ),
-                each_seen_by_parent_114,
+                each_seen_by_parent_111,
             );
-        let each_seen_by_parent_116 = (-each_seen_by_parent_109)
-            .mul_add(n(-0.2), each_seen_by_parent_99);
-        let each_seen_by_parent_117 = (-each_seen_by_parent_112)
-            .mul_add(n(0.2), each_seen_by_parent_101);
-        let each_seen_by_parent_118 = (-each_seen_by_parent_110)
+        let each_seen_by_parent_113 = (-each_seen_by_parent_106)
+            .mul_add(n(-0.2), each_seen_by_parent_96);
+        let each_seen_by_parent_114 = (-each_seen_by_parent_109)
+            .mul_add(n(0.2), each_seen_by_parent_98);
+        let each_seen_by_parent_115 = (-each_seen_by_parent_107)
             .mul_add(
                 n(-0.2),
                 q[59 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_96,
+                        each_seen_by_parent_93,
                         q[58 - 9 * i]
                             .mul_add(
-                                each_seen_by_parent_93,
-                                q[57 - 9 * i] * each_seen_by_parent_90,
+                                each_seen_by_parent_90,
+                                q[57 - 9 * i] * each_seen_by_parent_87,
                             ),
                     ),
             );
-        let each_seen_by_parent_119 = (-each_seen_by_parent_113)
+        let each_seen_by_parent_116 = (-each_seen_by_parent_110)
             .mul_add(
                 n(0.2),
                 q[62 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_95,
+                        each_seen_by_parent_92,
                         q[61 - 9 * i]
                             .mul_add(
-                                each_seen_by_parent_92,
-                                q[60 - 9 * i] * each_seen_by_parent_89,
+                                each_seen_by_parent_89,
+                                q[60 - 9 * i] * each_seen_by_parent_86,
                             ),
                     ),
             );
-        let each_seen_by_parent_120 = (-each_seen_by_parent_111)
+        let each_seen_by_parent_117 = (-each_seen_by_parent_108)
             .mul_add(
                 n(-0.2),
                 q[62 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_96,
+                        each_seen_by_parent_93,
                         q[61 - 9 * i]
                             .mul_add(
-                                each_seen_by_parent_93,
-                                q[60 - 9 * i] * each_seen_by_parent_90,
+                                each_seen_by_parent_90,
+                                q[60 - 9 * i] * each_seen_by_parent_87,
                             ),
                     ),
             );
-        let each_seen_by_parent_121 = (-each_seen_by_parent_101)
-            .mul_add(
-                n(-0.2),
-                each_seen_by_parent_117
-                    .mul_add(
-                        n(0.2),
-                        q[55 - 9 * i]
-                            .mul_add(
-                                each_seen_by_parent_86,
-                                q[54 - 9 * i] * each_seen_by_parent_84,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_122 = (-each_seen_by_parent_98)
+        let each_seen_by_parent_118 = (-(each_seen_by_parent_98
+            + each_seen_by_parent_114))
             .mul_add(
                 n(0.2),
-                each_seen_by_parent_118
-                    .mul_add(
-                        n(0.2),
-                        q[58 - 9 * i]
-                            .mul_add(
-                                each_seen_by_parent_86,
-                                q[57 - 9 * i] * each_seen_by_parent_84,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_123 = (-each_seen_by_parent_99)
-            .mul_add(
-                n(0.2),
-                each_seen_by_parent_116
-                    .mul_add(
-                        n(-0.2),
-                        q[58 - 9 * i]
-                            .mul_add(
-                                each_seen_by_parent_87,
-                                q[57 - 9 * i] * each_seen_by_parent_85,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_124 = -each_seen_by_parent_121;
-        let each_seen_by_parent_125 = -each_seen_by_parent_122;
-        let each_seen_by_parent_126 = (-each_seen_by_parent_102)
-            .mul_add(
-                n(0.2),
-                (-q[61 - 9 * i])
-                    .mul_add(
-                        each_seen_by_parent_86,
-                        -(q[60 - 9 * i] * each_seen_by_parent_84),
-                    ),
-            );
-        let each_seen_by_parent_127 = -each_seen_by_parent_123;
-        let each_seen_by_parent_128 = (-each_seen_by_parent_100)
-            .mul_add(
-                n(-0.2),
-                (-q[61 - 9 * i])
-                    .mul_add(
-                        each_seen_by_parent_87,
-                        -(q[60 - 9 * i] * each_seen_by_parent_85),
-                    ),
-            );
-        let each_seen_by_parent_129 = -each_seen_by_parent_88;
-        let each_seen_by_parent_130 = each_seen_by_parent_110
-            .mul_add(n(0.2), -each_seen_by_parent_98);
-        let each_seen_by_parent_131 = -each_seen_by_parent_116;
-        let each_seen_by_parent_132 = -each_seen_by_parent_100;
-        let each_seen_by_parent_133 = -each_seen_by_parent_117;
-        let each_seen_by_parent_134 = -each_seen_by_parent_118;
-        let each_seen_by_parent_135 = -each_seen_by_parent_102;
-        let each_seen_by_parent_136 = -each_seen_by_parent_119;
-        let each_seen_by_parent_137 = -each_seen_by_parent_120;
-        let each_seen_by_parent_138 = (-q[62 - 9 * i])
-            .mul_add(
-                each_seen_by_parent_97,
-                (-q[61 - 9 * i])
-                    .mul_add(
-                        each_seen_by_parent_94,
-                        -(q[60 - 9 * i] * each_seen_by_parent_91),
-                    ),
-            );
-        let each_seen_by_parent_139 = q[62 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_105,
-                q[61 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_80,
-                        q[60 - 9 * i] * each_seen_by_parent_79,
-                    ),
-            );
-        let each_seen_by_parent_140 = (-q[56 - 9 * i])
-            .mul_add(
-                each_seen_by_parent_83,
                 (-q[55 - 9 * i])
                     .mul_add(
-                        each_seen_by_parent_82,
-                        q[54 - 9 * i] * each_seen_by_parent_81,
+                        each_seen_by_parent_83,
+                        -(q[54 - 9 * i] * each_seen_by_parent_81),
                     ),
             );
-        let each_seen_by_parent_141 = (-q[59 - 9 * i])
+        let each_seen_by_parent_119 = (-q[58 - 9 * i])
             .mul_add(
                 each_seen_by_parent_83,
-                (-q[58 - 9 * i])
+                (-q[57 - 9 * i])
                     .mul_add(
-                        each_seen_by_parent_82,
-                        q[57 - 9 * i] * each_seen_by_parent_81,
+                        each_seen_by_parent_81,
+                        (each_seen_by_parent_95 - each_seen_by_parent_115) * n(0.2),
                     ),
             );
-        let each_seen_by_parent_142 = each_seen_by_parent_141
+        let each_seen_by_parent_120 = (-each_seen_by_parent_99)
+            .mul_add(
+                n(0.2),
+                (-q[61 - 9 * i])
+                    .mul_add(
+                        each_seen_by_parent_83,
+                        -(q[60 - 9 * i] * each_seen_by_parent_81),
+                    ),
+            );
+        let each_seen_by_parent_121 = (-(each_seen_by_parent_96
+            + each_seen_by_parent_113))
+            .mul_add(
+                n(-0.2),
+                (-q[58 - 9 * i])
+                    .mul_add(
+                        each_seen_by_parent_84,
+                        -(q[57 - 9 * i] * each_seen_by_parent_82),
+                    ),
+            );
+        let each_seen_by_parent_122 = (-each_seen_by_parent_97)
+            .mul_add(
+                n(-0.2),
+                (-q[61 - 9 * i])
+                    .mul_add(
+                        each_seen_by_parent_84,
+                        -(q[60 - 9 * i] * each_seen_by_parent_82),
+                    ),
+            );
+        let each_seen_by_parent_123 = -each_seen_by_parent_85;
+        let each_seen_by_parent_124 = each_seen_by_parent_107
+            .mul_add(n(0.2), -each_seen_by_parent_95);
+        let each_seen_by_parent_125 = -each_seen_by_parent_113;
+        let each_seen_by_parent_126 = -each_seen_by_parent_97;
+        let each_seen_by_parent_127 = -each_seen_by_parent_114;
+        let each_seen_by_parent_128 = -each_seen_by_parent_115;
+        let each_seen_by_parent_129 = -each_seen_by_parent_99;
+        let each_seen_by_parent_130 = -each_seen_by_parent_116;
+        let each_seen_by_parent_131 = -each_seen_by_parent_117;
+        let each_seen_by_parent_132 = (-q[62 - 9 * i])
+            .mul_add(
+                each_seen_by_parent_94,
+                (-q[61 - 9 * i])
+                    .mul_add(
+                        each_seen_by_parent_91,
+                        -(q[60 - 9 * i] * each_seen_by_parent_88),
+                    ),
+            );
+        let each_seen_by_parent_133 = q[62 - 9 * i]
+            .mul_add(
+                tau[20 - 3 * i],
+                q[61 - 9 * i]
+                    .mul_add(
+                        each_seen_by_parent_77,
+                        q[60 - 9 * i] * each_seen_by_parent_76,
+                    ),
+            );
+        let each_seen_by_parent_134 = (-q[56 - 9 * i])
+            .mul_add(
+                each_seen_by_parent_80,
+                (-q[55 - 9 * i])
+                    .mul_add(
+                        each_seen_by_parent_79,
+                        q[54 - 9 * i] * each_seen_by_parent_78,
+                    ),
+            );
+        let each_seen_by_parent_135 = (-q[59 - 9 * i])
+            .mul_add(
+                each_seen_by_parent_80,
+                (-q[58 - 9 * i])
+                    .mul_add(
+                        each_seen_by_parent_79,
+                        q[57 - 9 * i] * each_seen_by_parent_78,
+                    ),
+            );
+        let each_seen_by_parent_136 = each_seen_by_parent_135
             .mul_add(
                 n(-0.2),
                 q[56 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_105,
+                        tau[20 - 3 * i],
                         q[55 - 9 * i]
                             .mul_add(
-                                each_seen_by_parent_80,
-                                q[54 - 9 * i] * each_seen_by_parent_79,
+                                each_seen_by_parent_77,
+                                q[54 - 9 * i] * each_seen_by_parent_76,
                             ),
                     ),
             );
-        let each_seen_by_parent_143 = (-each_seen_by_parent_140)
+        let each_seen_by_parent_137 = (-each_seen_by_parent_134)
             .mul_add(
                 n(-0.2),
                 q[59 - 9 * i]
                     .mul_add(
-                        each_articulated_inertia_105,
+                        tau[20 - 3 * i],
                         q[58 - 9 * i]
                             .mul_add(
-                                each_seen_by_parent_80,
-                                q[57 - 9 * i] * each_seen_by_parent_79,
+                                each_seen_by_parent_77,
+                                q[57 - 9 * i] * each_seen_by_parent_76,
                             ),
                     ),
             );
-        let each_seen_by_parent_144 = -each_seen_by_parent_140;
-        let each_seen_by_parent_145 = -each_seen_by_parent_141;
-        let each_seen_by_parent_146 = (-q[60 - 9 * i])
+        let each_seen_by_parent_138 = -each_seen_by_parent_134;
+        let each_seen_by_parent_139 = -each_seen_by_parent_135;
+        let each_seen_by_parent_140 = (-q[60 - 9 * i])
             .mul_add(
-                each_seen_by_parent_81,
+                each_seen_by_parent_78,
                 q[62 - 9 * i]
                     .mul_add(
-                        each_seen_by_parent_83,
-                        q[61 - 9 * i] * each_seen_by_parent_82,
+                        each_seen_by_parent_80,
+                        q[61 - 9 * i] * each_seen_by_parent_79,
                     ),
             );
-        rows_of_48[i + 12] = [
-            each_articulated_inertia_56,
-            each_articulated_inertia_57,
-            each_articulated_inertia_58,
-            each_articulated_inertia_59,
-            each_articulated_inertia_60,
-            each_articulated_inertia_61,
-            each_articulated_inertia_69,
-            each_articulated_inertia_70,
-            each_articulated_inertia_71,
-            each_articulated_inertia_72,
-            each_articulated_inertia_73,
+        rows_of_45[i + 12] = [
+            each_articulated_inertia_51,
+            each_articulated_inertia_52,
+            each_articulated_inertia_53,
+            each_articulated_inertia_54,
+            each_articulated_inertia_55,
+            each_articulated_inertia_63,
+            each_articulated_inertia_64,
+            each_articulated_inertia_65,
+            each_articulated_inertia_66,
+            each_articulated_inertia_67,
+            each_articulated_inertia_68,
             each_articulated_inertia_74,
             each_articulated_inertia_75,
-            each_articulated_inertia_82,
-            each_articulated_inertia_83,
-            each_articulated_inertia_84,
-            each_articulated_inertia_85,
-            each_articulated_inertia_86,
-            each_articulated_inertia_87,
-            each_articulated_inertia_88,
-            each_articulated_inertia_104,
+            each_articulated_inertia_76,
+            each_articulated_inertia_77,
+            each_articulated_inertia_78,
+            each_articulated_inertia_79,
+            each_articulated_inertia_95,
+            each_seen_by_parent_106,
+            each_seen_by_parent_107,
+            each_seen_by_parent_108,
             each_seen_by_parent_109,
             each_seen_by_parent_110,
-            each_seen_by_parent_111,
             each_seen_by_parent_112,
-            each_seen_by_parent_113,
-            each_seen_by_parent_115,
+            each_seen_by_parent_118,
+            each_seen_by_parent_119,
+            each_seen_by_parent_120,
+            each_seen_by_parent_121,
+            each_seen_by_parent_122,
+            each_seen_by_parent_123,
             each_seen_by_parent_124,
             each_seen_by_parent_125,
             each_seen_by_parent_126,
@@ -3961,295 +3708,311 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             each_seen_by_parent_131,
             each_seen_by_parent_132,
             each_seen_by_parent_133,
-            each_seen_by_parent_134,
-            each_seen_by_parent_135,
             each_seen_by_parent_136,
             each_seen_by_parent_137,
             each_seen_by_parent_138,
             each_seen_by_parent_139,
-            each_seen_by_parent_142,
-            each_seen_by_parent_143,
-            each_seen_by_parent_144,
-            each_seen_by_parent_145,
-            each_seen_by_parent_146,
+            each_seen_by_parent_140,
         ];
     }
     // link_2: carried (14 additions)
-    let link_2_carried = rows_of_48[16][27] + n(0.29350000000000015);
-    let link_2_carried_2 = rows_of_48[16][29] + n(0.00041000000000000005);
-    let link_2_carried_3 = rows_of_48[16][36] + n(1.4800000000000004);
-    let link_2_carried_4 = link_2_bias_8 + rows_of_48[16][43];
-    let link_2_carried_5 = link_2_bias_9 + rows_of_48[16][44];
-    let link_2_carried_6 = link_2_bias_10 + rows_of_48[16][42];
-    // link_2: articulated inertia (64 additions, 91 multiplications, 3 divisions)
-    let link_2_articulated_inertia = link_2_carried_4 - tau[3];
+    let link_2_carried = rows_of_45[16][24] + n(0.29350000000000015);
+    let link_2_carried_2 = rows_of_45[16][26] + n(0.00041000000000000005);
+    let link_2_carried_3 = rows_of_45[16][33] + n(1.4800000000000004);
+    // link_2: articulated inertia (55 additions, 79 multiplications, 3 divisions)
+    let link_2_articulated_inertia = link_2_bias_8 + rows_of_45[16][40] - tau[3];
     let link_2_inverse_inertia = n(1.0) / link_2_carried;
-    let link_2_articulated_inertia_2 = link_2_carried * link_2_inverse_inertia;
-    let link_2_articulated_inertia_3 = rows_of_48[16][28] * link_2_inverse_inertia;
-    let link_2_articulated_inertia_4 = link_2_carried_2 * link_2_inverse_inertia;
-    let link_2_articulated_inertia_5 = rows_of_48[16][33] * link_2_inverse_inertia;
-    let link_2_articulated_inertia_6 = link_2_carried_3 * link_2_inverse_inertia;
-    let link_2_articulated_inertia_7 = rows_of_48[16][39] * link_2_inverse_inertia;
-    let link_2_articulated_inertia_8 = (-link_2_articulated_inertia)
-        .mul_add(link_2_articulated_inertia_3, link_2_carried_5 - tau[4]);
-    let link_2_articulated_inertia_9 = (-link_2_carried)
-        .mul_add(link_2_articulated_inertia_3, rows_of_48[16][28]);
-    let link_2_articulated_inertia_10 = (-rows_of_48[16][28])
+    let link_2_articulated_inertia_2 = rows_of_45[16][25] * link_2_inverse_inertia;
+    let link_2_articulated_inertia_3 = link_2_carried_2 * link_2_inverse_inertia;
+    let link_2_articulated_inertia_4 = rows_of_45[16][30] * link_2_inverse_inertia;
+    let link_2_articulated_inertia_5 = link_2_carried_3 * link_2_inverse_inertia;
+    let link_2_articulated_inertia_6 = rows_of_45[16][36] * link_2_inverse_inertia;
+    let link_2_articulated_inertia_7 = (-link_2_articulated_inertia)
         .mul_add(
-            link_2_articulated_inertia_3,
-            rows_of_48[16][30] + n(0.29344000000000015),
+            link_2_articulated_inertia_2,
+            link_2_bias_9 + rows_of_45[16][41] - tau[4],
         );
-    let link_2_articulated_inertia_11 = (-link_2_carried_2)
-        .mul_add(link_2_articulated_inertia_3, rows_of_48[16][31]);
-    let link_2_articulated_inertia_12 = (-rows_of_48[16][33])
+    let link_2_articulated_inertia_8 = (-link_2_carried)
+        .mul_add(link_2_articulated_inertia_2, rows_of_45[16][25]);
+    let link_2_articulated_inertia_9 = (-rows_of_45[16][25])
         .mul_add(
-            link_2_articulated_inertia_3,
-            rows_of_48[16][34] + n(-1.4800000000000004),
+            link_2_articulated_inertia_2,
+            rows_of_45[16][27] + n(0.29344000000000015),
         );
-    let link_2_articulated_inertia_13 = (-link_2_carried_3)
-        .mul_add(link_2_articulated_inertia_3, rows_of_48[16][37]);
-    let link_2_articulated_inertia_14 = (-rows_of_48[16][39])
-        .mul_add(link_2_articulated_inertia_3, rows_of_48[16][40] + n(-0.004));
-    let link_2_articulated_inertia_15 = link_2_articulated_inertia
+    let link_2_articulated_inertia_10 = (-link_2_carried_2)
+        .mul_add(link_2_articulated_inertia_2, rows_of_45[16][28]);
+    let link_2_articulated_inertia_11 = (-rows_of_45[16][30])
+        .mul_add(
+            link_2_articulated_inertia_2,
+            rows_of_45[16][31] + n(-1.4800000000000004),
+        );
+    let link_2_articulated_inertia_12 = (-link_2_carried_3)
+        .mul_add(link_2_articulated_inertia_2, rows_of_45[16][34]);
+    let link_2_articulated_inertia_13 = (-rows_of_45[16][36])
+        .mul_add(link_2_articulated_inertia_2, rows_of_45[16][37] + n(-0.004));
+    let link_2_articulated_inertia_14 = link_2_articulated_inertia
         * link_2_inverse_inertia;
-    let link_2_inverse_inertia_2 = n(1.0) / link_2_articulated_inertia_10;
-    let link_2_articulated_inertia_16 = link_2_articulated_inertia_9
+    let link_2_inverse_inertia_2 = n(1.0) / link_2_articulated_inertia_9;
+    let link_2_articulated_inertia_15 = link_2_articulated_inertia_8
         * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_17 = link_2_articulated_inertia_10
+    let link_2_articulated_inertia_16 = link_2_articulated_inertia_10
         * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_18 = link_2_articulated_inertia_11
+    let link_2_articulated_inertia_17 = link_2_articulated_inertia_11
         * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_19 = link_2_articulated_inertia_12
+    let link_2_articulated_inertia_18 = link_2_articulated_inertia_12
         * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_20 = link_2_articulated_inertia_13
+    let link_2_articulated_inertia_19 = link_2_articulated_inertia_13
         * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_21 = link_2_articulated_inertia_14
-        * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_22 = (-link_2_articulated_inertia_9)
+    let link_2_articulated_inertia_20 = (-link_2_articulated_inertia_8)
         .mul_add(
-            link_2_articulated_inertia_18,
-            (-link_2_carried).mul_add(link_2_articulated_inertia_4, link_2_carried_2),
+            link_2_articulated_inertia_16,
+            (-link_2_carried).mul_add(link_2_articulated_inertia_3, link_2_carried_2),
         );
-    let link_2_articulated_inertia_23 = (-link_2_articulated_inertia_10)
+    let link_2_articulated_inertia_21 = (-link_2_articulated_inertia_9)
         .mul_add(
-            link_2_articulated_inertia_18,
-            (-rows_of_48[16][28])
-                .mul_add(link_2_articulated_inertia_4, rows_of_48[16][31]),
+            link_2_articulated_inertia_16,
+            (-rows_of_45[16][25])
+                .mul_add(link_2_articulated_inertia_3, rows_of_45[16][28]),
         );
-    let link_2_articulated_inertia_24 = (-link_2_articulated_inertia_11)
+    let link_2_articulated_inertia_22 = (-link_2_articulated_inertia_11)
         .mul_add(
-            link_2_articulated_inertia_18,
-            (-link_2_carried_2)
-                .mul_add(
-                    link_2_articulated_inertia_4,
-                    rows_of_48[16][32] + n(0.00023999999999999976),
-                ),
+            link_2_articulated_inertia_16,
+            (-rows_of_45[16][30])
+                .mul_add(link_2_articulated_inertia_3, rows_of_45[16][32]),
         );
-    let link_2_articulated_inertia_25 = (-link_2_articulated_inertia_12)
+    let link_2_articulated_inertia_23 = (-link_2_articulated_inertia_12)
         .mul_add(
-            link_2_articulated_inertia_18,
-            (-rows_of_48[16][33])
-                .mul_add(link_2_articulated_inertia_4, rows_of_48[16][35]),
-        );
-    let link_2_articulated_inertia_26 = (-link_2_articulated_inertia_13)
-        .mul_add(
-            link_2_articulated_inertia_18,
+            link_2_articulated_inertia_16,
             (-link_2_carried_3)
-                .mul_add(link_2_articulated_inertia_4, rows_of_48[16][38] + n(0.004)),
+                .mul_add(link_2_articulated_inertia_3, rows_of_45[16][35] + n(0.004)),
         );
-    let link_2_articulated_inertia_27 = (-link_2_articulated_inertia_14)
+    let link_2_articulated_inertia_24 = (-link_2_articulated_inertia_13)
         .mul_add(
-            link_2_articulated_inertia_18,
-            (-rows_of_48[16][39])
-                .mul_add(link_2_articulated_inertia_4, rows_of_48[16][41]),
+            link_2_articulated_inertia_16,
+            (-rows_of_45[16][36])
+                .mul_add(link_2_articulated_inertia_3, rows_of_45[16][38]),
         );
-    let link_2_articulated_inertia_28 = link_2_articulated_inertia_8
+    let link_2_articulated_inertia_25 = link_2_articulated_inertia_7
         * link_2_inverse_inertia_2;
-    let link_2_inverse_inertia_3 = n(1.0) / link_2_articulated_inertia_24;
-    let link_2_articulated_inertia_29 = link_2_articulated_inertia_22
+    let link_2_inverse_inertia_3 = n(1.0)
+        / ((-link_2_articulated_inertia_10)
+            .mul_add(
+                link_2_articulated_inertia_16,
+                (-link_2_carried_2)
+                    .mul_add(
+                        link_2_articulated_inertia_3,
+                        rows_of_45[16][29] + n(0.00024),
+                    ),
+            ));
+    let link_2_articulated_inertia_26 = link_2_articulated_inertia_20
         * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_30 = link_2_articulated_inertia_23
+    let link_2_articulated_inertia_27 = link_2_articulated_inertia_21
         * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_31 = link_2_articulated_inertia_24
+    let link_2_articulated_inertia_28 = link_2_articulated_inertia_22
         * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_32 = link_2_articulated_inertia_25
+    let link_2_articulated_inertia_29 = link_2_articulated_inertia_23
         * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_33 = link_2_articulated_inertia_26
+    let link_2_articulated_inertia_30 = link_2_articulated_inertia_24
         * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_34 = link_2_articulated_inertia_27
-        * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_35 = link_2_articulated_inertia_22
+    let link_2_articulated_inertia_31 = link_2_articulated_inertia_20
+        .mul_add(
+            link_2_articulated_inertia_26,
+            link_2_articulated_inertia_8 * link_2_articulated_inertia_15,
+        );
+    let link_2_articulated_inertia_32 = link_2_articulated_inertia_20
+        * link_2_articulated_inertia_27;
+    let link_2_articulated_inertia_33 = link_2_articulated_inertia_21
+        * link_2_articulated_inertia_27;
+    let link_2_articulated_inertia_34 = link_2_articulated_inertia_20
+        .mul_add(
+            link_2_articulated_inertia_28,
+            link_2_articulated_inertia_8 * link_2_articulated_inertia_17,
+        );
+    let link_2_articulated_inertia_35 = link_2_articulated_inertia_21
+        * link_2_articulated_inertia_28;
+    let link_2_articulated_inertia_36 = link_2_articulated_inertia_20
         .mul_add(
             link_2_articulated_inertia_29,
-            link_2_articulated_inertia_9 * link_2_articulated_inertia_16,
+            link_2_articulated_inertia_8 * link_2_articulated_inertia_18,
         );
-    let link_2_articulated_inertia_36 = link_2_articulated_inertia_22
+    let link_2_articulated_inertia_37 = link_2_articulated_inertia_21
+        * link_2_articulated_inertia_29;
+    let link_2_articulated_inertia_38 = link_2_articulated_inertia_20
+        .mul_add(
+            link_2_articulated_inertia_30,
+            link_2_articulated_inertia_8 * link_2_articulated_inertia_19,
+        );
+    let link_2_articulated_inertia_39 = link_2_articulated_inertia_21
         * link_2_articulated_inertia_30;
-    let link_2_articulated_inertia_37 = link_2_articulated_inertia_23
-        * link_2_articulated_inertia_30;
-    let link_2_articulated_inertia_38 = link_2_articulated_inertia_22
+    let link_2_articulated_inertia_40 = (-link_2_articulated_inertia_22)
         .mul_add(
-            link_2_articulated_inertia_32,
-            link_2_articulated_inertia_9 * link_2_articulated_inertia_19,
+            link_2_articulated_inertia_28,
+            (-link_2_articulated_inertia_11)
+                .mul_add(
+                    link_2_articulated_inertia_17,
+                    (-rows_of_45[16][30])
+                        .mul_add(link_2_articulated_inertia_4, rows_of_45[16][18]),
+                ),
         );
-    let link_2_articulated_inertia_39 = link_2_articulated_inertia_23
-        * link_2_articulated_inertia_32;
-    let link_2_articulated_inertia_40 = link_2_articulated_inertia_22
+    let link_2_articulated_inertia_41 = (-link_2_articulated_inertia_22)
         .mul_add(
-            link_2_articulated_inertia_33,
-            link_2_articulated_inertia_9 * link_2_articulated_inertia_20,
+            link_2_articulated_inertia_29,
+            (-link_2_articulated_inertia_11)
+                .mul_add(
+                    link_2_articulated_inertia_18,
+                    (-rows_of_45[16][30])
+                        .mul_add(link_2_articulated_inertia_5, rows_of_45[16][19]),
+                ),
         );
-    let link_2_articulated_inertia_41 = link_2_articulated_inertia_23
-        * link_2_articulated_inertia_33;
-    let link_2_articulated_inertia_42 = link_2_articulated_inertia_22
+    let link_2_articulated_inertia_42 = (-link_2_articulated_inertia_22)
         .mul_add(
-            link_2_articulated_inertia_34,
-            link_2_articulated_inertia_9 * link_2_articulated_inertia_21,
+            link_2_articulated_inertia_30,
+            (-link_2_articulated_inertia_11)
+                .mul_add(
+                    link_2_articulated_inertia_19,
+                    (-rows_of_45[16][30])
+                        .mul_add(link_2_articulated_inertia_6, rows_of_45[16][20]),
+                ),
         );
-    let link_2_articulated_inertia_43 = link_2_articulated_inertia_23
-        * link_2_articulated_inertia_34;
-    let link_2_articulated_inertia_44 = (-link_2_articulated_inertia_25)
+    let link_2_articulated_inertia_43 = (-link_2_articulated_inertia_23)
         .mul_add(
-            link_2_articulated_inertia_32,
+            link_2_articulated_inertia_29,
+            (-link_2_articulated_inertia_12)
+                .mul_add(
+                    link_2_articulated_inertia_18,
+                    (-link_2_carried_3)
+                        .mul_add(link_2_articulated_inertia_5, rows_of_45[16][21]),
+                ),
+        );
+    let link_2_articulated_inertia_44 = (-link_2_articulated_inertia_23)
+        .mul_add(
+            link_2_articulated_inertia_30,
             (-link_2_articulated_inertia_12)
                 .mul_add(
                     link_2_articulated_inertia_19,
-                    (-rows_of_48[16][33])
-                        .mul_add(link_2_articulated_inertia_5, rows_of_48[16][21]),
+                    (-link_2_carried_3)
+                        .mul_add(link_2_articulated_inertia_6, rows_of_45[16][22]),
                 ),
         );
-    let link_2_articulated_inertia_45 = (-link_2_articulated_inertia_25)
+    let link_2_articulated_inertia_45 = (-link_2_articulated_inertia_24)
         .mul_add(
-            link_2_articulated_inertia_33,
-            (-link_2_articulated_inertia_12)
-                .mul_add(
-                    link_2_articulated_inertia_20,
-                    (-rows_of_48[16][33])
-                        .mul_add(link_2_articulated_inertia_6, rows_of_48[16][22]),
-                ),
-        );
-    let link_2_articulated_inertia_46 = (-link_2_articulated_inertia_25)
-        .mul_add(
-            link_2_articulated_inertia_34,
-            (-link_2_articulated_inertia_12)
-                .mul_add(
-                    link_2_articulated_inertia_21,
-                    (-rows_of_48[16][33])
-                        .mul_add(link_2_articulated_inertia_7, rows_of_48[16][23]),
-                ),
-        );
-    let link_2_articulated_inertia_47 = (-link_2_articulated_inertia_26)
-        .mul_add(
-            link_2_articulated_inertia_33,
+            link_2_articulated_inertia_30,
             (-link_2_articulated_inertia_13)
                 .mul_add(
-                    link_2_articulated_inertia_20,
-                    (-link_2_carried_3)
-                        .mul_add(link_2_articulated_inertia_6, rows_of_48[16][24]),
+                    link_2_articulated_inertia_19,
+                    (-rows_of_45[16][36])
+                        .mul_add(link_2_articulated_inertia_6, rows_of_45[16][23]),
                 ),
         );
-    let link_2_articulated_inertia_48 = (-link_2_articulated_inertia_26)
+    let link_2_articulated_inertia_46 = ((-link_2_articulated_inertia_7)
         .mul_add(
-            link_2_articulated_inertia_34,
-            (-link_2_articulated_inertia_13)
-                .mul_add(
-                    link_2_articulated_inertia_21,
-                    (-link_2_carried_3)
-                        .mul_add(link_2_articulated_inertia_7, rows_of_48[16][25]),
-                ),
-        );
-    let link_2_articulated_inertia_49 = (-link_2_articulated_inertia_27)
-        .mul_add(
-            link_2_articulated_inertia_34,
-            (-link_2_articulated_inertia_14)
-                .mul_add(
-                    link_2_articulated_inertia_21,
-                    (-rows_of_48[16][39])
-                        .mul_add(link_2_articulated_inertia_7, rows_of_48[16][26]),
-                ),
-        );
-    let link_2_articulated_inertia_50 = ((-link_2_articulated_inertia_8)
-        .mul_add(
-            link_2_articulated_inertia_18,
+            link_2_articulated_inertia_16,
             (-link_2_articulated_inertia)
-                .mul_add(link_2_articulated_inertia_4, link_2_carried_6 - tau[5]),
-        )) * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_51 = (-link_2_articulated_inertia_24)
-        .mul_add(
-            link_2_articulated_inertia_50,
-            (-link_2_articulated_inertia_11)
                 .mul_add(
-                    link_2_articulated_inertia_28,
-                    (-link_2_carried_2)
-                        .mul_add(link_2_articulated_inertia_15, link_2_carried_6),
+                    link_2_articulated_inertia_3,
+                    link_2_bias_10 + rows_of_45[16][39] - tau[5],
                 ),
-        );
-    let link_2_articulated_inertia_52 = link_2_articulated_inertia_25
+        )) * link_2_inverse_inertia_3;
+    let link_2_articulated_inertia_47 = link_2_articulated_inertia_22
         .mul_add(
-            link_2_articulated_inertia_50,
-            link_2_articulated_inertia_12
+            link_2_articulated_inertia_46,
+            link_2_articulated_inertia_11
                 .mul_add(
-                    link_2_articulated_inertia_28,
-                    rows_of_48[16][33]
+                    link_2_articulated_inertia_25,
+                    rows_of_45[16][30]
                         .mul_add(
-                            link_2_articulated_inertia_15,
-                            link_2_bias_11 - rows_of_48[16][45],
+                            link_2_articulated_inertia_14,
+                            link_2_bias_11 - rows_of_45[16][42],
                         ),
                 ),
         );
-    let link_2_articulated_inertia_53 = (-link_2_articulated_inertia_26)
+    let link_2_articulated_inertia_48 = (-link_2_articulated_inertia_23)
         .mul_add(
-            link_2_articulated_inertia_50,
-            (-link_2_articulated_inertia_13)
+            link_2_articulated_inertia_46,
+            (-link_2_articulated_inertia_12)
                 .mul_add(
-                    link_2_articulated_inertia_28,
+                    link_2_articulated_inertia_25,
                     (-link_2_carried_3)
                         .mul_add(
-                            link_2_articulated_inertia_15,
-                            link_2_bias_12 + rows_of_48[16][46],
+                            link_2_articulated_inertia_14,
+                            link_2_bias_12 + rows_of_45[16][43],
                         ),
                 ),
         );
-    let link_2_articulated_inertia_54 = (-link_2_articulated_inertia_27)
+    let link_2_articulated_inertia_49 = (-link_2_articulated_inertia_24)
         .mul_add(
-            link_2_articulated_inertia_50,
-            (-link_2_articulated_inertia_14)
+            link_2_articulated_inertia_46,
+            (-link_2_articulated_inertia_13)
                 .mul_add(
-                    link_2_articulated_inertia_28,
-                    (-rows_of_48[16][39])
+                    link_2_articulated_inertia_25,
+                    (-rows_of_45[16][36])
                         .mul_add(
-                            link_2_articulated_inertia_15,
-                            link_2_bias_13 + rows_of_48[16][47],
+                            link_2_articulated_inertia_14,
+                            link_2_bias_13 + rows_of_45[16][44],
                         ),
                 ),
         );
-    // link_2: seen by parent (112 additions, 158 multiplications)
+    // link_2: seen by parent (112 additions, 155 multiplications)
     let link_2_seen_by_parent = link_2_bias_22
         .mul_add(
-            link_2_articulated_inertia_42,
+            link_2_articulated_inertia_38,
             link_2_bias_21
                 .mul_add(
-                    link_2_articulated_inertia_40,
+                    link_2_articulated_inertia_36,
                     link_2_bias_20
                         .mul_add(
-                            link_2_articulated_inertia_38,
+                            link_2_articulated_inertia_34,
                             link_2_bias_15
                                 .mul_add(
-                                    link_2_articulated_inertia_36,
-                                    link_2_bias_14 * link_2_articulated_inertia_35,
+                                    link_2_articulated_inertia_32,
+                                    link_2_bias_14 * link_2_articulated_inertia_31,
                                 ),
                         ),
                 ),
         );
     let link_2_seen_by_parent_2 = link_2_bias_22
         .mul_add(
-            link_2_articulated_inertia_43,
+            link_2_articulated_inertia_39,
             link_2_bias_21
                 .mul_add(
-                    link_2_articulated_inertia_41,
+                    link_2_articulated_inertia_37,
                     link_2_bias_20
                         .mul_add(
-                            link_2_articulated_inertia_39,
+                            link_2_articulated_inertia_35,
+                            link_2_bias_15
+                                .mul_add(
+                                    link_2_articulated_inertia_33,
+                                    link_2_bias_14 * link_2_articulated_inertia_32,
+                                ),
+                        ),
+                ),
+        );
+    let link_2_seen_by_parent_3 = (-link_2_bias_22)
+        .mul_add(
+            link_2_articulated_inertia_42,
+            (-link_2_bias_21)
+                .mul_add(
+                    link_2_articulated_inertia_41,
+                    (-link_2_bias_20)
+                        .mul_add(
+                            link_2_articulated_inertia_40,
+                            link_2_bias_15
+                                .mul_add(
+                                    link_2_articulated_inertia_35,
+                                    link_2_bias_14 * link_2_articulated_inertia_34,
+                                ),
+                        ),
+                ),
+        );
+    let link_2_seen_by_parent_4 = (-link_2_bias_22)
+        .mul_add(
+            link_2_articulated_inertia_44,
+            (-link_2_bias_21)
+                .mul_add(
+                    link_2_articulated_inertia_43,
+                    (-link_2_bias_20)
+                        .mul_add(
+                            link_2_articulated_inertia_41,
                             link_2_bias_15
                                 .mul_add(
                                     link_2_articulated_inertia_37,
@@ -4258,15 +4021,15 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_2_seen_by_parent_3 = (-link_2_bias_22)
+    let link_2_seen_by_parent_5 = (-link_2_bias_22)
         .mul_add(
-            link_2_articulated_inertia_46,
+            link_2_articulated_inertia_45,
             (-link_2_bias_21)
                 .mul_add(
-                    link_2_articulated_inertia_45,
+                    link_2_articulated_inertia_44,
                     (-link_2_bias_20)
                         .mul_add(
-                            link_2_articulated_inertia_44,
+                            link_2_articulated_inertia_42,
                             link_2_bias_15
                                 .mul_add(
                                     link_2_articulated_inertia_39,
@@ -4275,112 +4038,54 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_2_seen_by_parent_4 = (-link_2_bias_22)
-        .mul_add(
-            link_2_articulated_inertia_48,
-            (-link_2_bias_21)
-                .mul_add(
-                    link_2_articulated_inertia_47,
-                    (-link_2_bias_20)
-                        .mul_add(
-                            link_2_articulated_inertia_45,
-                            link_2_bias_15
-                                .mul_add(
-                                    link_2_articulated_inertia_41,
-                                    link_2_bias_14 * link_2_articulated_inertia_40,
-                                ),
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_5 = (-link_2_bias_22)
-        .mul_add(
-            link_2_articulated_inertia_49,
-            (-link_2_bias_21)
-                .mul_add(
-                    link_2_articulated_inertia_48,
-                    (-link_2_bias_20)
-                        .mul_add(
-                            link_2_articulated_inertia_46,
-                            link_2_bias_15
-                                .mul_add(
-                                    link_2_articulated_inertia_43,
-                                    link_2_bias_14 * link_2_articulated_inertia_42,
-                                ),
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_6 = (-link_2_articulated_inertia_22)
-        .mul_add(
-            link_2_articulated_inertia_50,
-            (-link_2_articulated_inertia_9)
-                .mul_add(
-                    link_2_articulated_inertia_28,
-                    (-link_2_carried)
-                        .mul_add(
-                            link_2_articulated_inertia_15,
-                            link_2_carried_4 - link_2_seen_by_parent,
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_7 = (-link_2_articulated_inertia_23)
-        .mul_add(
-            link_2_articulated_inertia_50,
-            (-link_2_articulated_inertia_10)
-                .mul_add(
-                    link_2_articulated_inertia_28,
-                    (-rows_of_48[16][28])
-                        .mul_add(
-                            link_2_articulated_inertia_15,
-                            link_2_carried_5 - link_2_seen_by_parent_2,
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_8 = link_2_articulated_inertia_52
+    let link_2_seen_by_parent_6 = tau[3] - link_2_seen_by_parent;
+    let link_2_seen_by_parent_7 = tau[4] - link_2_seen_by_parent_2;
+    let link_2_seen_by_parent_8 = link_2_articulated_inertia_47
         + link_2_seen_by_parent_3;
-    let link_2_seen_by_parent_9 = link_2_articulated_inertia_53
+    let link_2_seen_by_parent_9 = link_2_articulated_inertia_48
         - link_2_seen_by_parent_4;
-    let link_2_seen_by_parent_10 = link_2_articulated_inertia_54
+    let link_2_seen_by_parent_10 = link_2_articulated_inertia_49
         - link_2_seen_by_parent_5;
     let link_2_seen_by_parent_11 = q[10]
-        .mul_add(link_2_articulated_inertia_36, q[9] * link_2_articulated_inertia_35);
+        .mul_add(link_2_articulated_inertia_32, q[9] * link_2_articulated_inertia_31);
     let link_2_seen_by_parent_12 = q[13]
-        .mul_add(link_2_articulated_inertia_36, q[12] * link_2_articulated_inertia_35);
+        .mul_add(link_2_articulated_inertia_32, q[12] * link_2_articulated_inertia_31);
     let link_2_seen_by_parent_13 = q[10]
-        .mul_add(link_2_articulated_inertia_37, q[9] * link_2_articulated_inertia_36);
+        .mul_add(link_2_articulated_inertia_33, q[9] * link_2_articulated_inertia_32);
     let link_2_seen_by_parent_14 = q[13]
-        .mul_add(link_2_articulated_inertia_37, q[12] * link_2_articulated_inertia_36);
+        .mul_add(link_2_articulated_inertia_33, q[12] * link_2_articulated_inertia_32);
     let link_2_seen_by_parent_15 = q[16]
         .mul_add(
             q[16]
                 .mul_add(
-                    link_2_articulated_inertia_37,
-                    q[15] * link_2_articulated_inertia_36,
+                    link_2_articulated_inertia_33,
+                    q[15] * link_2_articulated_inertia_32,
                 ),
             q[15]
                 * (q[16]
                     .mul_add(
-                        link_2_articulated_inertia_36,
-                        q[15] * link_2_articulated_inertia_35,
+                        link_2_articulated_inertia_32,
+                        q[15] * link_2_articulated_inertia_31,
                     )),
         );
     let link_2_seen_by_parent_16 = q[10]
-        .mul_add(link_2_articulated_inertia_39, q[9] * link_2_articulated_inertia_38);
+        .mul_add(link_2_articulated_inertia_35, q[9] * link_2_articulated_inertia_34);
     let link_2_seen_by_parent_17 = q[13]
-        .mul_add(link_2_articulated_inertia_39, q[12] * link_2_articulated_inertia_38);
+        .mul_add(link_2_articulated_inertia_35, q[12] * link_2_articulated_inertia_34);
     let link_2_seen_by_parent_18 = q[16]
-        .mul_add(link_2_articulated_inertia_39, q[15] * link_2_articulated_inertia_38);
+        .mul_add(link_2_articulated_inertia_35, q[15] * link_2_articulated_inertia_34);
     let link_2_seen_by_parent_19 = q[10]
-        .mul_add(link_2_articulated_inertia_41, q[9] * link_2_articulated_inertia_40);
+        .mul_add(link_2_articulated_inertia_37, q[9] * link_2_articulated_inertia_36);
     let link_2_seen_by_parent_20 = q[13]
-        .mul_add(link_2_articulated_inertia_41, q[12] * link_2_articulated_inertia_40);
+        .mul_add(link_2_articulated_inertia_37, q[12] * link_2_articulated_inertia_36);
     let link_2_seen_by_parent_21 = q[16]
-        .mul_add(link_2_articulated_inertia_41, q[15] * link_2_articulated_inertia_40);
+        .mul_add(link_2_articulated_inertia_37, q[15] * link_2_articulated_inertia_36);
     let link_2_seen_by_parent_22 = q[10]
-        .mul_add(link_2_articulated_inertia_43, q[9] * link_2_articulated_inertia_42);
+        .mul_add(link_2_articulated_inertia_39, q[9] * link_2_articulated_inertia_38);
     let link_2_seen_by_parent_23 = q[13]
-        .mul_add(link_2_articulated_inertia_43, q[12] * link_2_articulated_inertia_42);
+        .mul_add(link_2_articulated_inertia_39, q[12] * link_2_articulated_inertia_38);
     let link_2_seen_by_parent_24 = q[16]
-        .mul_add(link_2_articulated_inertia_43, q[15] * link_2_articulated_inertia_42);
+        .mul_add(link_2_articulated_inertia_39, q[15] * link_2_articulated_inertia_38);
     let link_2_seen_by_parent_25 = q[11]
         .mul_add(
             link_2_seen_by_parent_22,
@@ -4408,56 +4113,56 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
         );
     let link_2_seen_by_parent_30 = q[11]
         .mul_add(
-            link_2_articulated_inertia_46,
+            link_2_articulated_inertia_42,
             q[10]
                 .mul_add(
-                    link_2_articulated_inertia_45,
-                    q[9] * link_2_articulated_inertia_44,
+                    link_2_articulated_inertia_41,
+                    q[9] * link_2_articulated_inertia_40,
                 ),
         );
     let link_2_seen_by_parent_31 = q[14]
         .mul_add(
-            link_2_articulated_inertia_46,
+            link_2_articulated_inertia_42,
             q[13]
                 .mul_add(
-                    link_2_articulated_inertia_45,
-                    q[12] * link_2_articulated_inertia_44,
+                    link_2_articulated_inertia_41,
+                    q[12] * link_2_articulated_inertia_40,
                 ),
         );
     let link_2_seen_by_parent_32 = q[11]
         .mul_add(
-            link_2_articulated_inertia_48,
+            link_2_articulated_inertia_44,
             q[10]
                 .mul_add(
-                    link_2_articulated_inertia_47,
-                    q[9] * link_2_articulated_inertia_45,
+                    link_2_articulated_inertia_43,
+                    q[9] * link_2_articulated_inertia_41,
                 ),
         );
     let link_2_seen_by_parent_33 = q[14]
         .mul_add(
-            link_2_articulated_inertia_48,
+            link_2_articulated_inertia_44,
             q[13]
                 .mul_add(
-                    link_2_articulated_inertia_47,
-                    q[12] * link_2_articulated_inertia_45,
+                    link_2_articulated_inertia_43,
+                    q[12] * link_2_articulated_inertia_41,
                 ),
         );
     let link_2_seen_by_parent_34 = q[11]
         .mul_add(
-            link_2_articulated_inertia_49,
+            link_2_articulated_inertia_45,
             q[10]
                 .mul_add(
-                    link_2_articulated_inertia_48,
-                    q[9] * link_2_articulated_inertia_46,
+                    link_2_articulated_inertia_44,
+                    q[9] * link_2_articulated_inertia_42,
                 ),
         );
     let link_2_seen_by_parent_35 = q[14]
         .mul_add(
-            link_2_articulated_inertia_49,
+            link_2_articulated_inertia_45,
             q[13]
                 .mul_add(
-                    link_2_articulated_inertia_48,
-                    q[12] * link_2_articulated_inertia_46,
+                    link_2_articulated_inertia_44,
+                    q[12] * link_2_articulated_inertia_42,
                 ),
         );
     let link_2_seen_by_parent_36 = q[14]
@@ -4524,82 +4229,63 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         ),
                 ),
         );
-    let link_2_seen_by_parent_42 = (-link_2_seen_by_parent_28)
-        .mul_add(
-            n(-0.2),
-            link_2_seen_by_parent_38
-                .mul_add(
-                    n(0.2),
-                    q[10]
-                        .mul_add(
-                            link_2_seen_by_parent_13,
-                            q[9] * link_2_seen_by_parent_11,
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_43 = (-link_2_seen_by_parent_25)
+    let link_2_seen_by_parent_42 = (-(link_2_seen_by_parent_28
+        + link_2_seen_by_parent_38))
         .mul_add(
             n(0.2),
-            link_2_seen_by_parent_39
-                .mul_add(
-                    n(0.2),
-                    q[13]
-                        .mul_add(
-                            link_2_seen_by_parent_13,
-                            q[12] * link_2_seen_by_parent_11,
-                        ),
-                ),
+            (-q[10])
+                .mul_add(link_2_seen_by_parent_13, -(q[9] * link_2_seen_by_parent_11)),
         );
-    let link_2_seen_by_parent_44 = (-link_2_seen_by_parent_26)
+    let link_2_seen_by_parent_43 = (-q[13])
         .mul_add(
-            n(0.2),
-            link_2_seen_by_parent_37
+            link_2_seen_by_parent_13,
+            (-q[12])
                 .mul_add(
-                    n(-0.2),
-                    q[13]
-                        .mul_add(
-                            link_2_seen_by_parent_14,
-                            q[12] * link_2_seen_by_parent_12,
-                        ),
+                    link_2_seen_by_parent_11,
+                    (link_2_seen_by_parent_25 - link_2_seen_by_parent_39) * n(0.2),
                 ),
         );
-    let link_2_seen_by_parent_45 = -link_2_seen_by_parent_42;
-    let link_2_seen_by_parent_46 = -link_2_seen_by_parent_43;
-    let link_2_seen_by_parent_47 = (-link_2_seen_by_parent_29)
+    let link_2_seen_by_parent_44 = (-link_2_seen_by_parent_29)
         .mul_add(
             n(0.2),
             (-q[16])
                 .mul_add(link_2_seen_by_parent_13, -(q[15] * link_2_seen_by_parent_11)),
         );
-    let link_2_seen_by_parent_48 = -link_2_seen_by_parent_44;
-    let link_2_seen_by_parent_49 = (-link_2_seen_by_parent_27)
+    let link_2_seen_by_parent_45 = (-(link_2_seen_by_parent_26
+        + link_2_seen_by_parent_37))
+        .mul_add(
+            n(-0.2),
+            (-q[13])
+                .mul_add(link_2_seen_by_parent_14, -(q[12] * link_2_seen_by_parent_12)),
+        );
+    let link_2_seen_by_parent_46 = (-link_2_seen_by_parent_27)
         .mul_add(
             n(-0.2),
             (-q[16])
                 .mul_add(link_2_seen_by_parent_14, -(q[15] * link_2_seen_by_parent_12)),
         );
-    let link_2_seen_by_parent_50 = -link_2_seen_by_parent_15;
-    let link_2_seen_by_parent_51 = link_2_seen_by_parent_36
+    let link_2_seen_by_parent_47 = -link_2_seen_by_parent_15;
+    let link_2_seen_by_parent_48 = link_2_seen_by_parent_36
         .mul_add(n(0.2), -link_2_seen_by_parent_25);
-    let link_2_seen_by_parent_52 = -link_2_seen_by_parent_37;
-    let link_2_seen_by_parent_53 = -link_2_seen_by_parent_27;
-    let link_2_seen_by_parent_54 = -link_2_seen_by_parent_38;
-    let link_2_seen_by_parent_55 = -link_2_seen_by_parent_39;
-    let link_2_seen_by_parent_56 = -link_2_seen_by_parent_29;
-    let link_2_seen_by_parent_57 = -link_2_seen_by_parent_40;
-    let link_2_seen_by_parent_58 = -link_2_seen_by_parent_41;
-    let link_2_seen_by_parent_59 = (-q[17])
+    let link_2_seen_by_parent_49 = -link_2_seen_by_parent_37;
+    let link_2_seen_by_parent_50 = -link_2_seen_by_parent_27;
+    let link_2_seen_by_parent_51 = -link_2_seen_by_parent_38;
+    let link_2_seen_by_parent_52 = -link_2_seen_by_parent_39;
+    let link_2_seen_by_parent_53 = -link_2_seen_by_parent_29;
+    let link_2_seen_by_parent_54 = -link_2_seen_by_parent_40;
+    let link_2_seen_by_parent_55 = -link_2_seen_by_parent_41;
+    let link_2_seen_by_parent_56 = (-q[17])
         .mul_add(
             link_2_seen_by_parent_24,
             (-q[16])
                 .mul_add(link_2_seen_by_parent_21, -(q[15] * link_2_seen_by_parent_18)),
         );
-    let link_2_seen_by_parent_60 = q[17]
+    let link_2_seen_by_parent_57 = q[17]
         .mul_add(
-            link_2_articulated_inertia_51,
+            tau[5],
             q[16].mul_add(link_2_seen_by_parent_7, q[15] * link_2_seen_by_parent_6),
         );
-    let link_2_seen_by_parent_61 = ((-q[14])
+    let link_2_seen_by_parent_58 = ((-q[14])
         .mul_add(
             link_2_seen_by_parent_10,
             (-q[13]).mul_add(link_2_seen_by_parent_9, q[12] * link_2_seen_by_parent_8),
@@ -4608,12 +4294,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             n(-0.2),
             q[11]
                 .mul_add(
-                    link_2_articulated_inertia_51,
+                    tau[5],
                     q[10]
                         .mul_add(link_2_seen_by_parent_7, q[9] * link_2_seen_by_parent_6),
                 ),
         );
-    let link_2_seen_by_parent_62 = (-((-q[11])
+    let link_2_seen_by_parent_59 = (-((-q[11])
         .mul_add(
             link_2_seen_by_parent_10,
             (-q[10]).mul_add(link_2_seen_by_parent_9, q[9] * link_2_seen_by_parent_8),
@@ -4622,7 +4308,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             n(-0.2),
             q[14]
                 .mul_add(
-                    link_2_articulated_inertia_51,
+                    tau[5],
                     q[13]
                         .mul_add(
                             link_2_seen_by_parent_7,
@@ -4631,35 +4317,35 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                 ),
         );
     // link_1: carried (11 additions)
-    let link_1_carried = link_2_seen_by_parent_47 + n(0.00041000000000000005);
-    let link_1_carried_2 = link_2_seen_by_parent_54 + n(1.5600000000000005);
+    let link_1_carried = link_2_seen_by_parent_44 + n(0.00041000000000000005);
+    let link_1_carried_2 = link_2_seen_by_parent_51 + n(1.5600000000000005);
     // link_1: articulated inertia (19 additions, 31 multiplications, 3 divisions)
-    let link_1_articulated_inertia = link_1_bias_7 + link_2_seen_by_parent_61 - tau[0];
+    let link_1_articulated_inertia = link_1_bias_6 + link_2_seen_by_parent_58 - tau[0];
     let link_1_inverse_inertia = n(1.0)
-        / (link_2_seen_by_parent_45 + n(0.30950000000000016));
-    let link_1_articulated_inertia_2 = link_2_seen_by_parent_46 * link_1_inverse_inertia;
+        / (link_2_seen_by_parent_42 + n(0.30950000000000016));
+    let link_1_articulated_inertia_2 = link_2_seen_by_parent_43 * link_1_inverse_inertia;
     let link_1_articulated_inertia_3 = link_1_carried * link_1_inverse_inertia;
     let link_1_articulated_inertia_4 = (-link_1_articulated_inertia)
         .mul_add(
             link_1_articulated_inertia_2,
-            link_1_bias_8 + link_2_seen_by_parent_62 - tau[1],
+            link_1_bias_7 + link_2_seen_by_parent_59 - tau[1],
         );
     let link_1_articulated_inertia_5 = (-link_1_carried)
-        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_49);
-    let link_1_articulated_inertia_6 = (-link_2_seen_by_parent_51)
+        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_46);
+    let link_1_articulated_inertia_6 = (-link_2_seen_by_parent_48)
         .mul_add(
             link_1_articulated_inertia_2,
-            link_2_seen_by_parent_52 + n(-1.5600000000000005),
+            link_2_seen_by_parent_49 + n(-1.5600000000000005),
         );
     let link_1_articulated_inertia_7 = (-link_1_carried_2)
-        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_55);
-    let link_1_articulated_inertia_8 = (-link_2_seen_by_parent_57)
-        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_58 + n(-0.004));
+        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_52);
+    let link_1_articulated_inertia_8 = (-link_2_seen_by_parent_54)
+        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_55 + n(-0.004));
     let link_1_inverse_inertia_2 = n(1.0)
-        / ((-link_2_seen_by_parent_46)
+        / ((-link_2_seen_by_parent_43)
             .mul_add(
                 link_1_articulated_inertia_2,
-                link_2_seen_by_parent_48 + n(0.30944000000000016),
+                link_2_seen_by_parent_45 + n(0.30944000000000016),
             ));
     let link_1_articulated_inertia_9 = link_1_articulated_inertia_5
         * link_1_inverse_inertia_2;
@@ -4670,7 +4356,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                 (-link_1_carried)
                     .mul_add(
                         link_1_articulated_inertia_3,
-                        link_2_seen_by_parent_50 + n(0.00023999999999999976),
+                        link_2_seen_by_parent_47 + n(0.00024),
                     ),
             ));
     let link_1_articulated_inertia_10 = ((-link_1_articulated_inertia_4)
@@ -4679,7 +4365,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             (-link_1_articulated_inertia)
                 .mul_add(
                     link_1_articulated_inertia_3,
-                    link_1_bias_9 + link_2_seen_by_parent_60 - tau[2],
+                    link_1_bias_8 + link_2_seen_by_parent_57 - tau[2],
                 ),
         )) * link_1_inverse_inertia_3;
     // link_1: acceleration (12 additions, 15 multiplications)
@@ -4692,21 +4378,21 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             (-link_1_carried_2)
                 .mul_add(
                     link_1_articulated_inertia_3,
-                    link_2_seen_by_parent_56 + n(0.004),
+                    link_2_seen_by_parent_53 + n(0.004),
                 ),
         )) * link_1_inverse_inertia_3) * link_1_acceleration_2;
     let link_1_acceleration_5 = (((-link_1_articulated_inertia_6)
         .mul_add(
             link_1_articulated_inertia_9,
-            (-link_2_seen_by_parent_51)
-                .mul_add(link_1_articulated_inertia_3, link_2_seen_by_parent_53),
+            (-link_2_seen_by_parent_48)
+                .mul_add(link_1_articulated_inertia_3, link_2_seen_by_parent_50),
         )) * link_1_inverse_inertia_3)
         .mul_add(link_1_acceleration, link_1_acceleration_4);
     let link_1_acceleration_6 = (((-link_1_articulated_inertia_8)
         .mul_add(
             link_1_articulated_inertia_9,
-            (-link_2_seen_by_parent_57)
-                .mul_add(link_1_articulated_inertia_3, link_2_seen_by_parent_59),
+            (-link_2_seen_by_parent_54)
+                .mul_add(link_1_articulated_inertia_3, link_2_seen_by_parent_56),
         )) * link_1_inverse_inertia_3)
         .mul_add(link_1_acceleration_3, link_1_acceleration_5);
     let link_1_acceleration_7 = link_1_articulated_inertia_10 + link_1_acceleration_6;
@@ -4726,13 +4412,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             link_1_articulated_inertia_9
                 .mul_add(link_1_acceleration_7, -link_1_acceleration_8),
         );
-    let link_1_acceleration_10 = (link_2_seen_by_parent_57 * link_1_inverse_inertia)
+    let link_1_acceleration_10 = (link_2_seen_by_parent_54 * link_1_inverse_inertia)
         .mul_add(
             link_1_acceleration_3,
             (link_1_carried_2 * link_1_inverse_inertia)
                 .mul_add(
                     link_1_acceleration_2,
-                    (link_2_seen_by_parent_51 * link_1_inverse_inertia)
+                    (link_2_seen_by_parent_48 * link_1_inverse_inertia)
                         * link_1_acceleration,
                 ),
         );
@@ -4751,7 +4437,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
     results[0] = -link_1_acceleration_11;
     results[1] = link_1_acceleration_9;
     results[2] = -link_1_acceleration_7;
-    // link_2: acceleration (44 additions, 41 multiplications)
+    // link_2: acceleration (41 additions, 38 multiplications)
     let link_2_acceleration = link_1_acceleration_9
         .mul_add(n(-0.2), link_1_acceleration);
     let link_2_acceleration_2 = (-link_1_acceleration_12)
@@ -4810,123 +4496,111 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                     q[11].mul_add(link_2_acceleration, link_2_bias_22),
                 ),
         );
-    let link_2_acceleration_9 = link_2_articulated_inertia_34
+    let link_2_acceleration_9 = link_2_articulated_inertia_30
         .mul_add(
             link_2_acceleration_8,
-            link_2_articulated_inertia_33
+            link_2_articulated_inertia_29
                 .mul_add(
                     link_2_acceleration_7,
-                    link_2_articulated_inertia_32
+                    link_2_articulated_inertia_28
                         .mul_add(
                             link_2_acceleration_6,
-                            link_2_articulated_inertia_31
+                            link_2_articulated_inertia_27
                                 .mul_add(
-                                    link_2_acceleration_5,
-                                    link_2_articulated_inertia_30
-                                        .mul_add(
-                                            link_2_acceleration_4,
-                                            link_2_articulated_inertia_29 * link_2_acceleration_3,
-                                        ),
+                                    link_2_acceleration_4,
+                                    link_2_articulated_inertia_26 * link_2_acceleration_3,
                                 ),
                         ),
                 ),
         );
-    let link_2_acceleration_10 = link_2_articulated_inertia_50 + link_2_acceleration_9;
-    let link_2_acceleration_11 = link_2_acceleration_5 - link_2_acceleration_10;
-    let link_2_acceleration_12 = link_2_articulated_inertia_21
+    let link_2_acceleration_10 = link_2_articulated_inertia_46 + link_2_acceleration_9;
+    let link_2_acceleration_11 = link_2_acceleration_5 + link_2_acceleration_10;
+    let link_2_acceleration_12 = link_2_articulated_inertia_19
         .mul_add(
             link_2_acceleration_8,
-            link_2_articulated_inertia_20
+            link_2_articulated_inertia_18
                 .mul_add(
                     link_2_acceleration_7,
-                    link_2_articulated_inertia_19
+                    link_2_articulated_inertia_17
                         .mul_add(
                             link_2_acceleration_6,
-                            link_2_articulated_inertia_18
+                            link_2_articulated_inertia_16
                                 .mul_add(
                                     link_2_acceleration_5,
-                                    link_2_articulated_inertia_17
-                                        .mul_add(
-                                            link_2_acceleration_4,
-                                            link_2_articulated_inertia_16 * link_2_acceleration_3,
-                                        ),
+                                    link_2_articulated_inertia_15 * link_2_acceleration_3,
                                 ),
                         ),
                 ),
         );
-    let link_2_acceleration_13 = link_2_articulated_inertia_18
+    let link_2_acceleration_13 = link_2_articulated_inertia_16
         .mul_add(
-            link_2_acceleration_10,
-            -link_2_articulated_inertia_28 - link_2_acceleration_12,
+            link_2_acceleration_11,
+            -link_2_articulated_inertia_25 - link_2_acceleration_12,
         );
-    let link_2_acceleration_14 = link_2_acceleration_4 + link_2_acceleration_13;
-    let link_2_acceleration_15 = link_2_articulated_inertia_7
+    let link_2_acceleration_14 = link_2_acceleration_4 - link_2_acceleration_13;
+    let link_2_acceleration_15 = link_2_articulated_inertia_6
         .mul_add(
             link_2_acceleration_8,
-            link_2_articulated_inertia_6
+            link_2_articulated_inertia_5
                 .mul_add(
                     link_2_acceleration_7,
-                    link_2_articulated_inertia_5
+                    link_2_articulated_inertia_4
                         .mul_add(
                             link_2_acceleration_6,
-                            link_2_articulated_inertia_4
+                            link_2_articulated_inertia_3
                                 .mul_add(
                                     link_2_acceleration_5,
-                                    link_2_articulated_inertia_3
-                                        .mul_add(
-                                            link_2_acceleration_4,
-                                            link_2_articulated_inertia_2 * link_2_acceleration_3,
-                                        ),
+                                    link_2_articulated_inertia_2 * link_2_acceleration_4,
                                 ),
                         ),
                 ),
         );
-    let link_2_acceleration_16 = (-link_2_articulated_inertia_4)
+    let link_2_acceleration_16 = link_2_articulated_inertia_3
         .mul_add(
-            link_2_acceleration_10,
-            link_2_articulated_inertia_3
+            link_2_acceleration_11,
+            link_2_articulated_inertia_2
                 .mul_add(
-                    link_2_acceleration_13,
-                    link_2_articulated_inertia_15 + link_2_acceleration_15,
+                    link_2_acceleration_14,
+                    -link_2_articulated_inertia_14 - link_2_acceleration_15,
                 ),
         );
-    let link_2_acceleration_17 = link_2_acceleration_3 - link_2_acceleration_16;
+    let link_2_acceleration_17 = -link_2_acceleration_10;
     rows_of_6[19] = [
         link_2_acceleration_6,
         link_2_acceleration_7,
         link_2_acceleration_8,
-        link_2_acceleration_11,
-        link_2_acceleration_14,
+        link_2_acceleration_13,
+        link_2_acceleration_16,
         link_2_acceleration_17,
     ];
-    results[3] = -link_2_acceleration_16;
-    results[4] = link_2_acceleration_13;
-    results[5] = -link_2_acceleration_10;
+    results[3] = link_2_acceleration_16 - link_2_acceleration_3;
+    results[4] = -link_2_acceleration_14;
+    results[5] = -link_2_acceleration_11;
     // each of link_3, link_4, … link_19 (17 bodies):
     for i in 0..17 {
         let parent_4 = &rows_of_6[i + 19];
         let own_5 = &rows_of_15[i + 1];
-        let own_6 = &rows_of_48[16 - 1 * i];
-        // each: acceleration (44 additions, 41 multiplications)
-        let each_acceleration = parent_4[4].mul_add(n(-0.2), parent_4[0]);
-        let each_acceleration_2 = (-parent_4[5]).mul_add(n(-0.2), parent_4[1]);
+        let own_6 = &rows_of_45[16 - 1 * i];
+        // each: acceleration (41 additions, 38 multiplications)
+        let each_acceleration = parent_4[3].mul_add(n(-0.2), parent_4[0]);
+        let each_acceleration_2 = (-parent_4[4]).mul_add(n(-0.2), parent_4[1]);
         let each_acceleration_3 = q[9 * i + 24]
             .mul_add(
-                parent_4[3],
+                parent_4[5],
                 q[9 * i + 21]
-                    .mul_add(parent_4[4], q[9 * i + 18].mul_add(parent_4[5], own_5[9])),
+                    .mul_add(parent_4[3], q[9 * i + 18].mul_add(parent_4[4], own_5[9])),
             );
         let each_acceleration_4 = q[9 * i + 25]
             .mul_add(
-                parent_4[3],
+                parent_4[5],
                 q[9 * i + 22]
-                    .mul_add(parent_4[4], q[9 * i + 19].mul_add(parent_4[5], own_5[10])),
+                    .mul_add(parent_4[3], q[9 * i + 19].mul_add(parent_4[4], own_5[10])),
             );
         let each_acceleration_5 = q[9 * i + 26]
             .mul_add(
-                parent_4[3],
+                parent_4[5],
                 q[9 * i + 23]
-                    .mul_add(parent_4[4], q[9 * i + 20].mul_add(parent_4[5], own_5[11])),
+                    .mul_add(parent_4[3], q[9 * i + 20].mul_add(parent_4[4], own_5[11])),
             );
         let each_acceleration_6 = q[9 * i + 24]
             .mul_add(
@@ -4955,111 +4629,99 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
                         q[9 * i + 20].mul_add(each_acceleration, own_5[14]),
                     ),
             );
-        let each_acceleration_9 = own_6[19]
+        let each_acceleration_9 = own_6[16]
             .mul_add(
                 each_acceleration_8,
-                own_6[18]
+                own_6[15]
                     .mul_add(
                         each_acceleration_7,
-                        own_6[17]
+                        own_6[14]
                             .mul_add(
                                 each_acceleration_6,
-                                own_6[16]
+                                own_6[13]
                                     .mul_add(
-                                        each_acceleration_5,
-                                        own_6[15]
-                                            .mul_add(
-                                                each_acceleration_4,
-                                                own_6[14] * each_acceleration_3,
-                                            ),
+                                        each_acceleration_4,
+                                        own_6[12] * each_acceleration_3,
                                     ),
                             ),
                     ),
             );
-        let each_acceleration_10 = own_6[20] + each_acceleration_9;
-        let each_acceleration_11 = each_acceleration_5 - each_acceleration_10;
-        let each_acceleration_12 = own_6[12]
+        let each_acceleration_10 = own_6[17] + each_acceleration_9;
+        let each_acceleration_11 = each_acceleration_5 + each_acceleration_10;
+        let each_acceleration_12 = own_6[10]
             .mul_add(
                 each_acceleration_8,
-                own_6[11]
+                own_6[9]
                     .mul_add(
                         each_acceleration_7,
-                        own_6[10]
+                        own_6[8]
                             .mul_add(
                                 each_acceleration_6,
-                                own_6[9]
+                                own_6[7]
                                     .mul_add(
                                         each_acceleration_5,
-                                        own_6[8]
-                                            .mul_add(
-                                                each_acceleration_4,
-                                                own_6[7] * each_acceleration_3,
-                                            ),
+                                        own_6[6] * each_acceleration_3,
                                     ),
                             ),
                     ),
             );
-        let each_acceleration_13 = own_6[9]
-            .mul_add(each_acceleration_10, -own_6[13] - each_acceleration_12);
-        let each_acceleration_14 = each_acceleration_4 + each_acceleration_13;
-        let each_acceleration_15 = own_6[5]
+        let each_acceleration_13 = own_6[7]
+            .mul_add(each_acceleration_11, -own_6[11] - each_acceleration_12);
+        let each_acceleration_14 = each_acceleration_4 - each_acceleration_13;
+        let each_acceleration_15 = own_6[4]
             .mul_add(
                 each_acceleration_8,
-                own_6[4]
+                own_6[3]
                     .mul_add(
                         each_acceleration_7,
-                        own_6[3]
+                        own_6[2]
                             .mul_add(
                                 each_acceleration_6,
-                                own_6[2]
+                                own_6[1]
                                     .mul_add(
                                         each_acceleration_5,
-                                        own_6[1]
-                                            .mul_add(
-                                                each_acceleration_4,
-                                                own_6[0] * each_acceleration_3,
-                                            ),
+                                        own_6[0] * each_acceleration_4,
                                     ),
                             ),
                     ),
             );
-        let each_acceleration_16 = (-own_6[2])
+        let each_acceleration_16 = own_6[1]
             .mul_add(
-                each_acceleration_10,
-                own_6[1].mul_add(each_acceleration_13, own_6[6] + each_acceleration_15),
+                each_acceleration_11,
+                own_6[0].mul_add(each_acceleration_14, -own_6[5] - each_acceleration_15),
             );
-        let each_acceleration_17 = each_acceleration_3 - each_acceleration_16;
-        results[3 * i + 6] = -each_acceleration_16;
-        results[3 * i + 7] = each_acceleration_13;
-        results[3 * i + 8] = -each_acceleration_10;
+        let each_acceleration_17 = -each_acceleration_10;
+        results[3 * i + 6] = each_acceleration_16 - each_acceleration_3;
+        results[3 * i + 7] = -each_acceleration_14;
+        results[3 * i + 8] = -each_acceleration_11;
         rows_of_6[i + 20] = [
             each_acceleration_6,
             each_acceleration_7,
             each_acceleration_8,
-            each_acceleration_11,
-            each_acceleration_14,
+            each_acceleration_13,
+            each_acceleration_16,
             each_acceleration_17,
         ];
     }
     // link_20: acceleration (30 additions, 27 multiplications)
-    let link_20_acceleration = rows_of_6[36][4].mul_add(n(-0.2), rows_of_6[36][0]);
-    let link_20_acceleration_2 = (-rows_of_6[36][5]).mul_add(n(-0.2), rows_of_6[36][1]);
+    let link_20_acceleration = rows_of_6[36][3].mul_add(n(-0.2), rows_of_6[36][0]);
+    let link_20_acceleration_2 = (-rows_of_6[36][4]).mul_add(n(-0.2), rows_of_6[36][1]);
     let link_20_acceleration_3 = q[177]
         .mul_add(
-            rows_of_6[36][3],
+            rows_of_6[36][5],
             q[174]
                 .mul_add(
-                    rows_of_6[36][4],
-                    q[171].mul_add(rows_of_6[36][5], link_20_bias_9),
+                    rows_of_6[36][3],
+                    q[171].mul_add(rows_of_6[36][4], link_20_bias_7),
                 ),
         );
     let link_20_acceleration_4 = q[179]
         .mul_add(
-            rows_of_6[36][3],
+            rows_of_6[36][5],
             q[176]
                 .mul_add(
-                    rows_of_6[36][4],
-                    q[173].mul_add(rows_of_6[36][5], link_20_bias_11),
+                    rows_of_6[36][3],
+                    q[173].mul_add(rows_of_6[36][4], link_20_bias_9),
                 ),
         );
     let link_20_acceleration_5 = q[178]
@@ -5068,16 +4730,16 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             q[175]
                 .mul_add(
                     link_20_acceleration_2,
-                    q[172].mul_add(link_20_acceleration, link_20_bias_16),
+                    q[172].mul_add(link_20_acceleration, link_20_bias_14),
                 ),
         );
     let link_20_acceleration_6 = link_20_acceleration_5
         .mul_add(
-            n(4.8615331191943785),
+            n(4.8615331191943705),
             link_20_acceleration_3
                 .mul_add(
-                    n(-0.00000000000000025883809135646677),
-                    link_20_articulated_inertia_11 + link_20_acceleration_4,
+                    n(-0.00000000000000025883809135646647),
+                    link_20_acceleration_4 + link_20_articulated_inertia_6,
                 ),
         );
     let link_20_acceleration_7 = (q[177]
@@ -5086,102 +4748,92 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], tau: &[T; 60]) -> 
             q[174]
                 .mul_add(
                     link_20_acceleration_2,
-                    q[171].mul_add(link_20_acceleration, link_20_bias_15),
+                    q[171].mul_add(link_20_acceleration, link_20_bias_13),
                 ),
-        )) * n(-7.352941176470588);
+        )) * n(-7.35294117647059);
     let link_20_acceleration_8 = (q[179]
         .mul_add(
             rows_of_6[36][2],
             q[176]
                 .mul_add(
                     link_20_acceleration_2,
-                    q[173].mul_add(link_20_acceleration, link_20_bias_17),
+                    q[173].mul_add(link_20_acceleration, link_20_bias_15),
                 ),
-        )) * n(-0.7352941176470587);
+        )) * n(-0.7352941176470588);
     let link_20_acceleration_9 = q[178]
         .mul_add(
-            rows_of_6[36][3],
+            rows_of_6[36][5],
             q[175]
                 .mul_add(
-                    rows_of_6[36][4],
+                    rows_of_6[36][3],
                     q[172]
                         .mul_add(
-                            rows_of_6[36][5],
-                            link_20_bias_10 + link_20_acceleration_7
-                                + link_20_acceleration_8,
+                            rows_of_6[36][4],
+                            link_20_bias_8 + link_20_articulated_inertia_5
+                                + link_20_acceleration_7 + link_20_acceleration_8,
                         ),
                 ),
         );
-    let link_20_acceleration_10 = (-link_20_acceleration_5)
+    let link_20_acceleration_10 = (-link_20_acceleration_6)
         .mul_add(
-            n(7.2727272727272725),
-            (-link_20_acceleration_4)
+            n(0.07454545454545455),
+            link_20_acceleration_5
                 .mul_add(
-                    n(0.07454545454545454),
-                    link_20_acceleration_6
+                    n(7.272727272727274),
+                    link_20_acceleration_4
                         .mul_add(
-                            n(0.07454545454545454),
-                            -link_20_articulated_inertia_5 - link_20_acceleration_3,
+                            n(0.07454545454545455),
+                            link_20_acceleration_3 + link_20_articulated_inertia_4,
                         ),
                 ),
         );
-    results[57] = link_20_acceleration_10;
-    results[58] = -link_20_articulated_inertia_7 - link_20_acceleration_9;
+    results[57] = -link_20_acceleration_10;
+    results[58] = -link_20_acceleration_9;
     results[59] = -link_20_acceleration_6;
     results
 }
 
 /// Efforts τ̄ = S̄ᵀτ that the accelerations take at Q and v̄, (24), (34).
 ///
-/// Operations: 1456 additions, 1691 multiplications.
+/// Operations: 1397 additions, 1553 multiplications.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T; 60] {
     let n = T::from_f64;
-    // link_1: force (14 additions, 20 multiplications)
-    let link_1_force = v[2]
-        .mul_add(n(0.00041000000000000005), v[0] * n(0.30950000000000016));
-    let link_1_force_2 = v[1] * n(0.30944000000000016);
-    let link_1_force_3 = v[2]
-        .mul_add(n(0.00023999999999999976), v[0] * n(0.00041000000000000005));
-    let link_1_force_4 = (-v[2])
+    // link_1: acceleration (4 additions, 9 multiplications)
+    let link_1_acceleration = v[0] * v[0];
+    let link_1_acceleration_2 = v[0] * v[1];
+    let link_1_acceleration_3 = v[0] * v[2];
+    let link_1_acceleration_4 = v[1] * v[2];
+    let link_1_acceleration_5 = a[0] - link_1_acceleration_4;
+    // link_1: force (11 additions, 13 multiplications)
+    let link_1_force = (-((-v[2]).mul_add(v[2], link_1_acceleration)))
         .mul_add(
-            link_1_force_2,
+            n(0.00041000000000000005),
+            link_1_acceleration_3
+                .mul_add(n(0.3092600000000002), a[1] * n(0.30944000000000016)),
+        );
+    let link_1_force_2 = (-link_1_acceleration_4)
+        .mul_add(
+            n(0.3092000000000002),
             q[7]
                 .mul_add(
                     n(15.303600000000007),
-                    a[2]
+                    (a[2] + link_1_acceleration_2)
                         .mul_add(
                             n(0.00041000000000000005),
-                            a[0].mul_add(n(0.30950000000000016), v[1] * link_1_force_3),
+                            a[0] * n(0.30950000000000016),
                         ),
                 ),
         );
-    let link_1_force_5 = (-q[8])
+    let link_1_force_3 = (-link_1_acceleration_2)
         .mul_add(
-            n(0.039240000000000004),
-            (-q[6])
-                .mul_add(
-                    n(15.303600000000007),
-                    (-v[0])
-                        .mul_add(
-                            link_1_force_3,
-                            a[1].mul_add(n(0.30944000000000016), v[2] * link_1_force),
-                        ),
-                ),
-        );
-    let link_1_force_6 = (-v[1])
-        .mul_add(
-            link_1_force,
+            n(0.00006000000000000002),
             q[7]
                 .mul_add(
                     n(0.039240000000000004),
-                    a[2]
-                        .mul_add(
-                            n(0.00023999999999999976),
-                            a[0]
-                                .mul_add(n(0.00041000000000000005), v[0] * link_1_force_2),
-                        ),
+                    link_1_acceleration_5
+                        .mul_add(n(0.00041000000000000005), a[2] * n(0.00024)),
                 ),
         );
     // link_2: angular velocity (9 additions, 9 multiplications)
@@ -5194,11 +4846,10 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_2_rate_y = v[4] + link_2_angular_velocity_2;
     let link_2_rate_z = v[5] + link_2_angular_velocity_3;
     // link_2: acceleration (30 additions, 33 multiplications)
-    let link_2_acceleration = (-(v[0].mul_add(v[2], a[1])))
+    let link_2_acceleration = (-(a[1] + link_1_acceleration_3))
         .mul_add(n(0.2), q[6] * n(9.81));
-    let link_2_acceleration_2 = ((-v[1]).mul_add(v[2], a[0]))
-        .mul_add(n(0.2), q[7] * n(9.81));
-    let link_2_acceleration_3 = (v[1].mul_add(v[1], v[0] * v[0]))
+    let link_2_acceleration_2 = link_1_acceleration_5.mul_add(n(0.2), q[7] * n(9.81));
+    let link_2_acceleration_3 = (v[1].mul_add(v[1], link_1_acceleration))
         .mul_add(n(0.2), q[8] * n(9.81));
     let link_2_acceleration_4 = q[15]
         .mul_add(
@@ -5263,67 +4914,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_2_acceleration_10 = link_2_rate_x * link_2_rate_z;
-    let link_2_acceleration_11 = link_2_rate_y * link_2_rate_y;
-    let link_2_acceleration_12 = link_2_acceleration_8 + link_2_acceleration_10;
-    let link_2_acceleration_13 = (-link_2_rate_y)
-        .mul_add(link_2_rate_z, link_2_acceleration_7);
-    let link_2_acceleration_14 = link_2_rate_x
-        .mul_add(link_2_rate_x, link_2_acceleration_11);
-    // link_2: force (17 additions, 26 multiplications)
-    let link_2_force = link_2_rate_z
-        .mul_add(n(0.00041000000000000005), link_2_rate_x * n(0.29350000000000015));
-    let link_2_force_2 = link_2_rate_y * n(0.29344000000000015);
-    let link_2_force_3 = link_2_rate_z
-        .mul_add(n(0.00023999999999999976), link_2_rate_x * n(0.00041000000000000005));
-    let link_2_force_4 = (-link_2_rate_z)
+    let link_2_acceleration_10 = link_2_rate_x * link_2_rate_x;
+    let link_2_acceleration_11 = link_2_rate_x * link_2_rate_y;
+    let link_2_acceleration_12 = link_2_rate_x * link_2_rate_z;
+    let link_2_acceleration_13 = link_2_rate_y * link_2_rate_y;
+    let link_2_acceleration_14 = link_2_rate_y * link_2_rate_z;
+    let link_2_acceleration_15 = link_2_rate_z * link_2_rate_z;
+    let link_2_acceleration_16 = link_2_acceleration_9 + link_2_acceleration_11;
+    let link_2_acceleration_17 = link_2_acceleration_8 + link_2_acceleration_12;
+    let link_2_acceleration_18 = link_2_acceleration_7 - link_2_acceleration_14;
+    let link_2_acceleration_19 = link_2_acceleration_10 + link_2_acceleration_13;
+    // link_2: force (14 additions, 19 multiplications)
+    let link_2_force = (-link_2_acceleration_14)
         .mul_add(
-            link_2_force_2,
+            n(0.2932000000000002),
             link_2_acceleration_5
                 .mul_add(
                     n(1.4800000000000004),
-                    link_2_acceleration_9
+                    link_2_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_2_acceleration_7
-                                .mul_add(
-                                    n(0.29350000000000015),
-                                    link_2_rate_y * link_2_force_3,
-                                ),
+                            link_2_acceleration_7 * n(0.29350000000000015),
                         ),
                 ),
         );
-    let link_2_force_5 = (-link_2_acceleration_6)
+    let link_2_force_2 = (-link_2_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_2_acceleration_4)
                 .mul_add(
                     n(1.4800000000000004),
-                    (-link_2_rate_x)
+                    (-(link_2_acceleration_10 - link_2_acceleration_15))
                         .mul_add(
-                            link_2_force_3,
-                            link_2_acceleration_8
+                            n(0.00041000000000000005),
+                            link_2_acceleration_12
                                 .mul_add(
-                                    n(0.29344000000000015),
-                                    link_2_rate_z * link_2_force,
+                                    n(0.2932600000000002),
+                                    link_2_acceleration_8 * n(0.29344000000000015),
                                 ),
                         ),
                 ),
         );
-    let link_2_force_6 = (-link_2_rate_y)
+    let link_2_force_3 = (-link_2_acceleration_11)
         .mul_add(
-            link_2_force,
+            n(0.00006000000000000002),
             link_2_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_2_acceleration_9
+                    link_2_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_2_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_2_rate_x * link_2_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_2_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -5338,11 +4979,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_3_rate_y = v[7] + link_3_angular_velocity_2;
     let link_3_rate_z = v[8] + link_3_angular_velocity_3;
     // link_3: acceleration (30 additions, 33 multiplications)
-    let link_3_acceleration = (-link_2_acceleration_12)
+    let link_3_acceleration = (-link_2_acceleration_17)
         .mul_add(n(0.2), link_2_acceleration_4);
-    let link_3_acceleration_2 = link_2_acceleration_13
+    let link_3_acceleration_2 = link_2_acceleration_18
         .mul_add(n(0.2), link_2_acceleration_5);
-    let link_3_acceleration_3 = link_2_acceleration_14
+    let link_3_acceleration_3 = link_2_acceleration_19
         .mul_add(n(0.2), link_2_acceleration_6);
     let link_3_acceleration_4 = q[24]
         .mul_add(
@@ -5410,67 +5051,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_3_acceleration_10 = link_3_rate_x * link_3_rate_z;
-    let link_3_acceleration_11 = link_3_rate_y * link_3_rate_y;
-    let link_3_acceleration_12 = link_3_acceleration_8 + link_3_acceleration_10;
-    let link_3_acceleration_13 = (-link_3_rate_y)
-        .mul_add(link_3_rate_z, link_3_acceleration_7);
-    let link_3_acceleration_14 = link_3_rate_x
-        .mul_add(link_3_rate_x, link_3_acceleration_11);
-    // link_3: force (17 additions, 26 multiplications)
-    let link_3_force = link_3_rate_z
-        .mul_add(n(0.00041000000000000005), link_3_rate_x * n(0.27750000000000014));
-    let link_3_force_2 = link_3_rate_y * n(0.27744000000000013);
-    let link_3_force_3 = link_3_rate_z
-        .mul_add(n(0.00023999999999999976), link_3_rate_x * n(0.00041000000000000005));
-    let link_3_force_4 = (-link_3_rate_z)
+    let link_3_acceleration_10 = link_3_rate_x * link_3_rate_x;
+    let link_3_acceleration_11 = link_3_rate_x * link_3_rate_y;
+    let link_3_acceleration_12 = link_3_rate_x * link_3_rate_z;
+    let link_3_acceleration_13 = link_3_rate_y * link_3_rate_y;
+    let link_3_acceleration_14 = link_3_rate_y * link_3_rate_z;
+    let link_3_acceleration_15 = link_3_rate_z * link_3_rate_z;
+    let link_3_acceleration_16 = link_3_acceleration_9 + link_3_acceleration_11;
+    let link_3_acceleration_17 = link_3_acceleration_8 + link_3_acceleration_12;
+    let link_3_acceleration_18 = link_3_acceleration_7 - link_3_acceleration_14;
+    let link_3_acceleration_19 = link_3_acceleration_10 + link_3_acceleration_13;
+    // link_3: force (14 additions, 19 multiplications)
+    let link_3_force = (-link_3_acceleration_14)
         .mul_add(
-            link_3_force_2,
+            n(0.27720000000000017),
             link_3_acceleration_5
                 .mul_add(
                     n(1.4000000000000004),
-                    link_3_acceleration_9
+                    link_3_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_3_acceleration_7
-                                .mul_add(
-                                    n(0.27750000000000014),
-                                    link_3_rate_y * link_3_force_3,
-                                ),
+                            link_3_acceleration_7 * n(0.27750000000000014),
                         ),
                 ),
         );
-    let link_3_force_5 = (-link_3_acceleration_6)
+    let link_3_force_2 = (-link_3_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_3_acceleration_4)
                 .mul_add(
                     n(1.4000000000000004),
-                    (-link_3_rate_x)
+                    (-(link_3_acceleration_10 - link_3_acceleration_15))
                         .mul_add(
-                            link_3_force_3,
-                            link_3_acceleration_8
+                            n(0.00041000000000000005),
+                            link_3_acceleration_12
                                 .mul_add(
-                                    n(0.27744000000000013),
-                                    link_3_rate_z * link_3_force,
+                                    n(0.2772600000000002),
+                                    link_3_acceleration_8 * n(0.27744000000000013),
                                 ),
                         ),
                 ),
         );
-    let link_3_force_6 = (-link_3_rate_y)
+    let link_3_force_3 = (-link_3_acceleration_11)
         .mul_add(
-            link_3_force,
+            n(0.00006000000000000002),
             link_3_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_3_acceleration_9
+                    link_3_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_3_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_3_rate_x * link_3_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_3_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -5485,11 +5116,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_4_rate_y = v[10] + link_4_angular_velocity_2;
     let link_4_rate_z = v[11] + link_4_angular_velocity_3;
     // link_4: acceleration (30 additions, 33 multiplications)
-    let link_4_acceleration = (-link_3_acceleration_12)
+    let link_4_acceleration = (-link_3_acceleration_17)
         .mul_add(n(0.2), link_3_acceleration_4);
-    let link_4_acceleration_2 = link_3_acceleration_13
+    let link_4_acceleration_2 = link_3_acceleration_18
         .mul_add(n(0.2), link_3_acceleration_5);
-    let link_4_acceleration_3 = link_3_acceleration_14
+    let link_4_acceleration_3 = link_3_acceleration_19
         .mul_add(n(0.2), link_3_acceleration_6);
     let link_4_acceleration_4 = q[33]
         .mul_add(
@@ -5557,67 +5188,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_4_acceleration_10 = link_4_rate_x * link_4_rate_z;
-    let link_4_acceleration_11 = link_4_rate_y * link_4_rate_y;
-    let link_4_acceleration_12 = link_4_acceleration_8 + link_4_acceleration_10;
-    let link_4_acceleration_13 = (-link_4_rate_y)
-        .mul_add(link_4_rate_z, link_4_acceleration_7);
-    let link_4_acceleration_14 = link_4_rate_x
-        .mul_add(link_4_rate_x, link_4_acceleration_11);
-    // link_4: force (17 additions, 26 multiplications)
-    let link_4_force = link_4_rate_z
-        .mul_add(n(0.00041000000000000005), link_4_rate_x * n(0.2615000000000001));
-    let link_4_force_2 = link_4_rate_y * n(0.2614400000000001);
-    let link_4_force_3 = link_4_rate_z
-        .mul_add(n(0.00023999999999999976), link_4_rate_x * n(0.00041000000000000005));
-    let link_4_force_4 = (-link_4_rate_z)
+    let link_4_acceleration_10 = link_4_rate_x * link_4_rate_x;
+    let link_4_acceleration_11 = link_4_rate_x * link_4_rate_y;
+    let link_4_acceleration_12 = link_4_rate_x * link_4_rate_z;
+    let link_4_acceleration_13 = link_4_rate_y * link_4_rate_y;
+    let link_4_acceleration_14 = link_4_rate_y * link_4_rate_z;
+    let link_4_acceleration_15 = link_4_rate_z * link_4_rate_z;
+    let link_4_acceleration_16 = link_4_acceleration_9 + link_4_acceleration_11;
+    let link_4_acceleration_17 = link_4_acceleration_8 + link_4_acceleration_12;
+    let link_4_acceleration_18 = link_4_acceleration_7 - link_4_acceleration_14;
+    let link_4_acceleration_19 = link_4_acceleration_10 + link_4_acceleration_13;
+    // link_4: force (14 additions, 19 multiplications)
+    let link_4_force = (-link_4_acceleration_14)
         .mul_add(
-            link_4_force_2,
+            n(0.26120000000000015),
             link_4_acceleration_5
                 .mul_add(
                     n(1.3200000000000003),
-                    link_4_acceleration_9
+                    link_4_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_4_acceleration_7
-                                .mul_add(
-                                    n(0.2615000000000001),
-                                    link_4_rate_y * link_4_force_3,
-                                ),
+                            link_4_acceleration_7 * n(0.2615000000000001),
                         ),
                 ),
         );
-    let link_4_force_5 = (-link_4_acceleration_6)
+    let link_4_force_2 = (-link_4_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_4_acceleration_4)
                 .mul_add(
                     n(1.3200000000000003),
-                    (-link_4_rate_x)
+                    (-(link_4_acceleration_10 - link_4_acceleration_15))
                         .mul_add(
-                            link_4_force_3,
-                            link_4_acceleration_8
+                            n(0.00041000000000000005),
+                            link_4_acceleration_12
                                 .mul_add(
-                                    n(0.2614400000000001),
-                                    link_4_rate_z * link_4_force,
+                                    n(0.26126000000000016),
+                                    link_4_acceleration_8 * n(0.2614400000000001),
                                 ),
                         ),
                 ),
         );
-    let link_4_force_6 = (-link_4_rate_y)
+    let link_4_force_3 = (-link_4_acceleration_11)
         .mul_add(
-            link_4_force,
+            n(0.00006000000000000002),
             link_4_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_4_acceleration_9
+                    link_4_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_4_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_4_rate_x * link_4_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_4_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -5632,11 +5253,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_5_rate_y = v[13] + link_5_angular_velocity_2;
     let link_5_rate_z = v[14] + link_5_angular_velocity_3;
     // link_5: acceleration (30 additions, 33 multiplications)
-    let link_5_acceleration = (-link_4_acceleration_12)
+    let link_5_acceleration = (-link_4_acceleration_17)
         .mul_add(n(0.2), link_4_acceleration_4);
-    let link_5_acceleration_2 = link_4_acceleration_13
+    let link_5_acceleration_2 = link_4_acceleration_18
         .mul_add(n(0.2), link_4_acceleration_5);
-    let link_5_acceleration_3 = link_4_acceleration_14
+    let link_5_acceleration_3 = link_4_acceleration_19
         .mul_add(n(0.2), link_4_acceleration_6);
     let link_5_acceleration_4 = q[42]
         .mul_add(
@@ -5704,67 +5325,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_5_acceleration_10 = link_5_rate_x * link_5_rate_z;
-    let link_5_acceleration_11 = link_5_rate_y * link_5_rate_y;
-    let link_5_acceleration_12 = link_5_acceleration_8 + link_5_acceleration_10;
-    let link_5_acceleration_13 = (-link_5_rate_y)
-        .mul_add(link_5_rate_z, link_5_acceleration_7);
-    let link_5_acceleration_14 = link_5_rate_x
-        .mul_add(link_5_rate_x, link_5_acceleration_11);
-    // link_5: force (17 additions, 26 multiplications)
-    let link_5_force = link_5_rate_z
-        .mul_add(n(0.00041000000000000005), link_5_rate_x * n(0.24550000000000008));
-    let link_5_force_2 = link_5_rate_y * n(0.24544000000000007);
-    let link_5_force_3 = link_5_rate_z
-        .mul_add(n(0.00023999999999999976), link_5_rate_x * n(0.00041000000000000005));
-    let link_5_force_4 = (-link_5_rate_z)
+    let link_5_acceleration_10 = link_5_rate_x * link_5_rate_x;
+    let link_5_acceleration_11 = link_5_rate_x * link_5_rate_y;
+    let link_5_acceleration_12 = link_5_rate_x * link_5_rate_z;
+    let link_5_acceleration_13 = link_5_rate_y * link_5_rate_y;
+    let link_5_acceleration_14 = link_5_rate_y * link_5_rate_z;
+    let link_5_acceleration_15 = link_5_rate_z * link_5_rate_z;
+    let link_5_acceleration_16 = link_5_acceleration_9 + link_5_acceleration_11;
+    let link_5_acceleration_17 = link_5_acceleration_8 + link_5_acceleration_12;
+    let link_5_acceleration_18 = link_5_acceleration_7 - link_5_acceleration_14;
+    let link_5_acceleration_19 = link_5_acceleration_10 + link_5_acceleration_13;
+    // link_5: force (14 additions, 19 multiplications)
+    let link_5_force = (-link_5_acceleration_14)
         .mul_add(
-            link_5_force_2,
+            n(0.24520000000000006),
             link_5_acceleration_5
                 .mul_add(
                     n(1.2400000000000002),
-                    link_5_acceleration_9
+                    link_5_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_5_acceleration_7
-                                .mul_add(
-                                    n(0.24550000000000008),
-                                    link_5_rate_y * link_5_force_3,
-                                ),
+                            link_5_acceleration_7 * n(0.24550000000000008),
                         ),
                 ),
         );
-    let link_5_force_5 = (-link_5_acceleration_6)
+    let link_5_force_2 = (-link_5_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_5_acceleration_4)
                 .mul_add(
                     n(1.2400000000000002),
-                    (-link_5_rate_x)
+                    (-(link_5_acceleration_10 - link_5_acceleration_15))
                         .mul_add(
-                            link_5_force_3,
-                            link_5_acceleration_8
+                            n(0.00041000000000000005),
+                            link_5_acceleration_12
                                 .mul_add(
-                                    n(0.24544000000000007),
-                                    link_5_rate_z * link_5_force,
+                                    n(0.24526000000000006),
+                                    link_5_acceleration_8 * n(0.24544000000000007),
                                 ),
                         ),
                 ),
         );
-    let link_5_force_6 = (-link_5_rate_y)
+    let link_5_force_3 = (-link_5_acceleration_11)
         .mul_add(
-            link_5_force,
+            n(0.00006000000000000002),
             link_5_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_5_acceleration_9
+                    link_5_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_5_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_5_rate_x * link_5_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_5_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -5779,11 +5390,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_6_rate_y = v[16] + link_6_angular_velocity_2;
     let link_6_rate_z = v[17] + link_6_angular_velocity_3;
     // link_6: acceleration (30 additions, 33 multiplications)
-    let link_6_acceleration = (-link_5_acceleration_12)
+    let link_6_acceleration = (-link_5_acceleration_17)
         .mul_add(n(0.2), link_5_acceleration_4);
-    let link_6_acceleration_2 = link_5_acceleration_13
+    let link_6_acceleration_2 = link_5_acceleration_18
         .mul_add(n(0.2), link_5_acceleration_5);
-    let link_6_acceleration_3 = link_5_acceleration_14
+    let link_6_acceleration_3 = link_5_acceleration_19
         .mul_add(n(0.2), link_5_acceleration_6);
     let link_6_acceleration_4 = q[51]
         .mul_add(
@@ -5851,67 +5462,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_6_acceleration_10 = link_6_rate_x * link_6_rate_z;
-    let link_6_acceleration_11 = link_6_rate_y * link_6_rate_y;
-    let link_6_acceleration_12 = link_6_acceleration_8 + link_6_acceleration_10;
-    let link_6_acceleration_13 = (-link_6_rate_y)
-        .mul_add(link_6_rate_z, link_6_acceleration_7);
-    let link_6_acceleration_14 = link_6_rate_x
-        .mul_add(link_6_rate_x, link_6_acceleration_11);
-    // link_6: force (17 additions, 26 multiplications)
-    let link_6_force = link_6_rate_z
-        .mul_add(n(0.00041000000000000005), link_6_rate_x * n(0.22950000000000007));
-    let link_6_force_2 = link_6_rate_y * n(0.22944000000000006);
-    let link_6_force_3 = link_6_rate_z
-        .mul_add(n(0.00023999999999999976), link_6_rate_x * n(0.00041000000000000005));
-    let link_6_force_4 = (-link_6_rate_z)
+    let link_6_acceleration_10 = link_6_rate_x * link_6_rate_x;
+    let link_6_acceleration_11 = link_6_rate_x * link_6_rate_y;
+    let link_6_acceleration_12 = link_6_rate_x * link_6_rate_z;
+    let link_6_acceleration_13 = link_6_rate_y * link_6_rate_y;
+    let link_6_acceleration_14 = link_6_rate_y * link_6_rate_z;
+    let link_6_acceleration_15 = link_6_rate_z * link_6_rate_z;
+    let link_6_acceleration_16 = link_6_acceleration_9 + link_6_acceleration_11;
+    let link_6_acceleration_17 = link_6_acceleration_8 + link_6_acceleration_12;
+    let link_6_acceleration_18 = link_6_acceleration_7 - link_6_acceleration_14;
+    let link_6_acceleration_19 = link_6_acceleration_10 + link_6_acceleration_13;
+    // link_6: force (14 additions, 19 multiplications)
+    let link_6_force = (-link_6_acceleration_14)
         .mul_add(
-            link_6_force_2,
+            n(0.22920000000000004),
             link_6_acceleration_5
                 .mul_add(
                     n(1.1600000000000001),
-                    link_6_acceleration_9
+                    link_6_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_6_acceleration_7
-                                .mul_add(
-                                    n(0.22950000000000007),
-                                    link_6_rate_y * link_6_force_3,
-                                ),
+                            link_6_acceleration_7 * n(0.22950000000000007),
                         ),
                 ),
         );
-    let link_6_force_5 = (-link_6_acceleration_6)
+    let link_6_force_2 = (-link_6_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_6_acceleration_4)
                 .mul_add(
                     n(1.1600000000000001),
-                    (-link_6_rate_x)
+                    (-(link_6_acceleration_10 - link_6_acceleration_15))
                         .mul_add(
-                            link_6_force_3,
-                            link_6_acceleration_8
+                            n(0.00041000000000000005),
+                            link_6_acceleration_12
                                 .mul_add(
-                                    n(0.22944000000000006),
-                                    link_6_rate_z * link_6_force,
+                                    n(0.22926000000000005),
+                                    link_6_acceleration_8 * n(0.22944000000000006),
                                 ),
                         ),
                 ),
         );
-    let link_6_force_6 = (-link_6_rate_y)
+    let link_6_force_3 = (-link_6_acceleration_11)
         .mul_add(
-            link_6_force,
+            n(0.00006000000000000002),
             link_6_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_6_acceleration_9
+                    link_6_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_6_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_6_rate_x * link_6_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_6_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -5926,11 +5527,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_7_rate_y = v[19] + link_7_angular_velocity_2;
     let link_7_rate_z = v[20] + link_7_angular_velocity_3;
     // link_7: acceleration (30 additions, 33 multiplications)
-    let link_7_acceleration = (-link_6_acceleration_12)
+    let link_7_acceleration = (-link_6_acceleration_17)
         .mul_add(n(0.2), link_6_acceleration_4);
-    let link_7_acceleration_2 = link_6_acceleration_13
+    let link_7_acceleration_2 = link_6_acceleration_18
         .mul_add(n(0.2), link_6_acceleration_5);
-    let link_7_acceleration_3 = link_6_acceleration_14
+    let link_7_acceleration_3 = link_6_acceleration_19
         .mul_add(n(0.2), link_6_acceleration_6);
     let link_7_acceleration_4 = q[60]
         .mul_add(
@@ -5998,67 +5599,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_7_acceleration_10 = link_7_rate_x * link_7_rate_z;
-    let link_7_acceleration_11 = link_7_rate_y * link_7_rate_y;
-    let link_7_acceleration_12 = link_7_acceleration_8 + link_7_acceleration_10;
-    let link_7_acceleration_13 = (-link_7_rate_y)
-        .mul_add(link_7_rate_z, link_7_acceleration_7);
-    let link_7_acceleration_14 = link_7_rate_x
-        .mul_add(link_7_rate_x, link_7_acceleration_11);
-    // link_7: force (17 additions, 26 multiplications)
-    let link_7_force = link_7_rate_z
-        .mul_add(n(0.00041000000000000005), link_7_rate_x * n(0.21350000000000005));
-    let link_7_force_2 = link_7_rate_y * n(0.21344000000000005);
-    let link_7_force_3 = link_7_rate_z
-        .mul_add(n(0.00023999999999999976), link_7_rate_x * n(0.00041000000000000005));
-    let link_7_force_4 = (-link_7_rate_z)
+    let link_7_acceleration_10 = link_7_rate_x * link_7_rate_x;
+    let link_7_acceleration_11 = link_7_rate_x * link_7_rate_y;
+    let link_7_acceleration_12 = link_7_rate_x * link_7_rate_z;
+    let link_7_acceleration_13 = link_7_rate_y * link_7_rate_y;
+    let link_7_acceleration_14 = link_7_rate_y * link_7_rate_z;
+    let link_7_acceleration_15 = link_7_rate_z * link_7_rate_z;
+    let link_7_acceleration_16 = link_7_acceleration_9 + link_7_acceleration_11;
+    let link_7_acceleration_17 = link_7_acceleration_8 + link_7_acceleration_12;
+    let link_7_acceleration_18 = link_7_acceleration_7 - link_7_acceleration_14;
+    let link_7_acceleration_19 = link_7_acceleration_10 + link_7_acceleration_13;
+    // link_7: force (14 additions, 19 multiplications)
+    let link_7_force = (-link_7_acceleration_14)
         .mul_add(
-            link_7_force_2,
+            n(0.21320000000000003),
             link_7_acceleration_5
                 .mul_add(
                     n(1.08),
-                    link_7_acceleration_9
+                    link_7_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_7_acceleration_7
-                                .mul_add(
-                                    n(0.21350000000000005),
-                                    link_7_rate_y * link_7_force_3,
-                                ),
+                            link_7_acceleration_7 * n(0.21350000000000005),
                         ),
                 ),
         );
-    let link_7_force_5 = (-link_7_acceleration_6)
+    let link_7_force_2 = (-link_7_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_7_acceleration_4)
                 .mul_add(
                     n(1.08),
-                    (-link_7_rate_x)
+                    (-(link_7_acceleration_10 - link_7_acceleration_15))
                         .mul_add(
-                            link_7_force_3,
-                            link_7_acceleration_8
+                            n(0.00041000000000000005),
+                            link_7_acceleration_12
                                 .mul_add(
-                                    n(0.21344000000000005),
-                                    link_7_rate_z * link_7_force,
+                                    n(0.21326000000000003),
+                                    link_7_acceleration_8 * n(0.21344000000000005),
                                 ),
                         ),
                 ),
         );
-    let link_7_force_6 = (-link_7_rate_y)
+    let link_7_force_3 = (-link_7_acceleration_11)
         .mul_add(
-            link_7_force,
+            n(0.00006000000000000002),
             link_7_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_7_acceleration_9
+                    link_7_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_7_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_7_rate_x * link_7_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_7_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -6073,11 +5664,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_8_rate_y = v[22] + link_8_angular_velocity_2;
     let link_8_rate_z = v[23] + link_8_angular_velocity_3;
     // link_8: acceleration (30 additions, 33 multiplications)
-    let link_8_acceleration = (-link_7_acceleration_12)
+    let link_8_acceleration = (-link_7_acceleration_17)
         .mul_add(n(0.2), link_7_acceleration_4);
-    let link_8_acceleration_2 = link_7_acceleration_13
+    let link_8_acceleration_2 = link_7_acceleration_18
         .mul_add(n(0.2), link_7_acceleration_5);
-    let link_8_acceleration_3 = link_7_acceleration_14
+    let link_8_acceleration_3 = link_7_acceleration_19
         .mul_add(n(0.2), link_7_acceleration_6);
     let link_8_acceleration_4 = q[69]
         .mul_add(
@@ -6145,59 +5736,41 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_8_acceleration_10 = link_8_rate_x * link_8_rate_z;
-    let link_8_acceleration_11 = link_8_rate_y * link_8_rate_y;
-    let link_8_acceleration_12 = link_8_acceleration_8 + link_8_acceleration_10;
-    let link_8_acceleration_13 = (-link_8_rate_y)
-        .mul_add(link_8_rate_z, link_8_acceleration_7);
-    let link_8_acceleration_14 = link_8_rate_x
-        .mul_add(link_8_rate_x, link_8_acceleration_11);
-    // link_8: force (17 additions, 21 multiplications)
-    let link_8_force = link_8_rate_z
-        .mul_add(n(0.00041000000000000005), link_8_rate_x * n(0.19750000000000004));
-    let link_8_force_2 = link_8_rate_y * n(0.19744000000000003);
-    let link_8_force_3 = link_8_rate_z
-        .mul_add(n(0.00023999999999999976), link_8_rate_x * n(0.00041000000000000005));
-    let link_8_force_4 = (-link_8_rate_z)
-        .mul_add(
-            link_8_force_2,
-            link_8_acceleration_9
-                .mul_add(
-                    n(0.00041000000000000005),
-                    link_8_acceleration_7
-                        .mul_add(
-                            n(0.19750000000000004),
-                            link_8_rate_y.mul_add(link_8_force_3, link_8_acceleration_5),
-                        ),
-                ),
-        );
-    let link_8_force_5 = (-link_8_acceleration_6)
+    let link_8_acceleration_10 = link_8_rate_x * link_8_rate_x;
+    let link_8_acceleration_11 = link_8_rate_x * link_8_rate_y;
+    let link_8_acceleration_12 = link_8_rate_x * link_8_rate_z;
+    let link_8_acceleration_13 = link_8_rate_y * link_8_rate_y;
+    let link_8_acceleration_14 = link_8_rate_y * link_8_rate_z;
+    let link_8_acceleration_15 = link_8_rate_z * link_8_rate_z;
+    let link_8_acceleration_16 = link_8_acceleration_9 + link_8_acceleration_11;
+    let link_8_acceleration_17 = link_8_acceleration_8 + link_8_acceleration_12;
+    let link_8_acceleration_18 = link_8_acceleration_7 - link_8_acceleration_14;
+    let link_8_acceleration_19 = link_8_acceleration_10 + link_8_acceleration_13;
+    // link_8: force (14 additions, 14 multiplications)
+    let link_8_force = (-link_8_acceleration_6)
         .mul_add(
             n(0.004),
-            (-link_8_rate_x)
+            (-(link_8_acceleration_10 - link_8_acceleration_15))
                 .mul_add(
-                    link_8_force_3,
-                    link_8_acceleration_8
+                    n(0.00041000000000000005),
+                    link_8_acceleration_12
                         .mul_add(
-                            n(0.19744000000000003),
-                            link_8_rate_z.mul_add(link_8_force, -link_8_acceleration_4),
+                            n(0.19726000000000002),
+                            link_8_acceleration_8
+                                .mul_add(n(0.19744000000000003), -link_8_acceleration_4),
                         ),
                 ),
         );
-    let link_8_force_6 = (-link_8_rate_y)
+    let link_8_force_2 = (-link_8_acceleration_11)
         .mul_add(
-            link_8_force,
+            n(0.00006000000000000002),
             link_8_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_8_acceleration_9
+                    link_8_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_8_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_8_rate_x * link_8_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_8_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -6212,11 +5785,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_9_rate_y = v[25] + link_9_angular_velocity_2;
     let link_9_rate_z = v[26] + link_9_angular_velocity_3;
     // link_9: acceleration (30 additions, 33 multiplications)
-    let link_9_acceleration = (-link_8_acceleration_12)
+    let link_9_acceleration = (-link_8_acceleration_17)
         .mul_add(n(0.2), link_8_acceleration_4);
-    let link_9_acceleration_2 = link_8_acceleration_13
+    let link_9_acceleration_2 = link_8_acceleration_18
         .mul_add(n(0.2), link_8_acceleration_5);
-    let link_9_acceleration_3 = link_8_acceleration_14
+    let link_9_acceleration_3 = link_8_acceleration_19
         .mul_add(n(0.2), link_8_acceleration_6);
     let link_9_acceleration_4 = q[78]
         .mul_add(
@@ -6284,67 +5857,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_9_acceleration_10 = link_9_rate_x * link_9_rate_z;
-    let link_9_acceleration_11 = link_9_rate_y * link_9_rate_y;
-    let link_9_acceleration_12 = link_9_acceleration_8 + link_9_acceleration_10;
-    let link_9_acceleration_13 = (-link_9_rate_y)
-        .mul_add(link_9_rate_z, link_9_acceleration_7);
-    let link_9_acceleration_14 = link_9_rate_x
-        .mul_add(link_9_rate_x, link_9_acceleration_11);
-    // link_9: force (17 additions, 26 multiplications)
-    let link_9_force = link_9_rate_z
-        .mul_add(n(0.00041000000000000005), link_9_rate_x * n(0.18150000000000002));
-    let link_9_force_2 = link_9_rate_y * n(0.18144000000000002);
-    let link_9_force_3 = link_9_rate_z
-        .mul_add(n(0.00023999999999999976), link_9_rate_x * n(0.00041000000000000005));
-    let link_9_force_4 = (-link_9_rate_z)
+    let link_9_acceleration_10 = link_9_rate_x * link_9_rate_x;
+    let link_9_acceleration_11 = link_9_rate_x * link_9_rate_y;
+    let link_9_acceleration_12 = link_9_rate_x * link_9_rate_z;
+    let link_9_acceleration_13 = link_9_rate_y * link_9_rate_y;
+    let link_9_acceleration_14 = link_9_rate_y * link_9_rate_z;
+    let link_9_acceleration_15 = link_9_rate_z * link_9_rate_z;
+    let link_9_acceleration_16 = link_9_acceleration_9 + link_9_acceleration_11;
+    let link_9_acceleration_17 = link_9_acceleration_8 + link_9_acceleration_12;
+    let link_9_acceleration_18 = link_9_acceleration_7 - link_9_acceleration_14;
+    let link_9_acceleration_19 = link_9_acceleration_10 + link_9_acceleration_13;
+    // link_9: force (14 additions, 19 multiplications)
+    let link_9_force = (-link_9_acceleration_14)
         .mul_add(
-            link_9_force_2,
+            n(0.1812),
             link_9_acceleration_5
                 .mul_add(
                     n(0.9199999999999999),
-                    link_9_acceleration_9
+                    link_9_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_9_acceleration_7
-                                .mul_add(
-                                    n(0.18150000000000002),
-                                    link_9_rate_y * link_9_force_3,
-                                ),
+                            link_9_acceleration_7 * n(0.18150000000000002),
                         ),
                 ),
         );
-    let link_9_force_5 = (-link_9_acceleration_6)
+    let link_9_force_2 = (-link_9_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_9_acceleration_4)
                 .mul_add(
                     n(0.9199999999999999),
-                    (-link_9_rate_x)
+                    (-(link_9_acceleration_10 - link_9_acceleration_15))
                         .mul_add(
-                            link_9_force_3,
-                            link_9_acceleration_8
+                            n(0.00041000000000000005),
+                            link_9_acceleration_12
                                 .mul_add(
-                                    n(0.18144000000000002),
-                                    link_9_rate_z * link_9_force,
+                                    n(0.18126),
+                                    link_9_acceleration_8 * n(0.18144000000000002),
                                 ),
                         ),
                 ),
         );
-    let link_9_force_6 = (-link_9_rate_y)
+    let link_9_force_3 = (-link_9_acceleration_11)
         .mul_add(
-            link_9_force,
+            n(0.00006000000000000002),
             link_9_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_9_acceleration_9
+                    link_9_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_9_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_9_rate_x * link_9_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_9_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -6359,11 +5922,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_10_rate_y = v[28] + link_10_angular_velocity_2;
     let link_10_rate_z = v[29] + link_10_angular_velocity_3;
     // link_10: acceleration (30 additions, 33 multiplications)
-    let link_10_acceleration = (-link_9_acceleration_12)
+    let link_10_acceleration = (-link_9_acceleration_17)
         .mul_add(n(0.2), link_9_acceleration_4);
-    let link_10_acceleration_2 = link_9_acceleration_13
+    let link_10_acceleration_2 = link_9_acceleration_18
         .mul_add(n(0.2), link_9_acceleration_5);
-    let link_10_acceleration_3 = link_9_acceleration_14
+    let link_10_acceleration_3 = link_9_acceleration_19
         .mul_add(n(0.2), link_9_acceleration_6);
     let link_10_acceleration_4 = q[87]
         .mul_add(
@@ -6431,61 +5994,54 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_10_acceleration_10 = link_10_rate_x * link_10_rate_z;
-    let link_10_acceleration_11 = link_10_rate_y * link_10_rate_y;
-    let link_10_acceleration_12 = link_10_acceleration_8 + link_10_acceleration_10;
-    let link_10_acceleration_13 = (-link_10_rate_y)
-        .mul_add(link_10_rate_z, link_10_acceleration_7);
-    let link_10_acceleration_14 = link_10_rate_x
-        .mul_add(link_10_rate_x, link_10_acceleration_11);
-    // link_10: force (17 additions, 26 multiplications)
-    let link_10_force = link_10_rate_z
-        .mul_add(n(0.00041000000000000005), link_10_rate_x * n(0.1655));
-    let link_10_force_2 = link_10_rate_y * n(0.16544);
-    let link_10_force_3 = link_10_rate_z
-        .mul_add(n(0.00023999999999999976), link_10_rate_x * n(0.00041000000000000005));
-    let link_10_force_4 = (-link_10_rate_z)
+    let link_10_acceleration_10 = link_10_rate_x * link_10_rate_x;
+    let link_10_acceleration_11 = link_10_rate_x * link_10_rate_y;
+    let link_10_acceleration_12 = link_10_rate_x * link_10_rate_z;
+    let link_10_acceleration_13 = link_10_rate_y * link_10_rate_y;
+    let link_10_acceleration_14 = link_10_rate_y * link_10_rate_z;
+    let link_10_acceleration_15 = link_10_rate_z * link_10_rate_z;
+    let link_10_acceleration_16 = link_10_acceleration_9 + link_10_acceleration_11;
+    let link_10_acceleration_17 = link_10_acceleration_8 + link_10_acceleration_12;
+    let link_10_acceleration_18 = link_10_acceleration_7 - link_10_acceleration_14;
+    let link_10_acceleration_19 = link_10_acceleration_10 + link_10_acceleration_13;
+    // link_10: force (14 additions, 19 multiplications)
+    let link_10_force = (-link_10_acceleration_14)
         .mul_add(
-            link_10_force_2,
+            n(0.16519999999999999),
             link_10_acceleration_5
                 .mul_add(
                     n(0.84),
-                    link_10_acceleration_9
+                    link_10_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_10_acceleration_7
-                                .mul_add(n(0.1655), link_10_rate_y * link_10_force_3),
+                            link_10_acceleration_7 * n(0.1655),
                         ),
                 ),
         );
-    let link_10_force_5 = (-link_10_acceleration_6)
+    let link_10_force_2 = (-link_10_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_10_acceleration_4)
                 .mul_add(
                     n(0.84),
-                    (-link_10_rate_x)
+                    (-(link_10_acceleration_10 - link_10_acceleration_15))
                         .mul_add(
-                            link_10_force_3,
-                            link_10_acceleration_8
-                                .mul_add(n(0.16544), link_10_rate_z * link_10_force),
+                            n(0.00041000000000000005),
+                            link_10_acceleration_12
+                                .mul_add(n(0.16526), link_10_acceleration_8 * n(0.16544)),
                         ),
                 ),
         );
-    let link_10_force_6 = (-link_10_rate_y)
+    let link_10_force_3 = (-link_10_acceleration_11)
         .mul_add(
-            link_10_force,
+            n(0.00006000000000000002),
             link_10_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_10_acceleration_9
+                    link_10_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_10_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_10_rate_x * link_10_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_10_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -6500,11 +6056,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_11_rate_y = v[31] + link_11_angular_velocity_2;
     let link_11_rate_z = v[32] + link_11_angular_velocity_3;
     // link_11: acceleration (30 additions, 33 multiplications)
-    let link_11_acceleration = (-link_10_acceleration_12)
+    let link_11_acceleration = (-link_10_acceleration_17)
         .mul_add(n(0.2), link_10_acceleration_4);
-    let link_11_acceleration_2 = link_10_acceleration_13
+    let link_11_acceleration_2 = link_10_acceleration_18
         .mul_add(n(0.2), link_10_acceleration_5);
-    let link_11_acceleration_3 = link_10_acceleration_14
+    let link_11_acceleration_3 = link_10_acceleration_19
         .mul_add(n(0.2), link_10_acceleration_6);
     let link_11_acceleration_4 = q[96]
         .mul_add(
@@ -6572,67 +6128,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_11_acceleration_10 = link_11_rate_x * link_11_rate_z;
-    let link_11_acceleration_11 = link_11_rate_y * link_11_rate_y;
-    let link_11_acceleration_12 = link_11_acceleration_8 + link_11_acceleration_10;
-    let link_11_acceleration_13 = (-link_11_rate_y)
-        .mul_add(link_11_rate_z, link_11_acceleration_7);
-    let link_11_acceleration_14 = link_11_rate_x
-        .mul_add(link_11_rate_x, link_11_acceleration_11);
-    // link_11: force (17 additions, 26 multiplications)
-    let link_11_force = link_11_rate_z
-        .mul_add(n(0.00041000000000000005), link_11_rate_x * n(0.14950000000000002));
-    let link_11_force_2 = link_11_rate_y * n(0.14944000000000002);
-    let link_11_force_3 = link_11_rate_z
-        .mul_add(n(0.00023999999999999976), link_11_rate_x * n(0.00041000000000000005));
-    let link_11_force_4 = (-link_11_rate_z)
+    let link_11_acceleration_10 = link_11_rate_x * link_11_rate_x;
+    let link_11_acceleration_11 = link_11_rate_x * link_11_rate_y;
+    let link_11_acceleration_12 = link_11_rate_x * link_11_rate_z;
+    let link_11_acceleration_13 = link_11_rate_y * link_11_rate_y;
+    let link_11_acceleration_14 = link_11_rate_y * link_11_rate_z;
+    let link_11_acceleration_15 = link_11_rate_z * link_11_rate_z;
+    let link_11_acceleration_16 = link_11_acceleration_9 + link_11_acceleration_11;
+    let link_11_acceleration_17 = link_11_acceleration_8 + link_11_acceleration_12;
+    let link_11_acceleration_18 = link_11_acceleration_7 - link_11_acceleration_14;
+    let link_11_acceleration_19 = link_11_acceleration_10 + link_11_acceleration_13;
+    // link_11: force (14 additions, 19 multiplications)
+    let link_11_force = (-link_11_acceleration_14)
         .mul_add(
-            link_11_force_2,
+            n(0.1492),
             link_11_acceleration_5
                 .mul_add(
                     n(0.76),
-                    link_11_acceleration_9
+                    link_11_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_11_acceleration_7
-                                .mul_add(
-                                    n(0.14950000000000002),
-                                    link_11_rate_y * link_11_force_3,
-                                ),
+                            link_11_acceleration_7 * n(0.14950000000000002),
                         ),
                 ),
         );
-    let link_11_force_5 = (-link_11_acceleration_6)
+    let link_11_force_2 = (-link_11_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_11_acceleration_4)
                 .mul_add(
                     n(0.76),
-                    (-link_11_rate_x)
+                    (-(link_11_acceleration_10 - link_11_acceleration_15))
                         .mul_add(
-                            link_11_force_3,
-                            link_11_acceleration_8
+                            n(0.00041000000000000005),
+                            link_11_acceleration_12
                                 .mul_add(
-                                    n(0.14944000000000002),
-                                    link_11_rate_z * link_11_force,
+                                    n(0.14926),
+                                    link_11_acceleration_8 * n(0.14944000000000002),
                                 ),
                         ),
                 ),
         );
-    let link_11_force_6 = (-link_11_rate_y)
+    let link_11_force_3 = (-link_11_acceleration_11)
         .mul_add(
-            link_11_force,
+            n(0.00006000000000000002),
             link_11_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_11_acceleration_9
+                    link_11_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_11_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_11_rate_x * link_11_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_11_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -6653,11 +6199,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_12_rate_y = v[34] + link_12_angular_velocity_2;
     let link_12_rate_z = v[35] + link_12_angular_velocity_3;
     // link_12: acceleration (30 additions, 33 multiplications)
-    let link_12_acceleration = (-link_11_acceleration_12)
+    let link_12_acceleration = (-link_11_acceleration_17)
         .mul_add(n(0.2), link_11_acceleration_4);
-    let link_12_acceleration_2 = link_11_acceleration_13
+    let link_12_acceleration_2 = link_11_acceleration_18
         .mul_add(n(0.2), link_11_acceleration_5);
-    let link_12_acceleration_3 = link_11_acceleration_14
+    let link_12_acceleration_3 = link_11_acceleration_19
         .mul_add(n(0.2), link_11_acceleration_6);
     let link_12_acceleration_4 = q[105]
         .mul_add(
@@ -6725,61 +6271,54 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_12_acceleration_10 = link_12_rate_x * link_12_rate_z;
-    let link_12_acceleration_11 = link_12_rate_y * link_12_rate_y;
-    let link_12_acceleration_12 = link_12_acceleration_8 + link_12_acceleration_10;
-    let link_12_acceleration_13 = (-link_12_rate_y)
-        .mul_add(link_12_rate_z, link_12_acceleration_7);
-    let link_12_acceleration_14 = link_12_rate_x
-        .mul_add(link_12_rate_x, link_12_acceleration_11);
-    // link_12: force (17 additions, 26 multiplications)
-    let link_12_force = link_12_rate_z
-        .mul_add(n(0.00041000000000000005), link_12_rate_x * n(0.1335));
-    let link_12_force_2 = link_12_rate_y * n(0.13344);
-    let link_12_force_3 = link_12_rate_z
-        .mul_add(n(0.00023999999999999976), link_12_rate_x * n(0.00041000000000000005));
-    let link_12_force_4 = (-link_12_rate_z)
+    let link_12_acceleration_10 = link_12_rate_x * link_12_rate_x;
+    let link_12_acceleration_11 = link_12_rate_x * link_12_rate_y;
+    let link_12_acceleration_12 = link_12_rate_x * link_12_rate_z;
+    let link_12_acceleration_13 = link_12_rate_y * link_12_rate_y;
+    let link_12_acceleration_14 = link_12_rate_y * link_12_rate_z;
+    let link_12_acceleration_15 = link_12_rate_z * link_12_rate_z;
+    let link_12_acceleration_16 = link_12_acceleration_9 + link_12_acceleration_11;
+    let link_12_acceleration_17 = link_12_acceleration_8 + link_12_acceleration_12;
+    let link_12_acceleration_18 = link_12_acceleration_7 - link_12_acceleration_14;
+    let link_12_acceleration_19 = link_12_acceleration_10 + link_12_acceleration_13;
+    // link_12: force (14 additions, 19 multiplications)
+    let link_12_force = (-link_12_acceleration_14)
         .mul_add(
-            link_12_force_2,
+            n(0.13319999999999999),
             link_12_acceleration_5
                 .mul_add(
                     n(0.68),
-                    link_12_acceleration_9
+                    link_12_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_12_acceleration_7
-                                .mul_add(n(0.1335), link_12_rate_y * link_12_force_3),
+                            link_12_acceleration_7 * n(0.1335),
                         ),
                 ),
         );
-    let link_12_force_5 = (-link_12_acceleration_6)
+    let link_12_force_2 = (-link_12_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_12_acceleration_4)
                 .mul_add(
                     n(0.68),
-                    (-link_12_rate_x)
+                    (-(link_12_acceleration_10 - link_12_acceleration_15))
                         .mul_add(
-                            link_12_force_3,
-                            link_12_acceleration_8
-                                .mul_add(n(0.13344), link_12_rate_z * link_12_force),
+                            n(0.00041000000000000005),
+                            link_12_acceleration_12
+                                .mul_add(n(0.13326), link_12_acceleration_8 * n(0.13344)),
                         ),
                 ),
         );
-    let link_12_force_6 = (-link_12_rate_y)
+    let link_12_force_3 = (-link_12_acceleration_11)
         .mul_add(
-            link_12_force,
+            n(0.00006000000000000002),
             link_12_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_12_acceleration_9
+                    link_12_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_12_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_12_rate_x * link_12_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_12_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -6803,11 +6342,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_13_rate_y = v[37] + link_13_angular_velocity_2;
     let link_13_rate_z = v[38] + link_13_angular_velocity_3;
     // link_13: acceleration (30 additions, 33 multiplications)
-    let link_13_acceleration = (-link_12_acceleration_12)
+    let link_13_acceleration = (-link_12_acceleration_17)
         .mul_add(n(0.2), link_12_acceleration_4);
-    let link_13_acceleration_2 = link_12_acceleration_13
+    let link_13_acceleration_2 = link_12_acceleration_18
         .mul_add(n(0.2), link_12_acceleration_5);
-    let link_13_acceleration_3 = link_12_acceleration_14
+    let link_13_acceleration_3 = link_12_acceleration_19
         .mul_add(n(0.2), link_12_acceleration_6);
     let link_13_acceleration_4 = q[114]
         .mul_add(
@@ -6875,67 +6414,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_13_acceleration_10 = link_13_rate_x * link_13_rate_z;
-    let link_13_acceleration_11 = link_13_rate_y * link_13_rate_y;
-    let link_13_acceleration_12 = link_13_acceleration_8 + link_13_acceleration_10;
-    let link_13_acceleration_13 = (-link_13_rate_y)
-        .mul_add(link_13_rate_z, link_13_acceleration_7);
-    let link_13_acceleration_14 = link_13_rate_x
-        .mul_add(link_13_rate_x, link_13_acceleration_11);
-    // link_13: force (17 additions, 26 multiplications)
-    let link_13_force = link_13_rate_z
-        .mul_add(n(0.00041000000000000005), link_13_rate_x * n(0.11750000000000002));
-    let link_13_force_2 = link_13_rate_y * n(0.11744000000000002);
-    let link_13_force_3 = link_13_rate_z
-        .mul_add(n(0.00023999999999999976), link_13_rate_x * n(0.00041000000000000005));
-    let link_13_force_4 = (-link_13_rate_z)
+    let link_13_acceleration_10 = link_13_rate_x * link_13_rate_x;
+    let link_13_acceleration_11 = link_13_rate_x * link_13_rate_y;
+    let link_13_acceleration_12 = link_13_rate_x * link_13_rate_z;
+    let link_13_acceleration_13 = link_13_rate_y * link_13_rate_y;
+    let link_13_acceleration_14 = link_13_rate_y * link_13_rate_z;
+    let link_13_acceleration_15 = link_13_rate_z * link_13_rate_z;
+    let link_13_acceleration_16 = link_13_acceleration_9 + link_13_acceleration_11;
+    let link_13_acceleration_17 = link_13_acceleration_8 + link_13_acceleration_12;
+    let link_13_acceleration_18 = link_13_acceleration_7 - link_13_acceleration_14;
+    let link_13_acceleration_19 = link_13_acceleration_10 + link_13_acceleration_13;
+    // link_13: force (14 additions, 19 multiplications)
+    let link_13_force = (-link_13_acceleration_14)
         .mul_add(
-            link_13_force_2,
+            n(0.11720000000000001),
             link_13_acceleration_5
                 .mul_add(
                     n(0.6),
-                    link_13_acceleration_9
+                    link_13_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_13_acceleration_7
-                                .mul_add(
-                                    n(0.11750000000000002),
-                                    link_13_rate_y * link_13_force_3,
-                                ),
+                            link_13_acceleration_7 * n(0.11750000000000001),
                         ),
                 ),
         );
-    let link_13_force_5 = (-link_13_acceleration_6)
+    let link_13_force_2 = (-link_13_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_13_acceleration_4)
                 .mul_add(
                     n(0.6),
-                    (-link_13_rate_x)
+                    (-(link_13_acceleration_10 - link_13_acceleration_15))
                         .mul_add(
-                            link_13_force_3,
-                            link_13_acceleration_8
+                            n(0.00041000000000000005),
+                            link_13_acceleration_12
                                 .mul_add(
-                                    n(0.11744000000000002),
-                                    link_13_rate_z * link_13_force,
+                                    n(0.11726),
+                                    link_13_acceleration_8 * n(0.11744000000000002),
                                 ),
                         ),
                 ),
         );
-    let link_13_force_6 = (-link_13_rate_y)
+    let link_13_force_3 = (-link_13_acceleration_11)
         .mul_add(
-            link_13_force,
+            n(0.00006000000000000002),
             link_13_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_13_acceleration_9
+                    link_13_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_13_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_13_rate_x * link_13_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_13_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -6959,11 +6488,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_14_rate_y = v[40] + link_14_angular_velocity_2;
     let link_14_rate_z = v[41] + link_14_angular_velocity_3;
     // link_14: acceleration (30 additions, 33 multiplications)
-    let link_14_acceleration = (-link_13_acceleration_12)
+    let link_14_acceleration = (-link_13_acceleration_17)
         .mul_add(n(0.2), link_13_acceleration_4);
-    let link_14_acceleration_2 = link_13_acceleration_13
+    let link_14_acceleration_2 = link_13_acceleration_18
         .mul_add(n(0.2), link_13_acceleration_5);
-    let link_14_acceleration_3 = link_13_acceleration_14
+    let link_14_acceleration_3 = link_13_acceleration_19
         .mul_add(n(0.2), link_13_acceleration_6);
     let link_14_acceleration_4 = q[123]
         .mul_add(
@@ -7031,67 +6560,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_14_acceleration_10 = link_14_rate_x * link_14_rate_z;
-    let link_14_acceleration_11 = link_14_rate_y * link_14_rate_y;
-    let link_14_acceleration_12 = link_14_acceleration_8 + link_14_acceleration_10;
-    let link_14_acceleration_13 = (-link_14_rate_y)
-        .mul_add(link_14_rate_z, link_14_acceleration_7);
-    let link_14_acceleration_14 = link_14_rate_x
-        .mul_add(link_14_rate_x, link_14_acceleration_11);
-    // link_14: force (17 additions, 26 multiplications)
-    let link_14_force = link_14_rate_z
-        .mul_add(n(0.00041000000000000005), link_14_rate_x * n(0.10150000000000002));
-    let link_14_force_2 = link_14_rate_y * n(0.10144000000000002);
-    let link_14_force_3 = link_14_rate_z
-        .mul_add(n(0.00023999999999999976), link_14_rate_x * n(0.00041000000000000005));
-    let link_14_force_4 = (-link_14_rate_z)
+    let link_14_acceleration_10 = link_14_rate_x * link_14_rate_x;
+    let link_14_acceleration_11 = link_14_rate_x * link_14_rate_y;
+    let link_14_acceleration_12 = link_14_rate_x * link_14_rate_z;
+    let link_14_acceleration_13 = link_14_rate_y * link_14_rate_y;
+    let link_14_acceleration_14 = link_14_rate_y * link_14_rate_z;
+    let link_14_acceleration_15 = link_14_rate_z * link_14_rate_z;
+    let link_14_acceleration_16 = link_14_acceleration_9 + link_14_acceleration_11;
+    let link_14_acceleration_17 = link_14_acceleration_8 + link_14_acceleration_12;
+    let link_14_acceleration_18 = link_14_acceleration_7 - link_14_acceleration_14;
+    let link_14_acceleration_19 = link_14_acceleration_10 + link_14_acceleration_13;
+    // link_14: force (14 additions, 19 multiplications)
+    let link_14_force = (-link_14_acceleration_14)
         .mul_add(
-            link_14_force_2,
+            n(0.10120000000000003),
             link_14_acceleration_5
                 .mul_add(
                     n(0.52),
-                    link_14_acceleration_9
+                    link_14_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_14_acceleration_7
-                                .mul_add(
-                                    n(0.10150000000000002),
-                                    link_14_rate_y * link_14_force_3,
-                                ),
+                            link_14_acceleration_7 * n(0.10150000000000002),
                         ),
                 ),
         );
-    let link_14_force_5 = (-link_14_acceleration_6)
+    let link_14_force_2 = (-link_14_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_14_acceleration_4)
                 .mul_add(
                     n(0.52),
-                    (-link_14_rate_x)
+                    (-(link_14_acceleration_10 - link_14_acceleration_15))
                         .mul_add(
-                            link_14_force_3,
-                            link_14_acceleration_8
+                            n(0.00041000000000000005),
+                            link_14_acceleration_12
                                 .mul_add(
-                                    n(0.10144000000000002),
-                                    link_14_rate_z * link_14_force,
+                                    n(0.10126000000000002),
+                                    link_14_acceleration_8 * n(0.10144000000000003),
                                 ),
                         ),
                 ),
         );
-    let link_14_force_6 = (-link_14_rate_y)
+    let link_14_force_3 = (-link_14_acceleration_11)
         .mul_add(
-            link_14_force,
+            n(0.00006000000000000002),
             link_14_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_14_acceleration_9
+                    link_14_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_14_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_14_rate_x * link_14_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_14_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -7115,11 +6634,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_15_rate_y = v[43] + link_15_angular_velocity_2;
     let link_15_rate_z = v[44] + link_15_angular_velocity_3;
     // link_15: acceleration (30 additions, 33 multiplications)
-    let link_15_acceleration = (-link_14_acceleration_12)
+    let link_15_acceleration = (-link_14_acceleration_17)
         .mul_add(n(0.2), link_14_acceleration_4);
-    let link_15_acceleration_2 = link_14_acceleration_13
+    let link_15_acceleration_2 = link_14_acceleration_18
         .mul_add(n(0.2), link_14_acceleration_5);
-    let link_15_acceleration_3 = link_14_acceleration_14
+    let link_15_acceleration_3 = link_14_acceleration_19
         .mul_add(n(0.2), link_14_acceleration_6);
     let link_15_acceleration_4 = q[132]
         .mul_add(
@@ -7187,67 +6706,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_15_acceleration_10 = link_15_rate_x * link_15_rate_z;
-    let link_15_acceleration_11 = link_15_rate_y * link_15_rate_y;
-    let link_15_acceleration_12 = link_15_acceleration_8 + link_15_acceleration_10;
-    let link_15_acceleration_13 = (-link_15_rate_y)
-        .mul_add(link_15_rate_z, link_15_acceleration_7);
-    let link_15_acceleration_14 = link_15_rate_x
-        .mul_add(link_15_rate_x, link_15_acceleration_11);
-    // link_15: force (17 additions, 26 multiplications)
-    let link_15_force = link_15_rate_z
-        .mul_add(n(0.00041000000000000005), link_15_rate_x * n(0.08550000000000002));
-    let link_15_force_2 = link_15_rate_y * n(0.08544000000000002);
-    let link_15_force_3 = link_15_rate_z
-        .mul_add(n(0.00023999999999999976), link_15_rate_x * n(0.00041000000000000005));
-    let link_15_force_4 = (-link_15_rate_z)
+    let link_15_acceleration_10 = link_15_rate_x * link_15_rate_x;
+    let link_15_acceleration_11 = link_15_rate_x * link_15_rate_y;
+    let link_15_acceleration_12 = link_15_rate_x * link_15_rate_z;
+    let link_15_acceleration_13 = link_15_rate_y * link_15_rate_y;
+    let link_15_acceleration_14 = link_15_rate_y * link_15_rate_z;
+    let link_15_acceleration_15 = link_15_rate_z * link_15_rate_z;
+    let link_15_acceleration_16 = link_15_acceleration_9 + link_15_acceleration_11;
+    let link_15_acceleration_17 = link_15_acceleration_8 + link_15_acceleration_12;
+    let link_15_acceleration_18 = link_15_acceleration_7 - link_15_acceleration_14;
+    let link_15_acceleration_19 = link_15_acceleration_10 + link_15_acceleration_13;
+    // link_15: force (14 additions, 19 multiplications)
+    let link_15_force = (-link_15_acceleration_14)
         .mul_add(
-            link_15_force_2,
+            n(0.08520000000000001),
             link_15_acceleration_5
                 .mul_add(
                     n(0.44000000000000006),
-                    link_15_acceleration_9
+                    link_15_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_15_acceleration_7
-                                .mul_add(
-                                    n(0.08550000000000002),
-                                    link_15_rate_y * link_15_force_3,
-                                ),
+                            link_15_acceleration_7 * n(0.0855),
                         ),
                 ),
         );
-    let link_15_force_5 = (-link_15_acceleration_6)
+    let link_15_force_2 = (-link_15_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_15_acceleration_4)
                 .mul_add(
                     n(0.44000000000000006),
-                    (-link_15_rate_x)
+                    (-(link_15_acceleration_10 - link_15_acceleration_15))
                         .mul_add(
-                            link_15_force_3,
-                            link_15_acceleration_8
+                            n(0.00041000000000000005),
+                            link_15_acceleration_12
                                 .mul_add(
-                                    n(0.08544000000000002),
-                                    link_15_rate_z * link_15_force,
+                                    n(0.08526),
+                                    link_15_acceleration_8 * n(0.08544000000000002),
                                 ),
                         ),
                 ),
         );
-    let link_15_force_6 = (-link_15_rate_y)
+    let link_15_force_3 = (-link_15_acceleration_11)
         .mul_add(
-            link_15_force,
+            n(0.00006000000000000002),
             link_15_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_15_acceleration_9
+                    link_15_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_15_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_15_rate_x * link_15_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_15_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -7271,11 +6780,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_16_rate_y = v[46] + link_16_angular_velocity_2;
     let link_16_rate_z = v[47] + link_16_angular_velocity_3;
     // link_16: acceleration (30 additions, 33 multiplications)
-    let link_16_acceleration = (-link_15_acceleration_12)
+    let link_16_acceleration = (-link_15_acceleration_17)
         .mul_add(n(0.2), link_15_acceleration_4);
-    let link_16_acceleration_2 = link_15_acceleration_13
+    let link_16_acceleration_2 = link_15_acceleration_18
         .mul_add(n(0.2), link_15_acceleration_5);
-    let link_16_acceleration_3 = link_15_acceleration_14
+    let link_16_acceleration_3 = link_15_acceleration_19
         .mul_add(n(0.2), link_15_acceleration_6);
     let link_16_acceleration_4 = q[141]
         .mul_add(
@@ -7343,67 +6852,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_16_acceleration_10 = link_16_rate_x * link_16_rate_z;
-    let link_16_acceleration_11 = link_16_rate_y * link_16_rate_y;
-    let link_16_acceleration_12 = link_16_acceleration_8 + link_16_acceleration_10;
-    let link_16_acceleration_13 = (-link_16_rate_y)
-        .mul_add(link_16_rate_z, link_16_acceleration_7);
-    let link_16_acceleration_14 = link_16_rate_x
-        .mul_add(link_16_rate_x, link_16_acceleration_11);
-    // link_16: force (17 additions, 26 multiplications)
-    let link_16_force = link_16_rate_z
-        .mul_add(n(0.00041000000000000005), link_16_rate_x * n(0.06950000000000002));
-    let link_16_force_2 = link_16_rate_y * n(0.06944000000000002);
-    let link_16_force_3 = link_16_rate_z
-        .mul_add(n(0.00023999999999999976), link_16_rate_x * n(0.00041000000000000005));
-    let link_16_force_4 = (-link_16_rate_z)
+    let link_16_acceleration_10 = link_16_rate_x * link_16_rate_x;
+    let link_16_acceleration_11 = link_16_rate_x * link_16_rate_y;
+    let link_16_acceleration_12 = link_16_rate_x * link_16_rate_z;
+    let link_16_acceleration_13 = link_16_rate_y * link_16_rate_y;
+    let link_16_acceleration_14 = link_16_rate_y * link_16_rate_z;
+    let link_16_acceleration_15 = link_16_rate_z * link_16_rate_z;
+    let link_16_acceleration_16 = link_16_acceleration_9 + link_16_acceleration_11;
+    let link_16_acceleration_17 = link_16_acceleration_8 + link_16_acceleration_12;
+    let link_16_acceleration_18 = link_16_acceleration_7 - link_16_acceleration_14;
+    let link_16_acceleration_19 = link_16_acceleration_10 + link_16_acceleration_13;
+    // link_16: force (14 additions, 19 multiplications)
+    let link_16_force = (-link_16_acceleration_14)
         .mul_add(
-            link_16_force_2,
+            n(0.06920000000000003),
             link_16_acceleration_5
                 .mul_add(
                     n(0.3600000000000001),
-                    link_16_acceleration_9
+                    link_16_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_16_acceleration_7
-                                .mul_add(
-                                    n(0.06950000000000002),
-                                    link_16_rate_y * link_16_force_3,
-                                ),
+                            link_16_acceleration_7 * n(0.06950000000000002),
                         ),
                 ),
         );
-    let link_16_force_5 = (-link_16_acceleration_6)
+    let link_16_force_2 = (-link_16_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_16_acceleration_4)
                 .mul_add(
                     n(0.3600000000000001),
-                    (-link_16_rate_x)
+                    (-(link_16_acceleration_10 - link_16_acceleration_15))
                         .mul_add(
-                            link_16_force_3,
-                            link_16_acceleration_8
+                            n(0.00041000000000000005),
+                            link_16_acceleration_12
                                 .mul_add(
-                                    n(0.06944000000000002),
-                                    link_16_rate_z * link_16_force,
+                                    n(0.06926000000000002),
+                                    link_16_acceleration_8 * n(0.06944000000000003),
                                 ),
                         ),
                 ),
         );
-    let link_16_force_6 = (-link_16_rate_y)
+    let link_16_force_3 = (-link_16_acceleration_11)
         .mul_add(
-            link_16_force,
+            n(0.00006000000000000002),
             link_16_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_16_acceleration_9
+                    link_16_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_16_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_16_rate_x * link_16_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_16_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -7427,11 +6926,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_17_rate_y = v[49] + link_17_angular_velocity_2;
     let link_17_rate_z = v[50] + link_17_angular_velocity_3;
     // link_17: acceleration (30 additions, 33 multiplications)
-    let link_17_acceleration = (-link_16_acceleration_12)
+    let link_17_acceleration = (-link_16_acceleration_17)
         .mul_add(n(0.2), link_16_acceleration_4);
-    let link_17_acceleration_2 = link_16_acceleration_13
+    let link_17_acceleration_2 = link_16_acceleration_18
         .mul_add(n(0.2), link_16_acceleration_5);
-    let link_17_acceleration_3 = link_16_acceleration_14
+    let link_17_acceleration_3 = link_16_acceleration_19
         .mul_add(n(0.2), link_16_acceleration_6);
     let link_17_acceleration_4 = q[150]
         .mul_add(
@@ -7499,67 +6998,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_17_acceleration_10 = link_17_rate_x * link_17_rate_z;
-    let link_17_acceleration_11 = link_17_rate_y * link_17_rate_y;
-    let link_17_acceleration_12 = link_17_acceleration_8 + link_17_acceleration_10;
-    let link_17_acceleration_13 = (-link_17_rate_y)
-        .mul_add(link_17_rate_z, link_17_acceleration_7);
-    let link_17_acceleration_14 = link_17_rate_x
-        .mul_add(link_17_rate_x, link_17_acceleration_11);
-    // link_17: force (17 additions, 26 multiplications)
-    let link_17_force = link_17_rate_z
-        .mul_add(n(0.00041000000000000005), link_17_rate_x * n(0.05350000000000002));
-    let link_17_force_2 = link_17_rate_y * n(0.053440000000000015);
-    let link_17_force_3 = link_17_rate_z
-        .mul_add(n(0.00023999999999999976), link_17_rate_x * n(0.00041000000000000005));
-    let link_17_force_4 = (-link_17_rate_z)
+    let link_17_acceleration_10 = link_17_rate_x * link_17_rate_x;
+    let link_17_acceleration_11 = link_17_rate_x * link_17_rate_y;
+    let link_17_acceleration_12 = link_17_rate_x * link_17_rate_z;
+    let link_17_acceleration_13 = link_17_rate_y * link_17_rate_y;
+    let link_17_acceleration_14 = link_17_rate_y * link_17_rate_z;
+    let link_17_acceleration_15 = link_17_rate_z * link_17_rate_z;
+    let link_17_acceleration_16 = link_17_acceleration_9 + link_17_acceleration_11;
+    let link_17_acceleration_17 = link_17_acceleration_8 + link_17_acceleration_12;
+    let link_17_acceleration_18 = link_17_acceleration_7 - link_17_acceleration_14;
+    let link_17_acceleration_19 = link_17_acceleration_10 + link_17_acceleration_13;
+    // link_17: force (14 additions, 19 multiplications)
+    let link_17_force = (-link_17_acceleration_14)
         .mul_add(
-            link_17_force_2,
+            n(0.05320000000000002),
             link_17_acceleration_5
                 .mul_add(
                     n(0.28),
-                    link_17_acceleration_9
+                    link_17_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_17_acceleration_7
-                                .mul_add(
-                                    n(0.05350000000000002),
-                                    link_17_rate_y * link_17_force_3,
-                                ),
+                            link_17_acceleration_7 * n(0.05350000000000001),
                         ),
                 ),
         );
-    let link_17_force_5 = (-link_17_acceleration_6)
+    let link_17_force_2 = (-link_17_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_17_acceleration_4)
                 .mul_add(
                     n(0.28),
-                    (-link_17_rate_x)
+                    (-(link_17_acceleration_10 - link_17_acceleration_15))
                         .mul_add(
-                            link_17_force_3,
-                            link_17_acceleration_8
+                            n(0.00041000000000000005),
+                            link_17_acceleration_12
                                 .mul_add(
-                                    n(0.053440000000000015),
-                                    link_17_rate_z * link_17_force,
+                                    n(0.053260000000000016),
+                                    link_17_acceleration_8 * n(0.053440000000000015),
                                 ),
                         ),
                 ),
         );
-    let link_17_force_6 = (-link_17_rate_y)
+    let link_17_force_3 = (-link_17_acceleration_11)
         .mul_add(
-            link_17_force,
+            n(0.00006000000000000002),
             link_17_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_17_acceleration_9
+                    link_17_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_17_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_17_rate_x * link_17_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_17_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -7583,11 +7072,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_18_rate_y = v[52] + link_18_angular_velocity_2;
     let link_18_rate_z = v[53] + link_18_angular_velocity_3;
     // link_18: acceleration (30 additions, 33 multiplications)
-    let link_18_acceleration = (-link_17_acceleration_12)
+    let link_18_acceleration = (-link_17_acceleration_17)
         .mul_add(n(0.2), link_17_acceleration_4);
-    let link_18_acceleration_2 = link_17_acceleration_13
+    let link_18_acceleration_2 = link_17_acceleration_18
         .mul_add(n(0.2), link_17_acceleration_5);
-    let link_18_acceleration_3 = link_17_acceleration_14
+    let link_18_acceleration_3 = link_17_acceleration_19
         .mul_add(n(0.2), link_17_acceleration_6);
     let link_18_acceleration_4 = q[159]
         .mul_add(
@@ -7655,67 +7144,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_18_acceleration_10 = link_18_rate_x * link_18_rate_z;
-    let link_18_acceleration_11 = link_18_rate_y * link_18_rate_y;
-    let link_18_acceleration_12 = link_18_acceleration_8 + link_18_acceleration_10;
-    let link_18_acceleration_13 = (-link_18_rate_y)
-        .mul_add(link_18_rate_z, link_18_acceleration_7);
-    let link_18_acceleration_14 = link_18_rate_x
-        .mul_add(link_18_rate_x, link_18_acceleration_11);
-    // link_18: force (17 additions, 26 multiplications)
-    let link_18_force = link_18_rate_z
-        .mul_add(n(0.00041000000000000005), link_18_rate_x * n(0.037500000000000006));
-    let link_18_force_2 = link_18_rate_y * n(0.03744000000000001);
-    let link_18_force_3 = link_18_rate_z
-        .mul_add(n(0.00023999999999999976), link_18_rate_x * n(0.00041000000000000005));
-    let link_18_force_4 = (-link_18_rate_z)
+    let link_18_acceleration_10 = link_18_rate_x * link_18_rate_x;
+    let link_18_acceleration_11 = link_18_rate_x * link_18_rate_y;
+    let link_18_acceleration_12 = link_18_rate_x * link_18_rate_z;
+    let link_18_acceleration_13 = link_18_rate_y * link_18_rate_y;
+    let link_18_acceleration_14 = link_18_rate_y * link_18_rate_z;
+    let link_18_acceleration_15 = link_18_rate_z * link_18_rate_z;
+    let link_18_acceleration_16 = link_18_acceleration_9 + link_18_acceleration_11;
+    let link_18_acceleration_17 = link_18_acceleration_8 + link_18_acceleration_12;
+    let link_18_acceleration_18 = link_18_acceleration_7 - link_18_acceleration_14;
+    let link_18_acceleration_19 = link_18_acceleration_10 + link_18_acceleration_13;
+    // link_18: force (14 additions, 19 multiplications)
+    let link_18_force = (-link_18_acceleration_14)
         .mul_add(
-            link_18_force_2,
+            n(0.03720000000000001),
             link_18_acceleration_5
                 .mul_add(
                     n(0.20000000000000004),
-                    link_18_acceleration_9
+                    link_18_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_18_acceleration_7
-                                .mul_add(
-                                    n(0.037500000000000006),
-                                    link_18_rate_y * link_18_force_3,
-                                ),
+                            link_18_acceleration_7 * n(0.037500000000000006),
                         ),
                 ),
         );
-    let link_18_force_5 = (-link_18_acceleration_6)
+    let link_18_force_2 = (-link_18_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_18_acceleration_4)
                 .mul_add(
                     n(0.20000000000000004),
-                    (-link_18_rate_x)
+                    (-(link_18_acceleration_10 - link_18_acceleration_15))
                         .mul_add(
-                            link_18_force_3,
-                            link_18_acceleration_8
+                            n(0.00041000000000000005),
+                            link_18_acceleration_12
                                 .mul_add(
-                                    n(0.03744000000000001),
-                                    link_18_rate_z * link_18_force,
+                                    n(0.03726000000000001),
+                                    link_18_acceleration_8 * n(0.03744000000000001),
                                 ),
                         ),
                 ),
         );
-    let link_18_force_6 = (-link_18_rate_y)
+    let link_18_force_3 = (-link_18_acceleration_11)
         .mul_add(
-            link_18_force,
+            n(0.00006000000000000002),
             link_18_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_18_acceleration_9
+                    link_18_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_18_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_18_rate_x * link_18_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_18_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -7739,11 +7218,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_19_rate_y = v[55] + link_19_angular_velocity_2;
     let link_19_rate_z = v[56] + link_19_angular_velocity_3;
     // link_19: acceleration (30 additions, 33 multiplications)
-    let link_19_acceleration = (-link_18_acceleration_12)
+    let link_19_acceleration = (-link_18_acceleration_17)
         .mul_add(n(0.2), link_18_acceleration_4);
-    let link_19_acceleration_2 = link_18_acceleration_13
+    let link_19_acceleration_2 = link_18_acceleration_18
         .mul_add(n(0.2), link_18_acceleration_5);
-    let link_19_acceleration_3 = link_18_acceleration_14
+    let link_19_acceleration_3 = link_18_acceleration_19
         .mul_add(n(0.2), link_18_acceleration_6);
     let link_19_acceleration_4 = q[168]
         .mul_add(
@@ -7811,67 +7290,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_19_acceleration_10 = link_19_rate_x * link_19_rate_z;
-    let link_19_acceleration_11 = link_19_rate_y * link_19_rate_y;
-    let link_19_acceleration_12 = link_19_acceleration_8 + link_19_acceleration_10;
-    let link_19_acceleration_13 = (-link_19_rate_y)
-        .mul_add(link_19_rate_z, link_19_acceleration_7);
-    let link_19_acceleration_14 = link_19_rate_x
-        .mul_add(link_19_rate_x, link_19_acceleration_11);
-    // link_19: force (17 additions, 26 multiplications)
-    let link_19_force = link_19_rate_z
-        .mul_add(n(0.00041000000000000005), link_19_rate_x * n(0.021500000000000005));
-    let link_19_force_2 = link_19_rate_y * n(0.021440000000000004);
-    let link_19_force_3 = link_19_rate_z
-        .mul_add(n(0.00023999999999999976), link_19_rate_x * n(0.00041000000000000005));
-    let link_19_force_4 = (-link_19_rate_z)
+    let link_19_acceleration_10 = link_19_rate_x * link_19_rate_x;
+    let link_19_acceleration_11 = link_19_rate_x * link_19_rate_y;
+    let link_19_acceleration_12 = link_19_rate_x * link_19_rate_z;
+    let link_19_acceleration_13 = link_19_rate_y * link_19_rate_y;
+    let link_19_acceleration_14 = link_19_rate_y * link_19_rate_z;
+    let link_19_acceleration_15 = link_19_rate_z * link_19_rate_z;
+    let link_19_acceleration_16 = link_19_acceleration_9 + link_19_acceleration_11;
+    let link_19_acceleration_17 = link_19_acceleration_8 + link_19_acceleration_12;
+    let link_19_acceleration_18 = link_19_acceleration_7 - link_19_acceleration_14;
+    let link_19_acceleration_19 = link_19_acceleration_10 + link_19_acceleration_13;
+    // link_19: force (14 additions, 19 multiplications)
+    let link_19_force = (-link_19_acceleration_14)
         .mul_add(
-            link_19_force_2,
+            n(0.021200000000000004),
             link_19_acceleration_5
                 .mul_add(
                     n(0.12000000000000002),
-                    link_19_acceleration_9
+                    link_19_acceleration_16
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_19_acceleration_7
-                                .mul_add(
-                                    n(0.021500000000000005),
-                                    link_19_rate_y * link_19_force_3,
-                                ),
+                            link_19_acceleration_7 * n(0.021500000000000005),
                         ),
                 ),
         );
-    let link_19_force_5 = (-link_19_acceleration_6)
+    let link_19_force_2 = (-link_19_acceleration_6)
         .mul_add(
             n(0.004),
             (-link_19_acceleration_4)
                 .mul_add(
                     n(0.12000000000000002),
-                    (-link_19_rate_x)
+                    (-(link_19_acceleration_10 - link_19_acceleration_15))
                         .mul_add(
-                            link_19_force_3,
-                            link_19_acceleration_8
+                            n(0.00041000000000000005),
+                            link_19_acceleration_12
                                 .mul_add(
-                                    n(0.021440000000000004),
-                                    link_19_rate_z * link_19_force,
+                                    n(0.021260000000000005),
+                                    link_19_acceleration_8 * n(0.021440000000000004),
                                 ),
                         ),
                 ),
         );
-    let link_19_force_6 = (-link_19_rate_y)
+    let link_19_force_3 = (-link_19_acceleration_11)
         .mul_add(
-            link_19_force,
+            n(0.00006000000000000002),
             link_19_acceleration_5
                 .mul_add(
                     n(0.004),
-                    link_19_acceleration_9
+                    link_19_acceleration_18
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_19_acceleration_7
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_19_rate_x * link_19_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_19_acceleration_9 * n(0.00024),
                         ),
                 ),
         );
@@ -7895,11 +7364,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
     let link_20_rate_y = v[58] + link_20_angular_velocity_2;
     let link_20_rate_z = v[59] + link_20_angular_velocity_3;
     // link_20: acceleration (30 additions, 33 multiplications)
-    let link_20_acceleration = (-link_19_acceleration_12)
+    let link_20_acceleration = (-link_19_acceleration_17)
         .mul_add(n(0.2), link_19_acceleration_4);
-    let link_20_acceleration_2 = link_19_acceleration_13
+    let link_20_acceleration_2 = link_19_acceleration_18
         .mul_add(n(0.2), link_19_acceleration_5);
-    let link_20_acceleration_3 = link_19_acceleration_14
+    let link_20_acceleration_3 = link_19_acceleration_19
         .mul_add(n(0.2), link_19_acceleration_6);
     let link_20_acceleration_4 = q[178]
         .mul_add(
@@ -7957,15 +7426,16 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                         ),
                 ),
         );
-    let link_20_acceleration_8 = link_20_rate_x * link_20_rate_z;
-    let link_20_acceleration_9 = link_20_rate_y * link_20_rate_y;
-    // link_20: force (17 additions, 26 multiplications)
-    let link_20_force = link_20_rate_z
-        .mul_add(n(0.00041000000000000005), link_20_rate_x * n(0.005500000000000001));
-    let link_20_force_2 = link_20_rate_y * n(0.005440000000000001);
-    let link_20_force_3 = link_20_rate_z
-        .mul_add(n(0.00023999999999999976), link_20_rate_x * n(0.00041000000000000005));
-    let link_20_force_4 = (q[179]
+    let link_20_acceleration_8 = link_20_rate_x * link_20_rate_x;
+    let link_20_acceleration_9 = link_20_rate_x * link_20_rate_y;
+    let link_20_acceleration_10 = link_20_rate_x * link_20_rate_z;
+    let link_20_acceleration_11 = link_20_rate_y * link_20_rate_y;
+    let link_20_acceleration_12 = link_20_rate_y * link_20_rate_z;
+    let link_20_acceleration_13 = link_20_rate_z * link_20_rate_z;
+    let link_20_acceleration_14 = link_20_acceleration_7 + link_20_acceleration_9;
+    let link_20_acceleration_15 = link_20_acceleration_5 - link_20_acceleration_12;
+    // link_20: force (14 additions, 19 multiplications)
+    let link_20_force = (q[179]
         .mul_add(
             link_20_acceleration_3,
             q[176].mul_add(link_20_acceleration_2, q[173] * link_20_acceleration),
@@ -7978,84 +7448,71 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                     q[174].mul_add(link_20_acceleration_2, q[171] * link_20_acceleration),
                 )) * n(0.04000000000000001),
         );
-    let link_20_force_5 = (-link_20_rate_z)
+    let link_20_force_2 = (-link_20_acceleration_12)
         .mul_add(
-            link_20_force_2,
+            n(0.005200000000000001),
             link_20_acceleration_4
                 .mul_add(
                     n(0.04000000000000001),
-                    link_20_acceleration_7
+                    link_20_acceleration_14
                         .mul_add(
                             n(0.00041000000000000005),
-                            link_20_acceleration_5
-                                .mul_add(
-                                    n(0.005500000000000001),
-                                    link_20_rate_y * link_20_force_3,
-                                ),
+                            link_20_acceleration_5 * n(0.0055000000000000005),
                         ),
                 ),
         );
-    let link_20_force_6 = (-link_20_rate_x)
+    let link_20_force_3 = (-(link_20_acceleration_8 - link_20_acceleration_13))
         .mul_add(
-            link_20_force_3,
-            link_20_acceleration_6
+            n(0.00041000000000000005),
+            link_20_acceleration_10
                 .mul_add(
-                    n(0.005440000000000001),
-                    link_20_rate_z.mul_add(link_20_force, -link_20_force_4),
+                    n(0.005260000000000001),
+                    link_20_acceleration_6.mul_add(n(0.00544), -link_20_force),
                 ),
         );
-    let link_20_force_7 = (-link_20_rate_y)
+    let link_20_force_4 = (-link_20_acceleration_9)
         .mul_add(
-            link_20_force,
+            n(0.00006000000000000002),
             link_20_acceleration_4
                 .mul_add(
                     n(0.004),
-                    link_20_acceleration_7
+                    link_20_acceleration_15
                         .mul_add(
-                            n(0.00023999999999999976),
-                            link_20_acceleration_5
-                                .mul_add(
-                                    n(0.00041000000000000005),
-                                    link_20_rate_x * link_20_force_2,
-                                ),
+                            n(0.00041000000000000005),
+                            link_20_acceleration_7 * n(0.00024),
                         ),
                 ),
         );
-    let link_20_force_8 = (link_20_acceleration_6 + link_20_acceleration_8)
+    let link_20_force_5 = (link_20_acceleration_6 + link_20_acceleration_10)
         .mul_add(
             n(0.04000000000000001),
-            (link_20_rate_z.mul_add(link_20_rate_z, link_20_acceleration_9)) * n(0.004),
+            (link_20_acceleration_11 + link_20_acceleration_13) * n(0.004),
         );
-    let link_20_force_9 = ((-link_20_rate_y)
-        .mul_add(link_20_rate_z, link_20_acceleration_5))
+    let link_20_force_6 = link_20_acceleration_15
+        .mul_add(n(0.04000000000000001), link_20_acceleration_14 * n(0.004));
+    let link_20_force_7 = (-(link_20_acceleration_8 + link_20_acceleration_11))
         .mul_add(
             n(0.04000000000000001),
-            (link_20_rate_x.mul_add(link_20_rate_y, link_20_acceleration_7)) * n(0.004),
-        );
-    let link_20_force_10 = (-(link_20_rate_x
-        .mul_add(link_20_rate_x, link_20_acceleration_9)))
-        .mul_add(
-            n(0.04000000000000001),
-            (link_20_acceleration_6 - link_20_acceleration_8) * n(0.004),
+            (link_20_acceleration_6 - link_20_acceleration_10) * n(0.004),
         );
     // link_20: effort (14 additions, 20 multiplications)
     let link_20_effort = (-q[172])
         .mul_add(
-            link_20_force_9,
-            q[173].mul_add(link_20_force_10, q[171] * link_20_force_8),
+            link_20_force_6,
+            q[173].mul_add(link_20_force_7, q[171] * link_20_force_5),
         );
     let link_20_effort_2 = (-q[175])
         .mul_add(
-            link_20_force_9,
-            q[176].mul_add(link_20_force_10, q[174] * link_20_force_8),
+            link_20_force_6,
+            q[176].mul_add(link_20_force_7, q[174] * link_20_force_5),
         );
     let link_20_effort_3 = (-link_20_effort_2)
         .mul_add(
             n(0.2),
             q[173]
                 .mul_add(
-                    link_20_force_7,
-                    q[172].mul_add(link_20_force_6, q[171] * link_20_force_5),
+                    link_20_force_4,
+                    q[172].mul_add(link_20_force_3, q[171] * link_20_force_2),
                 ),
         );
     let link_20_effort_4 = link_20_effort
@@ -8063,47 +7520,46 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
             n(0.2),
             q[176]
                 .mul_add(
-                    link_20_force_7,
-                    q[175].mul_add(link_20_force_6, q[174] * link_20_force_5),
+                    link_20_force_4,
+                    q[175].mul_add(link_20_force_3, q[174] * link_20_force_2),
                 ),
         );
     // link_19: effort (20 additions, 20 multiplications)
-    let link_19_effort = link_19_force_4 + link_20_effort_3;
-    let link_19_effort_2 = link_19_force_5 + link_20_effort_4;
+    let link_19_effort = link_19_force + link_20_effort_3;
+    let link_19_effort_2 = link_19_force_2 + link_20_effort_4;
     let link_19_effort_3 = q[179]
         .mul_add(
-            link_20_force_7,
+            link_20_force_4,
             q[178]
                 .mul_add(
-                    link_20_force_6,
-                    q[177].mul_add(link_20_force_5, link_19_force_6),
+                    link_20_force_3,
+                    q[177].mul_add(link_20_force_2, link_19_force_3),
                 ),
         );
-    let link_19_effort_4 = link_19_acceleration_12
+    let link_19_effort_4 = link_19_acceleration_17
         .mul_add(
             n(0.12000000000000002),
-            (link_19_rate_z.mul_add(link_19_rate_z, link_19_acceleration_11))
+            (link_19_acceleration_13 + link_19_acceleration_15)
                 .mul_add(n(0.004), link_20_effort),
         );
-    let link_19_effort_5 = link_19_acceleration_13
+    let link_19_effort_5 = link_19_acceleration_18
         .mul_add(
             n(0.12000000000000002),
-            (link_19_rate_x.mul_add(link_19_rate_y, link_19_acceleration_9))
-                .mul_add(n(0.004), -link_20_effort_2),
+            link_19_acceleration_16.mul_add(n(0.004), -link_20_effort_2),
         );
     let link_19_effort_6 = (-q[178])
         .mul_add(
-            link_20_force_9,
-            (-link_19_acceleration_14)
+            link_20_force_6,
+            (-link_19_acceleration_19)
                 .mul_add(
                     n(0.12000000000000002),
                     q[179]
                         .mul_add(
-                            link_20_force_10,
+                            link_20_force_7,
                             q[177]
                                 .mul_add(
-                                    link_20_force_8,
-                                    (link_19_acceleration_8 - link_19_acceleration_10)
+                                    link_20_force_5,
+                                    (link_19_acceleration_8 - link_19_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8138,33 +7594,32 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_18: effort (20 additions, 20 multiplications)
-    let link_18_effort = link_18_force_4 + link_19_effort_9;
-    let link_18_effort_2 = link_18_force_5 + link_19_effort_10;
+    let link_18_effort = link_18_force + link_19_effort_9;
+    let link_18_effort_2 = link_18_force_2 + link_19_effort_10;
     let link_18_effort_3 = q[170]
         .mul_add(
             link_19_effort_3,
             q[169]
                 .mul_add(
                     link_19_effort_2,
-                    q[168].mul_add(link_19_effort, link_18_force_6),
+                    q[168].mul_add(link_19_effort, link_18_force_3),
                 ),
         );
-    let link_18_effort_4 = link_18_acceleration_12
+    let link_18_effort_4 = link_18_acceleration_17
         .mul_add(
             n(0.20000000000000004),
-            (link_18_rate_z.mul_add(link_18_rate_z, link_18_acceleration_11))
+            (link_18_acceleration_13 + link_18_acceleration_15)
                 .mul_add(n(0.004), link_19_effort_7),
         );
-    let link_18_effort_5 = link_18_acceleration_13
+    let link_18_effort_5 = link_18_acceleration_18
         .mul_add(
             n(0.20000000000000004),
-            (link_18_rate_x.mul_add(link_18_rate_y, link_18_acceleration_9))
-                .mul_add(n(0.004), -link_19_effort_8),
+            link_18_acceleration_16.mul_add(n(0.004), -link_19_effort_8),
         );
     let link_18_effort_6 = (-q[169])
         .mul_add(
             link_19_effort_5,
-            (-link_18_acceleration_14)
+            (-link_18_acceleration_19)
                 .mul_add(
                     n(0.20000000000000004),
                     q[170]
@@ -8173,7 +7628,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[168]
                                 .mul_add(
                                     link_19_effort_4,
-                                    (link_18_acceleration_8 - link_18_acceleration_10)
+                                    (link_18_acceleration_8 - link_18_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8208,33 +7663,29 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_17: effort (20 additions, 20 multiplications)
-    let link_17_effort = link_17_force_4 + link_18_effort_9;
-    let link_17_effort_2 = link_17_force_5 + link_18_effort_10;
+    let link_17_effort = link_17_force + link_18_effort_9;
+    let link_17_effort_2 = link_17_force_2 + link_18_effort_10;
     let link_17_effort_3 = q[161]
         .mul_add(
             link_18_effort_3,
             q[160]
                 .mul_add(
                     link_18_effort_2,
-                    q[159].mul_add(link_18_effort, link_17_force_6),
+                    q[159].mul_add(link_18_effort, link_17_force_3),
                 ),
         );
-    let link_17_effort_4 = link_17_acceleration_12
+    let link_17_effort_4 = link_17_acceleration_17
         .mul_add(
             n(0.28),
-            (link_17_rate_z.mul_add(link_17_rate_z, link_17_acceleration_11))
+            (link_17_acceleration_13 + link_17_acceleration_15)
                 .mul_add(n(0.004), link_18_effort_7),
         );
-    let link_17_effort_5 = link_17_acceleration_13
-        .mul_add(
-            n(0.28),
-            (link_17_rate_x.mul_add(link_17_rate_y, link_17_acceleration_9))
-                .mul_add(n(0.004), -link_18_effort_8),
-        );
+    let link_17_effort_5 = link_17_acceleration_18
+        .mul_add(n(0.28), link_17_acceleration_16.mul_add(n(0.004), -link_18_effort_8));
     let link_17_effort_6 = (-q[160])
         .mul_add(
             link_18_effort_5,
-            (-link_17_acceleration_14)
+            (-link_17_acceleration_19)
                 .mul_add(
                     n(0.28),
                     q[161]
@@ -8243,7 +7694,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[159]
                                 .mul_add(
                                     link_18_effort_4,
-                                    (link_17_acceleration_8 - link_17_acceleration_10)
+                                    (link_17_acceleration_8 - link_17_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8278,33 +7729,32 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_16: effort (20 additions, 20 multiplications)
-    let link_16_effort = link_16_force_4 + link_17_effort_9;
-    let link_16_effort_2 = link_16_force_5 + link_17_effort_10;
+    let link_16_effort = link_16_force + link_17_effort_9;
+    let link_16_effort_2 = link_16_force_2 + link_17_effort_10;
     let link_16_effort_3 = q[152]
         .mul_add(
             link_17_effort_3,
             q[151]
                 .mul_add(
                     link_17_effort_2,
-                    q[150].mul_add(link_17_effort, link_16_force_6),
+                    q[150].mul_add(link_17_effort, link_16_force_3),
                 ),
         );
-    let link_16_effort_4 = link_16_acceleration_12
+    let link_16_effort_4 = link_16_acceleration_17
         .mul_add(
             n(0.3600000000000001),
-            (link_16_rate_z.mul_add(link_16_rate_z, link_16_acceleration_11))
+            (link_16_acceleration_13 + link_16_acceleration_15)
                 .mul_add(n(0.004), link_17_effort_7),
         );
-    let link_16_effort_5 = link_16_acceleration_13
+    let link_16_effort_5 = link_16_acceleration_18
         .mul_add(
             n(0.3600000000000001),
-            (link_16_rate_x.mul_add(link_16_rate_y, link_16_acceleration_9))
-                .mul_add(n(0.004), -link_17_effort_8),
+            link_16_acceleration_16.mul_add(n(0.004), -link_17_effort_8),
         );
     let link_16_effort_6 = (-q[151])
         .mul_add(
             link_17_effort_5,
-            (-link_16_acceleration_14)
+            (-link_16_acceleration_19)
                 .mul_add(
                     n(0.3600000000000001),
                     q[152]
@@ -8313,7 +7763,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[150]
                                 .mul_add(
                                     link_17_effort_4,
-                                    (link_16_acceleration_8 - link_16_acceleration_10)
+                                    (link_16_acceleration_8 - link_16_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8348,33 +7798,32 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_15: effort (20 additions, 20 multiplications)
-    let link_15_effort = link_15_force_4 + link_16_effort_9;
-    let link_15_effort_2 = link_15_force_5 + link_16_effort_10;
+    let link_15_effort = link_15_force + link_16_effort_9;
+    let link_15_effort_2 = link_15_force_2 + link_16_effort_10;
     let link_15_effort_3 = q[143]
         .mul_add(
             link_16_effort_3,
             q[142]
                 .mul_add(
                     link_16_effort_2,
-                    q[141].mul_add(link_16_effort, link_15_force_6),
+                    q[141].mul_add(link_16_effort, link_15_force_3),
                 ),
         );
-    let link_15_effort_4 = link_15_acceleration_12
+    let link_15_effort_4 = link_15_acceleration_17
         .mul_add(
             n(0.44000000000000006),
-            (link_15_rate_z.mul_add(link_15_rate_z, link_15_acceleration_11))
+            (link_15_acceleration_13 + link_15_acceleration_15)
                 .mul_add(n(0.004), link_16_effort_7),
         );
-    let link_15_effort_5 = link_15_acceleration_13
+    let link_15_effort_5 = link_15_acceleration_18
         .mul_add(
             n(0.44000000000000006),
-            (link_15_rate_x.mul_add(link_15_rate_y, link_15_acceleration_9))
-                .mul_add(n(0.004), -link_16_effort_8),
+            link_15_acceleration_16.mul_add(n(0.004), -link_16_effort_8),
         );
     let link_15_effort_6 = (-q[142])
         .mul_add(
             link_16_effort_5,
-            (-link_15_acceleration_14)
+            (-link_15_acceleration_19)
                 .mul_add(
                     n(0.44000000000000006),
                     q[143]
@@ -8383,7 +7832,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[141]
                                 .mul_add(
                                     link_16_effort_4,
-                                    (link_15_acceleration_8 - link_15_acceleration_10)
+                                    (link_15_acceleration_8 - link_15_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8418,33 +7867,29 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_14: effort (20 additions, 20 multiplications)
-    let link_14_effort = link_14_force_4 + link_15_effort_9;
-    let link_14_effort_2 = link_14_force_5 + link_15_effort_10;
+    let link_14_effort = link_14_force + link_15_effort_9;
+    let link_14_effort_2 = link_14_force_2 + link_15_effort_10;
     let link_14_effort_3 = q[134]
         .mul_add(
             link_15_effort_3,
             q[133]
                 .mul_add(
                     link_15_effort_2,
-                    q[132].mul_add(link_15_effort, link_14_force_6),
+                    q[132].mul_add(link_15_effort, link_14_force_3),
                 ),
         );
-    let link_14_effort_4 = link_14_acceleration_12
+    let link_14_effort_4 = link_14_acceleration_17
         .mul_add(
             n(0.52),
-            (link_14_rate_z.mul_add(link_14_rate_z, link_14_acceleration_11))
+            (link_14_acceleration_13 + link_14_acceleration_15)
                 .mul_add(n(0.004), link_15_effort_7),
         );
-    let link_14_effort_5 = link_14_acceleration_13
-        .mul_add(
-            n(0.52),
-            (link_14_rate_x.mul_add(link_14_rate_y, link_14_acceleration_9))
-                .mul_add(n(0.004), -link_15_effort_8),
-        );
+    let link_14_effort_5 = link_14_acceleration_18
+        .mul_add(n(0.52), link_14_acceleration_16.mul_add(n(0.004), -link_15_effort_8));
     let link_14_effort_6 = (-q[133])
         .mul_add(
             link_15_effort_5,
-            (-link_14_acceleration_14)
+            (-link_14_acceleration_19)
                 .mul_add(
                     n(0.52),
                     q[134]
@@ -8453,7 +7898,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[132]
                                 .mul_add(
                                     link_15_effort_4,
-                                    (link_14_acceleration_8 - link_14_acceleration_10)
+                                    (link_14_acceleration_8 - link_14_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8488,33 +7933,29 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_13: effort (20 additions, 20 multiplications)
-    let link_13_effort = link_13_force_4 + link_14_effort_9;
-    let link_13_effort_2 = link_13_force_5 + link_14_effort_10;
+    let link_13_effort = link_13_force + link_14_effort_9;
+    let link_13_effort_2 = link_13_force_2 + link_14_effort_10;
     let link_13_effort_3 = q[125]
         .mul_add(
             link_14_effort_3,
             q[124]
                 .mul_add(
                     link_14_effort_2,
-                    q[123].mul_add(link_14_effort, link_13_force_6),
+                    q[123].mul_add(link_14_effort, link_13_force_3),
                 ),
         );
-    let link_13_effort_4 = link_13_acceleration_12
+    let link_13_effort_4 = link_13_acceleration_17
         .mul_add(
             n(0.6),
-            (link_13_rate_z.mul_add(link_13_rate_z, link_13_acceleration_11))
+            (link_13_acceleration_13 + link_13_acceleration_15)
                 .mul_add(n(0.004), link_14_effort_7),
         );
-    let link_13_effort_5 = link_13_acceleration_13
-        .mul_add(
-            n(0.6),
-            (link_13_rate_x.mul_add(link_13_rate_y, link_13_acceleration_9))
-                .mul_add(n(0.004), -link_14_effort_8),
-        );
+    let link_13_effort_5 = link_13_acceleration_18
+        .mul_add(n(0.6), link_13_acceleration_16.mul_add(n(0.004), -link_14_effort_8));
     let link_13_effort_6 = (-q[124])
         .mul_add(
             link_14_effort_5,
-            (-link_13_acceleration_14)
+            (-link_13_acceleration_19)
                 .mul_add(
                     n(0.6),
                     q[125]
@@ -8523,7 +7964,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[123]
                                 .mul_add(
                                     link_14_effort_4,
-                                    (link_13_acceleration_8 - link_13_acceleration_10)
+                                    (link_13_acceleration_8 - link_13_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8558,33 +7999,29 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_12: effort (20 additions, 20 multiplications)
-    let link_12_effort = link_12_force_4 + link_13_effort_9;
-    let link_12_effort_2 = link_12_force_5 + link_13_effort_10;
+    let link_12_effort = link_12_force + link_13_effort_9;
+    let link_12_effort_2 = link_12_force_2 + link_13_effort_10;
     let link_12_effort_3 = q[116]
         .mul_add(
             link_13_effort_3,
             q[115]
                 .mul_add(
                     link_13_effort_2,
-                    q[114].mul_add(link_13_effort, link_12_force_6),
+                    q[114].mul_add(link_13_effort, link_12_force_3),
                 ),
         );
-    let link_12_effort_4 = link_12_acceleration_12
+    let link_12_effort_4 = link_12_acceleration_17
         .mul_add(
             n(0.68),
-            (link_12_rate_z.mul_add(link_12_rate_z, link_12_acceleration_11))
+            (link_12_acceleration_13 + link_12_acceleration_15)
                 .mul_add(n(0.004), link_13_effort_7),
         );
-    let link_12_effort_5 = link_12_acceleration_13
-        .mul_add(
-            n(0.68),
-            (link_12_rate_x.mul_add(link_12_rate_y, link_12_acceleration_9))
-                .mul_add(n(0.004), -link_13_effort_8),
-        );
+    let link_12_effort_5 = link_12_acceleration_18
+        .mul_add(n(0.68), link_12_acceleration_16.mul_add(n(0.004), -link_13_effort_8));
     let link_12_effort_6 = (-q[115])
         .mul_add(
             link_13_effort_5,
-            (-link_12_acceleration_14)
+            (-link_12_acceleration_19)
                 .mul_add(
                     n(0.68),
                     q[116]
@@ -8593,7 +8030,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[114]
                                 .mul_add(
                                     link_13_effort_4,
-                                    (link_12_acceleration_8 - link_12_acceleration_10)
+                                    (link_12_acceleration_8 - link_12_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8628,33 +8065,29 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_11: effort (20 additions, 20 multiplications)
-    let link_11_effort = link_11_force_4 + link_12_effort_9;
-    let link_11_effort_2 = link_11_force_5 + link_12_effort_10;
+    let link_11_effort = link_11_force + link_12_effort_9;
+    let link_11_effort_2 = link_11_force_2 + link_12_effort_10;
     let link_11_effort_3 = q[107]
         .mul_add(
             link_12_effort_3,
             q[106]
                 .mul_add(
                     link_12_effort_2,
-                    q[105].mul_add(link_12_effort, link_11_force_6),
+                    q[105].mul_add(link_12_effort, link_11_force_3),
                 ),
         );
-    let link_11_effort_4 = link_11_acceleration_12
+    let link_11_effort_4 = link_11_acceleration_17
         .mul_add(
             n(0.76),
-            (link_11_rate_z.mul_add(link_11_rate_z, link_11_acceleration_11))
+            (link_11_acceleration_13 + link_11_acceleration_15)
                 .mul_add(n(0.004), link_12_effort_7),
         );
-    let link_11_effort_5 = link_11_acceleration_13
-        .mul_add(
-            n(0.76),
-            (link_11_rate_x.mul_add(link_11_rate_y, link_11_acceleration_9))
-                .mul_add(n(0.004), -link_12_effort_8),
-        );
+    let link_11_effort_5 = link_11_acceleration_18
+        .mul_add(n(0.76), link_11_acceleration_16.mul_add(n(0.004), -link_12_effort_8));
     let link_11_effort_6 = (-q[106])
         .mul_add(
             link_12_effort_5,
-            (-link_11_acceleration_14)
+            (-link_11_acceleration_19)
                 .mul_add(
                     n(0.76),
                     q[107]
@@ -8663,7 +8096,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[105]
                                 .mul_add(
                                     link_12_effort_4,
-                                    (link_11_acceleration_8 - link_11_acceleration_10)
+                                    (link_11_acceleration_8 - link_11_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8698,33 +8131,29 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_10: effort (20 additions, 20 multiplications)
-    let link_10_effort = link_10_force_4 + link_11_effort_9;
-    let link_10_effort_2 = link_10_force_5 + link_11_effort_10;
+    let link_10_effort = link_10_force + link_11_effort_9;
+    let link_10_effort_2 = link_10_force_2 + link_11_effort_10;
     let link_10_effort_3 = q[98]
         .mul_add(
             link_11_effort_3,
             q[97]
                 .mul_add(
                     link_11_effort_2,
-                    q[96].mul_add(link_11_effort, link_10_force_6),
+                    q[96].mul_add(link_11_effort, link_10_force_3),
                 ),
         );
-    let link_10_effort_4 = link_10_acceleration_12
+    let link_10_effort_4 = link_10_acceleration_17
         .mul_add(
             n(0.84),
-            (link_10_rate_z.mul_add(link_10_rate_z, link_10_acceleration_11))
+            (link_10_acceleration_13 + link_10_acceleration_15)
                 .mul_add(n(0.004), link_11_effort_7),
         );
-    let link_10_effort_5 = link_10_acceleration_13
-        .mul_add(
-            n(0.84),
-            (link_10_rate_x.mul_add(link_10_rate_y, link_10_acceleration_9))
-                .mul_add(n(0.004), -link_11_effort_8),
-        );
+    let link_10_effort_5 = link_10_acceleration_18
+        .mul_add(n(0.84), link_10_acceleration_16.mul_add(n(0.004), -link_11_effort_8));
     let link_10_effort_6 = (-q[97])
         .mul_add(
             link_11_effort_5,
-            (-link_10_acceleration_14)
+            (-link_10_acceleration_19)
                 .mul_add(
                     n(0.84),
                     q[98]
@@ -8733,7 +8162,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[96]
                                 .mul_add(
                                     link_11_effort_4,
-                                    (link_10_acceleration_8 - link_10_acceleration_10)
+                                    (link_10_acceleration_8 - link_10_acceleration_12)
                                         * n(0.004),
                                 ),
                         ),
@@ -8768,30 +8197,29 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_9: effort (20 additions, 20 multiplications)
-    let link_9_effort = link_9_force_4 + link_10_effort_9;
-    let link_9_effort_2 = link_9_force_5 + link_10_effort_10;
+    let link_9_effort = link_9_force + link_10_effort_9;
+    let link_9_effort_2 = link_9_force_2 + link_10_effort_10;
     let link_9_effort_3 = q[89]
         .mul_add(
             link_10_effort_3,
             q[88]
-                .mul_add(link_10_effort_2, q[87].mul_add(link_10_effort, link_9_force_6)),
+                .mul_add(link_10_effort_2, q[87].mul_add(link_10_effort, link_9_force_3)),
         );
-    let link_9_effort_4 = link_9_acceleration_12
+    let link_9_effort_4 = link_9_acceleration_17
         .mul_add(
             n(0.9199999999999999),
-            (link_9_rate_z.mul_add(link_9_rate_z, link_9_acceleration_11))
+            (link_9_acceleration_13 + link_9_acceleration_15)
                 .mul_add(n(0.004), link_10_effort_7),
         );
-    let link_9_effort_5 = link_9_acceleration_13
+    let link_9_effort_5 = link_9_acceleration_18
         .mul_add(
             n(0.9199999999999999),
-            (link_9_rate_x.mul_add(link_9_rate_y, link_9_acceleration_9))
-                .mul_add(n(0.004), -link_10_effort_8),
+            link_9_acceleration_16.mul_add(n(0.004), -link_10_effort_8),
         );
     let link_9_effort_6 = (-q[88])
         .mul_add(
             link_10_effort_5,
-            (-link_9_acceleration_14)
+            (-link_9_acceleration_19)
                 .mul_add(
                     n(0.9199999999999999),
                     q[89]
@@ -8800,7 +8228,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[87]
                                 .mul_add(
                                     link_10_effort_4,
-                                    (link_9_acceleration_8 - link_9_acceleration_10) * n(0.004),
+                                    (link_9_acceleration_8 - link_9_acceleration_12) * n(0.004),
                                 ),
                         ),
                 ),
@@ -8834,27 +8262,39 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_8: effort (20 additions, 20 multiplications)
-    let link_8_effort = link_8_force_4 + link_9_effort_9;
-    let link_8_effort_2 = link_8_force_5 + link_9_effort_10;
+    let link_8_effort = (-link_8_acceleration_14)
+        .mul_add(
+            n(0.19720000000000001),
+            link_8_acceleration_16
+                .mul_add(
+                    n(0.00041000000000000005),
+                    link_8_acceleration_7
+                        .mul_add(
+                            n(0.19750000000000004),
+                            link_8_acceleration_5 + link_9_effort_9,
+                        ),
+                ),
+        );
+    let link_8_effort_2 = link_8_force + link_9_effort_10;
     let link_8_effort_3 = q[80]
         .mul_add(
             link_9_effort_3,
-            q[79].mul_add(link_9_effort_2, q[78].mul_add(link_9_effort, link_8_force_6)),
+            q[79].mul_add(link_9_effort_2, q[78].mul_add(link_9_effort, link_8_force_2)),
         );
-    let link_8_effort_4 = (link_8_rate_z.mul_add(link_8_rate_z, link_8_acceleration_11))
-        .mul_add(n(0.004), link_8_acceleration_12 + link_9_effort_7);
-    let link_8_effort_5 = (link_8_rate_x.mul_add(link_8_rate_y, link_8_acceleration_9))
-        .mul_add(n(0.004), link_8_acceleration_13 - link_9_effort_8);
+    let link_8_effort_4 = (link_8_acceleration_13 + link_8_acceleration_15)
+        .mul_add(n(0.004), link_8_acceleration_17 + link_9_effort_7);
+    let link_8_effort_5 = link_8_acceleration_16
+        .mul_add(n(0.004), link_8_acceleration_18 - link_9_effort_8);
     let link_8_effort_6 = (-q[80])
         .mul_add(
             link_9_effort_6,
             (-q[78])
                 .mul_add(
                     link_9_effort_4,
-                    (-(link_8_acceleration_8 - link_8_acceleration_10))
+                    (-(link_8_acceleration_8 - link_8_acceleration_12))
                         .mul_add(
                             n(0.004),
-                            q[79].mul_add(link_9_effort_5, link_8_acceleration_14),
+                            q[79].mul_add(link_9_effort_5, link_8_acceleration_19),
                         ),
                 ),
         );
@@ -8887,38 +8327,34 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_7: effort (20 additions, 20 multiplications)
-    let link_7_effort = link_7_force_4 + link_8_effort_9;
-    let link_7_effort_2 = link_7_force_5 + link_8_effort_10;
+    let link_7_effort = link_7_force + link_8_effort_9;
+    let link_7_effort_2 = link_7_force_2 + link_8_effort_10;
     let link_7_effort_3 = q[71]
         .mul_add(
             link_8_effort_3,
-            q[70].mul_add(link_8_effort_2, q[69].mul_add(link_8_effort, link_7_force_6)),
+            q[70].mul_add(link_8_effort_2, q[69].mul_add(link_8_effort, link_7_force_3)),
         );
-    let link_7_effort_4 = link_7_acceleration_12
+    let link_7_effort_4 = link_7_acceleration_17
         .mul_add(
             n(1.08),
-            (link_7_rate_z.mul_add(link_7_rate_z, link_7_acceleration_11))
+            (link_7_acceleration_13 + link_7_acceleration_15)
                 .mul_add(n(0.004), link_8_effort_7),
         );
-    let link_7_effort_5 = link_7_acceleration_13
-        .mul_add(
-            n(1.08),
-            (link_7_rate_x.mul_add(link_7_rate_y, link_7_acceleration_9))
-                .mul_add(n(0.004), -link_8_effort_8),
-        );
+    let link_7_effort_5 = link_7_acceleration_18
+        .mul_add(n(1.08), link_7_acceleration_16.mul_add(n(0.004), -link_8_effort_8));
     let link_7_effort_6 = (-q[71])
         .mul_add(
             link_8_effort_6,
             (-q[70])
                 .mul_add(
                     link_8_effort_5,
-                    (-link_7_acceleration_14)
+                    (-link_7_acceleration_19)
                         .mul_add(
                             n(1.08),
                             q[69]
                                 .mul_add(
                                     link_8_effort_4,
-                                    (link_7_acceleration_8 - link_7_acceleration_10) * n(0.004),
+                                    (link_7_acceleration_8 - link_7_acceleration_12) * n(0.004),
                                 ),
                         ),
                 ),
@@ -8952,29 +8388,28 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_6: effort (20 additions, 20 multiplications)
-    let link_6_effort = link_6_force_4 + link_7_effort_9;
-    let link_6_effort_2 = link_6_force_5 + link_7_effort_10;
+    let link_6_effort = link_6_force + link_7_effort_9;
+    let link_6_effort_2 = link_6_force_2 + link_7_effort_10;
     let link_6_effort_3 = q[62]
         .mul_add(
             link_7_effort_3,
-            q[61].mul_add(link_7_effort_2, q[60].mul_add(link_7_effort, link_6_force_6)),
+            q[61].mul_add(link_7_effort_2, q[60].mul_add(link_7_effort, link_6_force_3)),
         );
-    let link_6_effort_4 = link_6_acceleration_12
+    let link_6_effort_4 = link_6_acceleration_17
         .mul_add(
             n(1.1600000000000001),
-            (link_6_rate_z.mul_add(link_6_rate_z, link_6_acceleration_11))
+            (link_6_acceleration_13 + link_6_acceleration_15)
                 .mul_add(n(0.004), link_7_effort_7),
         );
-    let link_6_effort_5 = link_6_acceleration_13
+    let link_6_effort_5 = link_6_acceleration_18
         .mul_add(
             n(1.1600000000000001),
-            (link_6_rate_x.mul_add(link_6_rate_y, link_6_acceleration_9))
-                .mul_add(n(0.004), -link_7_effort_8),
+            link_6_acceleration_16.mul_add(n(0.004), -link_7_effort_8),
         );
     let link_6_effort_6 = (-q[61])
         .mul_add(
             link_7_effort_5,
-            (-link_6_acceleration_14)
+            (-link_6_acceleration_19)
                 .mul_add(
                     n(1.1600000000000001),
                     q[62]
@@ -8983,7 +8418,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[60]
                                 .mul_add(
                                     link_7_effort_4,
-                                    (link_6_acceleration_8 - link_6_acceleration_10) * n(0.004),
+                                    (link_6_acceleration_8 - link_6_acceleration_12) * n(0.004),
                                 ),
                         ),
                 ),
@@ -9017,29 +8452,28 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_5: effort (20 additions, 20 multiplications)
-    let link_5_effort = link_5_force_4 + link_6_effort_9;
-    let link_5_effort_2 = link_5_force_5 + link_6_effort_10;
+    let link_5_effort = link_5_force + link_6_effort_9;
+    let link_5_effort_2 = link_5_force_2 + link_6_effort_10;
     let link_5_effort_3 = q[53]
         .mul_add(
             link_6_effort_3,
-            q[52].mul_add(link_6_effort_2, q[51].mul_add(link_6_effort, link_5_force_6)),
+            q[52].mul_add(link_6_effort_2, q[51].mul_add(link_6_effort, link_5_force_3)),
         );
-    let link_5_effort_4 = link_5_acceleration_12
+    let link_5_effort_4 = link_5_acceleration_17
         .mul_add(
             n(1.2400000000000002),
-            (link_5_rate_z.mul_add(link_5_rate_z, link_5_acceleration_11))
+            (link_5_acceleration_13 + link_5_acceleration_15)
                 .mul_add(n(0.004), link_6_effort_7),
         );
-    let link_5_effort_5 = link_5_acceleration_13
+    let link_5_effort_5 = link_5_acceleration_18
         .mul_add(
             n(1.2400000000000002),
-            (link_5_rate_x.mul_add(link_5_rate_y, link_5_acceleration_9))
-                .mul_add(n(0.004), -link_6_effort_8),
+            link_5_acceleration_16.mul_add(n(0.004), -link_6_effort_8),
         );
     let link_5_effort_6 = (-q[52])
         .mul_add(
             link_6_effort_5,
-            (-link_5_acceleration_14)
+            (-link_5_acceleration_19)
                 .mul_add(
                     n(1.2400000000000002),
                     q[53]
@@ -9048,7 +8482,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[51]
                                 .mul_add(
                                     link_6_effort_4,
-                                    (link_5_acceleration_8 - link_5_acceleration_10) * n(0.004),
+                                    (link_5_acceleration_8 - link_5_acceleration_12) * n(0.004),
                                 ),
                         ),
                 ),
@@ -9082,29 +8516,28 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_4: effort (20 additions, 20 multiplications)
-    let link_4_effort = link_4_force_4 + link_5_effort_9;
-    let link_4_effort_2 = link_4_force_5 + link_5_effort_10;
+    let link_4_effort = link_4_force + link_5_effort_9;
+    let link_4_effort_2 = link_4_force_2 + link_5_effort_10;
     let link_4_effort_3 = q[44]
         .mul_add(
             link_5_effort_3,
-            q[43].mul_add(link_5_effort_2, q[42].mul_add(link_5_effort, link_4_force_6)),
+            q[43].mul_add(link_5_effort_2, q[42].mul_add(link_5_effort, link_4_force_3)),
         );
-    let link_4_effort_4 = link_4_acceleration_12
+    let link_4_effort_4 = link_4_acceleration_17
         .mul_add(
             n(1.3200000000000003),
-            (link_4_rate_z.mul_add(link_4_rate_z, link_4_acceleration_11))
+            (link_4_acceleration_13 + link_4_acceleration_15)
                 .mul_add(n(0.004), link_5_effort_7),
         );
-    let link_4_effort_5 = link_4_acceleration_13
+    let link_4_effort_5 = link_4_acceleration_18
         .mul_add(
             n(1.3200000000000003),
-            (link_4_rate_x.mul_add(link_4_rate_y, link_4_acceleration_9))
-                .mul_add(n(0.004), -link_5_effort_8),
+            link_4_acceleration_16.mul_add(n(0.004), -link_5_effort_8),
         );
     let link_4_effort_6 = (-q[43])
         .mul_add(
             link_5_effort_5,
-            (-link_4_acceleration_14)
+            (-link_4_acceleration_19)
                 .mul_add(
                     n(1.3200000000000003),
                     q[44]
@@ -9113,7 +8546,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[42]
                                 .mul_add(
                                     link_5_effort_4,
-                                    (link_4_acceleration_8 - link_4_acceleration_10) * n(0.004),
+                                    (link_4_acceleration_8 - link_4_acceleration_12) * n(0.004),
                                 ),
                         ),
                 ),
@@ -9147,29 +8580,28 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_3: effort (20 additions, 20 multiplications)
-    let link_3_effort = link_3_force_4 + link_4_effort_9;
-    let link_3_effort_2 = link_3_force_5 + link_4_effort_10;
+    let link_3_effort = link_3_force + link_4_effort_9;
+    let link_3_effort_2 = link_3_force_2 + link_4_effort_10;
     let link_3_effort_3 = q[35]
         .mul_add(
             link_4_effort_3,
-            q[34].mul_add(link_4_effort_2, q[33].mul_add(link_4_effort, link_3_force_6)),
+            q[34].mul_add(link_4_effort_2, q[33].mul_add(link_4_effort, link_3_force_3)),
         );
-    let link_3_effort_4 = link_3_acceleration_12
+    let link_3_effort_4 = link_3_acceleration_17
         .mul_add(
             n(1.4000000000000004),
-            (link_3_rate_z.mul_add(link_3_rate_z, link_3_acceleration_11))
+            (link_3_acceleration_13 + link_3_acceleration_15)
                 .mul_add(n(0.004), link_4_effort_7),
         );
-    let link_3_effort_5 = link_3_acceleration_13
+    let link_3_effort_5 = link_3_acceleration_18
         .mul_add(
             n(1.4000000000000004),
-            (link_3_rate_x.mul_add(link_3_rate_y, link_3_acceleration_9))
-                .mul_add(n(0.004), -link_4_effort_8),
+            link_3_acceleration_16.mul_add(n(0.004), -link_4_effort_8),
         );
     let link_3_effort_6 = (-q[34])
         .mul_add(
             link_4_effort_5,
-            (-link_3_acceleration_14)
+            (-link_3_acceleration_19)
                 .mul_add(
                     n(1.4000000000000004),
                     q[35]
@@ -9178,7 +8610,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[33]
                                 .mul_add(
                                     link_4_effort_4,
-                                    (link_3_acceleration_8 - link_3_acceleration_10) * n(0.004),
+                                    (link_3_acceleration_8 - link_3_acceleration_12) * n(0.004),
                                 ),
                         ),
                 ),
@@ -9212,29 +8644,28 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     // link_2: effort (18 additions, 17 multiplications)
-    let link_2_effort = link_2_force_4 + link_3_effort_9;
-    let link_2_effort_2 = link_2_force_5 + link_3_effort_10;
+    let link_2_effort = link_2_force + link_3_effort_9;
+    let link_2_effort_2 = link_2_force_2 + link_3_effort_10;
     let link_2_effort_3 = q[26]
         .mul_add(
             link_3_effort_3,
-            q[25].mul_add(link_3_effort_2, q[24].mul_add(link_3_effort, link_2_force_6)),
+            q[25].mul_add(link_3_effort_2, q[24].mul_add(link_3_effort, link_2_force_3)),
         );
-    let link_2_effort_4 = link_2_acceleration_12
+    let link_2_effort_4 = link_2_acceleration_17
         .mul_add(
             n(1.4800000000000004),
-            (link_2_rate_z.mul_add(link_2_rate_z, link_2_acceleration_11))
+            (link_2_acceleration_13 + link_2_acceleration_15)
                 .mul_add(n(0.004), link_3_effort_7),
         );
-    let link_2_effort_5 = link_2_acceleration_13
+    let link_2_effort_5 = link_2_acceleration_18
         .mul_add(
             n(1.4800000000000004),
-            (link_2_rate_x.mul_add(link_2_rate_y, link_2_acceleration_9))
-                .mul_add(n(0.004), -link_3_effort_8),
+            link_2_acceleration_16.mul_add(n(0.004), -link_3_effort_8),
         );
     let link_2_effort_6 = (-q[25])
         .mul_add(
             link_3_effort_5,
-            (-link_2_acceleration_14)
+            (-link_2_acceleration_19)
                 .mul_add(
                     n(1.4800000000000004),
                     q[26]
@@ -9243,7 +8674,7 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                             q[24]
                                 .mul_add(
                                     link_3_effort_4,
-                                    (link_2_acceleration_8 - link_2_acceleration_10) * n(0.004),
+                                    (link_2_acceleration_8 - link_2_acceleration_12) * n(0.004),
                                 ),
                         ),
                 ),
@@ -9275,15 +8706,19 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
                 ),
         );
     [
-        link_1_force_4 + link_2_effort_7,
-        link_1_force_5 + link_2_effort_8,
+        link_1_force_2 + link_2_effort_7,
+        (-q[8])
+            .mul_add(
+                n(0.039240000000000004),
+                (-q[6]).mul_add(n(15.303600000000007), link_1_force + link_2_effort_8),
+            ),
         q[17]
             .mul_add(
                 link_2_effort_3,
                 q[16]
                     .mul_add(
                         link_2_effort_2,
-                        q[15].mul_add(link_2_effort, link_1_force_6),
+                        q[15].mul_add(link_2_effort, link_1_force_3),
                     ),
             ),
         link_2_effort,
@@ -9340,8 +8775,8 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 180], v: &[T; 60], a: &[T; 60]) -> [T
         link_19_effort,
         link_19_effort_2,
         link_19_effort_3,
-        link_20_force_5,
-        link_20_force_6,
-        link_20_force_7,
+        link_20_force_2,
+        link_20_force_3,
+        link_20_force_4,
     ]
 }

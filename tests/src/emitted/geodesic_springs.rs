@@ -57,12 +57,12 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
 
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
-/// Operations: 276 additions, 389 multiplications, 6 divisions, 4 function calls.
+/// Operations: 287 additions, 368 multiplications, 6 divisions, 4 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T; 6] {
     let n = T::from_f64;
-    // lower: joint (18 additions, 27 multiplications)
+    // lower: joint (27 additions, 18 multiplications)
     let lower_joint = q[11] * q[11];
     let lower_joint_2 = q[12] * q[12];
     let lower_joint_3 = q[9] * q[12];
@@ -72,244 +72,254 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_joint_7 = q[10] * q[10];
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
-    let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = lower_joint_3 + lower_joint_4;
-    let lower_joint_12 = lower_joint_11 * n(2.0);
-    let lower_joint_13 = lower_joint_5 - lower_joint_6;
-    let lower_joint_14 = lower_joint_13 * n(2.0);
-    let lower_joint_15 = lower_joint_3 - lower_joint_4;
-    let lower_joint_16 = lower_joint_15 * n(2.0);
-    let lower_joint_17 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_18 = lower_joint_8 + lower_joint_9;
-    let lower_joint_19 = lower_joint_18 * n(2.0);
-    let lower_joint_20 = lower_joint_5 + lower_joint_6;
-    let lower_joint_21 = lower_joint_20 * n(2.0);
-    let lower_joint_22 = lower_joint_8 - lower_joint_9;
-    let lower_joint_23 = lower_joint_22 * n(2.0);
-    let lower_joint_24 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_25 = (-v[4])
-        .mul_add(lower_joint_12, v[5].mul_add(lower_joint_14, v[3] * lower_joint_10));
-    let lower_joint_26 = (-v[5])
-        .mul_add(lower_joint_19, v[4].mul_add(lower_joint_17, v[3] * lower_joint_16));
-    let lower_joint_27 = (-v[5])
-        .mul_add(lower_joint_24, (-v[4]).mul_add(lower_joint_23, v[3] * lower_joint_21));
+    let lower_joint_10 = lower_joint + lower_joint_2;
+    let lower_joint_11 = lower_joint_10 + lower_joint_10 - n(1.0);
+    let lower_joint_12 = lower_joint_3 + lower_joint_4;
+    let lower_joint_13 = lower_joint_12 + lower_joint_12;
+    let lower_joint_14 = lower_joint_5 - lower_joint_6;
+    let lower_joint_15 = lower_joint_14 + lower_joint_14;
+    let lower_joint_16 = lower_joint_3 - lower_joint_4;
+    let lower_joint_17 = lower_joint_16 + lower_joint_16;
+    let lower_joint_18 = lower_joint_2 + lower_joint_7;
+    let lower_joint_19 = lower_joint_18 + lower_joint_18 - n(1.0);
+    let lower_joint_20 = lower_joint_8 + lower_joint_9;
+    let lower_joint_21 = lower_joint_20 + lower_joint_20;
+    let lower_joint_22 = lower_joint_5 + lower_joint_6;
+    let lower_joint_23 = lower_joint_22 + lower_joint_22;
+    let lower_joint_24 = lower_joint_8 - lower_joint_9;
+    let lower_joint_25 = lower_joint_24 + lower_joint_24;
+    let lower_joint_26 = lower_joint + lower_joint_7;
+    let lower_joint_27 = lower_joint_26 + lower_joint_26 - n(1.0);
+    let lower_joint_28 = (-v[4])
+        .mul_add(lower_joint_13, v[5].mul_add(lower_joint_15, v[3] * lower_joint_11));
+    let lower_joint_29 = (-v[5])
+        .mul_add(lower_joint_21, v[4].mul_add(lower_joint_19, v[3] * lower_joint_17));
+    let lower_joint_30 = (-v[5])
+        .mul_add(lower_joint_27, (-v[4]).mul_add(lower_joint_25, v[3] * lower_joint_23));
     // lower: angular velocity (9 additions, 9 multiplications)
     let lower_angular_velocity = (-v[1])
-        .mul_add(lower_joint_12, v[2].mul_add(lower_joint_14, v[0] * lower_joint_10));
+        .mul_add(lower_joint_13, v[2].mul_add(lower_joint_15, v[0] * lower_joint_11));
     let lower_angular_velocity_2 = (-v[2])
-        .mul_add(lower_joint_19, v[1].mul_add(lower_joint_17, v[0] * lower_joint_16));
+        .mul_add(lower_joint_21, v[1].mul_add(lower_joint_19, v[0] * lower_joint_17));
     let lower_angular_velocity_3 = (-v[2])
-        .mul_add(lower_joint_24, (-v[1]).mul_add(lower_joint_23, v[0] * lower_joint_21));
-    let lower_rate_x = lower_joint_25 + lower_angular_velocity;
-    let lower_rate_y = lower_joint_26 + lower_angular_velocity_2;
-    let lower_rate_z = lower_joint_27 + lower_angular_velocity_3;
-    // upper: force (9 additions, 15 multiplications)
-    let upper_force = v[2].mul_add(n(0.06), v[0] * n(0.59));
-    let upper_force_2 = v[1] * n(0.62);
-    let upper_force_3 = v[2].mul_add(n(0.04000000000000001), v[0] * n(0.06));
-    let upper_force_4 = (-q[8])
+        .mul_add(lower_joint_27, (-v[1]).mul_add(lower_joint_25, v[0] * lower_joint_23));
+    let lower_rate_x = lower_joint_28 + lower_angular_velocity;
+    let lower_rate_y = lower_joint_29 + lower_angular_velocity_2;
+    let lower_rate_z = lower_joint_30 + lower_angular_velocity_3;
+    // upper: acceleration (1 addition, 9 multiplications)
+    let upper_acceleration = v[0] * v[0];
+    let upper_acceleration_2 = v[0] * v[1];
+    let upper_acceleration_3 = v[0] * v[2];
+    let upper_acceleration_4 = v[1] * v[2];
+    // upper: force (8 additions, 10 multiplications)
+    let upper_force = (-q[8])
         .mul_add(
             n(1.9620000000000002),
             (-q[6])
-                .mul_add(n(11.772), (-v[0]).mul_add(upper_force_3, v[2] * upper_force)),
+                .mul_add(
+                    n(11.772),
+                    (-((-v[2]).mul_add(v[2], upper_acceleration)))
+                        .mul_add(n(0.06), upper_acceleration_3 * n(0.5499999999999999)),
+                ),
         );
     // lower: acceleration (13 additions, 19 multiplications)
-    let lower_acceleration = (-lower_joint_26)
-        .mul_add(lower_angular_velocity_3, lower_joint_27 * lower_angular_velocity_2);
-    let lower_acceleration_2 = (-lower_joint_27)
-        .mul_add(lower_angular_velocity, lower_joint_25 * lower_angular_velocity_3);
-    let lower_acceleration_3 = (-(v[0] * v[2])).mul_add(n(0.6), q[6] * n(9.81));
-    let lower_acceleration_4 = (-(v[1] * v[2])).mul_add(n(0.6), q[7] * n(9.81));
-    let lower_acceleration_5 = (v[1].mul_add(v[1], v[0] * v[0]))
+    let lower_acceleration = (-lower_joint_29)
+        .mul_add(lower_angular_velocity_3, lower_joint_30 * lower_angular_velocity_2);
+    let lower_acceleration_2 = (-lower_joint_30)
+        .mul_add(lower_angular_velocity, lower_joint_28 * lower_angular_velocity_3);
+    let lower_acceleration_3 = (-upper_acceleration_3).mul_add(n(0.6), q[6] * n(9.81));
+    let lower_acceleration_4 = (-upper_acceleration_4).mul_add(n(0.6), q[7] * n(9.81));
+    let lower_acceleration_5 = (v[1].mul_add(v[1], upper_acceleration))
         .mul_add(n(0.6), q[8] * n(9.81));
-    // lower: force (8 additions, 17 multiplications)
-    let lower_force = lower_rate_x * n(0.0825);
-    let lower_force_2 = lower_rate_y * n(0.0825);
-    let lower_force_3 = lower_rate_z * n(0.009999999999999995);
-    let lower_force_4 = ((-lower_joint_19)
+    let lower_acceleration_6 = lower_rate_x * lower_rate_z;
+    let lower_acceleration_7 = lower_rate_y * lower_rate_z;
+    // lower: force (4 additions, 10 multiplications)
+    let lower_force = ((-lower_joint_28)
+        .mul_add(lower_angular_velocity_2, lower_joint_29 * lower_angular_velocity))
+        * n(0.01);
+    let lower_force_2 = (-lower_acceleration_7)
         .mul_add(
-            lower_acceleration_5,
-            lower_joint_17
-                .mul_add(lower_acceleration_4, lower_joint_16 * lower_acceleration_3),
-        ))
-        .mul_add(n(0.25), lower_acceleration * n(0.0825));
-    let lower_force_5 = (-((-lower_joint_12)
+            n(0.0725),
+            ((-lower_joint_21)
+                .mul_add(
+                    lower_acceleration_5,
+                    lower_joint_19
+                        .mul_add(
+                            lower_acceleration_4,
+                            lower_joint_17 * lower_acceleration_3,
+                        ),
+                ))
+                .mul_add(n(0.25), lower_acceleration * n(0.0825)),
+        );
+    let lower_force_3 = (-((-lower_joint_13)
         .mul_add(
             lower_acceleration_4,
-            lower_joint_14
-                .mul_add(lower_acceleration_5, lower_joint_10 * lower_acceleration_3),
+            lower_joint_15
+                .mul_add(lower_acceleration_5, lower_joint_11 * lower_acceleration_3),
         )))
-        .mul_add(n(0.25), lower_acceleration_2 * n(0.0825));
-    let lower_force_6 = (-lower_rate_z)
-        .mul_add(lower_force_2, lower_rate_y.mul_add(lower_force_3, lower_force_4));
-    let lower_force_7 = (-lower_rate_x)
-        .mul_add(lower_force_3, lower_rate_z.mul_add(lower_force, lower_force_5));
-    let lower_force_8 = (-lower_rate_y)
+        .mul_add(
+            n(0.25),
+            lower_acceleration_6.mul_add(n(0.0725), lower_acceleration_2 * n(0.0825)),
+        );
+    let lower_force_4 = (lower_acceleration_2 + lower_acceleration_6) * n(0.25);
+    let lower_force_5 = (lower_acceleration - lower_acceleration_7) * n(0.25);
+    let lower_force_6 = (lower_rate_y.mul_add(lower_rate_y, lower_rate_x * lower_rate_x))
+        * n(0.25);
+    // lower: effort (12 additions, 17 multiplications)
+    let lower_effort = lower_joint_23
         .mul_add(
             lower_force,
-            ((-lower_joint_25)
-                .mul_add(
-                    lower_angular_velocity_2,
-                    lower_joint_26 * lower_angular_velocity,
-                ))
-                .mul_add(n(0.009999999999999995), lower_rate_x * lower_force_2),
+            lower_joint_17.mul_add(lower_force_3, lower_joint_11 * lower_force_2),
         );
-    let lower_force_9 = (lower_rate_x.mul_add(lower_rate_z, lower_acceleration_2))
-        * n(0.25);
-    let lower_force_10 = ((-lower_rate_y).mul_add(lower_rate_z, lower_acceleration))
-        * n(0.25);
-    let lower_force_11 = (lower_rate_y
-        .mul_add(lower_rate_y, lower_rate_x * lower_rate_x)) * n(0.25);
-    // lower: effort (12 additions, 17 multiplications)
-    let lower_effort = lower_joint_21
+    let lower_effort_2 = (-lower_joint_19)
         .mul_add(
-            lower_force_8,
-            lower_joint_16.mul_add(lower_force_7, lower_joint_10 * lower_force_6),
+            lower_force_3,
+            lower_joint_25.mul_add(lower_force, lower_joint_13 * lower_force_2),
         );
-    let lower_effort_2 = (-lower_joint_17)
+    let lower_effort_3 = (-lower_joint_27)
         .mul_add(
-            lower_force_7,
-            lower_joint_23.mul_add(lower_force_8, lower_joint_12 * lower_force_6),
+            lower_force,
+            (-lower_joint_21).mul_add(lower_force_3, lower_joint_15 * lower_force_2),
         );
-    let lower_effort_3 = (-lower_joint_24)
+    let lower_effort_4 = ((-lower_joint_25)
         .mul_add(
-            lower_force_8,
-            (-lower_joint_19).mul_add(lower_force_7, lower_joint_14 * lower_force_6),
-        );
-    let lower_effort_4 = ((-lower_joint_23)
-        .mul_add(
-            lower_force_11,
-            lower_joint_17.mul_add(lower_force_10, lower_joint_12 * lower_force_9),
+            lower_force_6,
+            lower_joint_19.mul_add(lower_force_5, lower_joint_13 * lower_force_4),
         ))
         .mul_add(n(0.6), lower_effort);
-    let lower_effort_5 = (-((-lower_joint_21)
+    let lower_effort_5 = (-((-lower_joint_23)
         .mul_add(
-            lower_force_11,
-            (-lower_joint_16).mul_add(lower_force_10, lower_joint_10 * lower_force_9),
+            lower_force_6,
+            (-lower_joint_17).mul_add(lower_force_5, lower_joint_11 * lower_force_4),
         )))
         .mul_add(n(0.6), lower_effort_2);
-    // lower: composite inertia (34 additions, 63 multiplications)
-    let lower_composite_inertia = lower_joint_10 * n(0.0825);
-    let lower_composite_inertia_2 = lower_joint_15 * n(0.165);
-    let lower_composite_inertia_3 = lower_joint_20 * n(0.01999999999999999);
-    let lower_composite_inertia_4 = lower_joint_15 * n(0.5);
-    let lower_composite_inertia_5 = lower_joint_10 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_21
+    // lower: composite inertia (36 additions, 63 multiplications)
+    let lower_composite_inertia = lower_joint_11 * n(0.0825);
+    let lower_composite_inertia_2 = lower_joint_16 * n(0.165);
+    let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
+    let lower_composite_inertia_4 = lower_joint_16 * n(0.5);
+    let lower_composite_inertia_5 = lower_joint_11 * n(0.25);
+    let lower_composite_inertia_6 = lower_joint_23
         .mul_add(
             lower_composite_inertia_3,
-            lower_joint_16
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_10 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_7 = (-lower_joint_17)
-        .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_23
-                .mul_add(
-                    lower_composite_inertia_3,
-                    lower_joint_12 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_24)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_19)
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_14 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_9 = lower_joint_11 * n(0.165);
-    let lower_composite_inertia_10 = lower_joint_17 * n(0.0825);
-    let lower_composite_inertia_11 = lower_joint_22 * n(0.01999999999999999);
-    let lower_composite_inertia_12 = lower_joint_17 * n(0.25);
-    let lower_composite_inertia_13 = lower_joint_11 * n(0.5);
-    let lower_composite_inertia_14 = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_11,
             lower_joint_17
                 .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_12 * lower_composite_inertia_9,
+                    lower_composite_inertia_2,
+                    lower_joint_11 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_24)
+    let lower_composite_inertia_7 = (-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_2,
+            lower_joint_25
+                .mul_add(
+                    lower_composite_inertia_3,
+                    lower_joint_13 * lower_composite_inertia,
+                ),
+        );
+    let lower_composite_inertia_8 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_3,
+            (-lower_joint_21)
+                .mul_add(
+                    lower_composite_inertia_2,
+                    lower_joint_15 * lower_composite_inertia,
+                ),
+        );
+    let lower_composite_inertia_9 = lower_joint_12 * n(0.165);
+    let lower_composite_inertia_10 = lower_joint_19 * n(0.0825);
+    let lower_composite_inertia_11 = lower_joint_24 * n(0.02);
+    let lower_composite_inertia_12 = lower_joint_19 * n(0.25);
+    let lower_composite_inertia_13 = lower_joint_12 * n(0.5);
+    let lower_composite_inertia_14 = lower_joint_25
         .mul_add(
             lower_composite_inertia_11,
             lower_joint_19
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_14 * lower_composite_inertia_9,
+                    lower_joint_13 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = (-((-lower_joint_17)
+    let lower_composite_inertia_15 = (-lower_joint_27)
         .mul_add(
-            lower_composite_inertia_13,
-            lower_joint_12 * lower_composite_inertia_12,
-        )))
-        .mul_add(
-            n(0.6),
-            (-lower_joint_16)
+            lower_composite_inertia_11,
+            lower_joint_21
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_21
-                        .mul_add(
-                            lower_composite_inertia_11,
-                            lower_joint_10 * lower_composite_inertia_9,
-                        ),
+                    lower_joint_15 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_17 = lower_joint_13 * n(0.165);
-    let lower_composite_inertia_18 = lower_joint_18 * n(0.165);
-    let lower_composite_inertia_19 = lower_joint_24 * n(0.009999999999999995);
-    let lower_composite_inertia_20 = lower_joint_18 * n(0.5);
-    let lower_composite_inertia_21 = lower_joint_13 * n(0.5);
-    let lower_composite_inertia_22 = lower_joint_24
+    let lower_composite_inertia_16 = (-((-lower_joint_19)
         .mul_add(
-            lower_composite_inertia_19,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_14 * lower_composite_inertia_17,
-                ),
-        );
-    let lower_composite_inertia_23 = (-((-lower_joint_17)
-        .mul_add(
-            lower_composite_inertia_21,
-            lower_joint_12 * lower_composite_inertia_20,
+            lower_composite_inertia_13,
+            lower_joint_13 * lower_composite_inertia_12,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_21)
+            (-lower_joint_17)
                 .mul_add(
-                    lower_composite_inertia_19,
-                    (-lower_joint_16)
+                    lower_composite_inertia_10,
+                    lower_joint_23
                         .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_10 * lower_composite_inertia_17,
+                            lower_composite_inertia_11,
+                            lower_joint_11 * lower_composite_inertia_9,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_23)
+    let lower_composite_inertia_17 = lower_joint_14 * n(0.165);
+    let lower_composite_inertia_18 = lower_joint_20 * n(0.165);
+    let lower_composite_inertia_19 = lower_joint_27 * n(0.01);
+    let lower_composite_inertia_20 = lower_joint_20 * n(0.5);
+    let lower_composite_inertia_21 = lower_joint_14 * n(0.5);
+    let lower_composite_inertia_22 = lower_joint_27
         .mul_add(
             lower_composite_inertia_19,
-            (lower_joint_16
+            lower_joint_21
+                .mul_add(
+                    lower_composite_inertia_18,
+                    lower_joint_15 * lower_composite_inertia_17,
+                ),
+        );
+    let lower_composite_inertia_23 = (-((-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_21,
+            lower_joint_13 * lower_composite_inertia_20,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_23)
+                .mul_add(
+                    lower_composite_inertia_19,
+                    (-lower_joint_17)
+                        .mul_add(
+                            lower_composite_inertia_18,
+                            lower_joint_11 * lower_composite_inertia_17,
+                        ),
+                ),
+        );
+    let lower_composite_inertia_24 = (-lower_joint_25)
+        .mul_add(
+            lower_composite_inertia_19,
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_21,
-                    lower_joint_10 * lower_composite_inertia_20,
+                    lower_joint_11 * lower_composite_inertia_20,
                 ))
                 .mul_add(
                     n(0.6),
-                    lower_joint_17
+                    lower_joint_19
                         .mul_add(
                             lower_composite_inertia_18,
-                            lower_joint_12 * lower_composite_inertia_17,
+                            lower_joint_13 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
+    // upper: composite inertia (7 additions)
+    let upper_composite_inertia = lower_composite_inertia_6 - n(0.0875) - n(0.035);
+    let upper_composite_inertia_2 = lower_composite_inertia_14 - n(0.0875)
+        - n(0.005000000000000003);
+    let upper_composite_inertia_3 = lower_joint_27
+        .mul_add(n(0.3), lower_composite_inertia_22 - n(0.0875) - n(0.585));
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
@@ -395,152 +405,148 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ),
         );
     // upper: effort (6 additions)
-    let upper_effort = (-upper_spring_4)
+    let upper_effort = (-q[7])
         .mul_add(
-            upper_spring_12 - upper_spring_13,
-            (-v[2])
+            n(11.772),
+            (-upper_acceleration_2)
                 .mul_add(
-                    upper_force_2,
-                    q[7]
+                    n(0.06),
+                    upper_spring_4
                         .mul_add(
-                            n(11.772),
-                            v[1]
-                                .mul_add(
-                                    upper_force_3,
-                                    lower_effort_4 - upper_spring_14 - tau[0],
-                                ),
+                            upper_spring_12 - upper_spring_13,
+                            upper_acceleration_4
+                                .mul_add(n(0.58), upper_spring_14 + tau[0] - lower_effort_4),
                         ),
                 ),
         );
-    let upper_effort_2 = (-v[1])
+    let upper_effort_2 = (-upper_acceleration_4)
         .mul_add(
-            upper_force,
+            n(0.06),
             q[7]
                 .mul_add(
                     n(1.9620000000000002),
-                    v[0]
-                        .mul_add(
-                            upper_force_2,
-                            lower_effort_3 + upper_spring_18 - tau[2],
-                        ),
+                    upper_acceleration_2
+                        .mul_add(n(0.03), lower_effort_3 + upper_spring_18 - tau[2]),
                 ),
         );
-    // lower: spring (48 additions, 72 multiplications, 2 function calls)
+    // lower: spring (50 additions, 70 multiplications, 2 function calls)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
     let lower_spring_2 = lower_spring[0] * n(15.0);
     let lower_spring_3 = lower_spring[1] * n(15.0);
     let lower_spring_4 = lower_spring[2] * n(15.0);
     let lower_spring_5 = q[9] * q[9];
-    let lower_spring_6 = (lower_joint_7 + lower_spring_5).mul_add(n(2.0), -n(1.0));
-    let lower_spring_7 = (lower_joint + lower_spring_5).mul_add(n(2.0), -n(1.0));
-    let lower_spring_8 = lower_joint_16
-        .mul_add(lower_spring[2], lower_joint_21 * lower_spring[1]);
-    let lower_spring_9 = (-lower_joint_21)
-        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
-    let lower_spring_10 = lower_spring[1]
-        .mul_add(lower_spring_6, lower_joint_16 * lower_spring[0]);
-    let lower_spring_11 = (lower_spring[2]
+    let lower_spring_6 = lower_joint_7 + lower_spring_5;
+    let lower_spring_7 = lower_spring_6 + lower_spring_6 - n(1.0);
+    let lower_spring_8 = lower_joint + lower_spring_5;
+    let lower_spring_9 = lower_spring_8 + lower_spring_8 - n(1.0);
+    let lower_spring_10 = lower_joint_17
+        .mul_add(lower_spring[2], lower_joint_23 * lower_spring[1]);
+    let lower_spring_11 = (-lower_joint_23)
+        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
+    let lower_spring_12 = lower_spring[1]
+        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
+    let lower_spring_13 = (lower_spring[2]
         .mul_add(
             lower_spring[2],
             lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
         ))
         .dexp_inverse(0);
-    let lower_spring_12 = (-lower_spring_11)
+    let lower_spring_14 = (-lower_spring_13)
         .mul_add(
-            lower_spring[2].mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
-            lower_spring_8.mul_add(n(0.5), lower_spring_6),
+            lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
+            lower_spring_10.mul_add(n(0.5), lower_spring_7),
         );
-    let lower_spring_13 = (-lower_spring_11)
+    let lower_spring_15 = (-lower_spring_13)
         .mul_add(
-            lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
-            (-lower_spring_9).mul_add(n(0.5), lower_joint_16),
+            lower_spring[0].mul_add(lower_spring_12, lower_spring[2] * lower_spring_10),
+            (-lower_spring_11).mul_add(n(0.5), lower_joint_17),
         );
-    let lower_spring_14 = (-lower_spring_10)
+    let lower_spring_16 = (-lower_spring_12)
         .mul_add(
             n(0.5),
-            lower_spring_11
+            lower_spring_13
                 .mul_add(
                     (-lower_spring[1])
-                        .mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
-                    lower_joint_21,
+                        .mul_add(lower_spring_10, lower_spring[0] * lower_spring_11),
+                    lower_joint_23,
                 ),
         );
-    let lower_spring_15 = lower_spring[2]
-        .mul_add(lower_spring_7, lower_joint_23 * lower_spring[1]);
-    let lower_spring_16 = lower_joint_23
-        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
-    let lower_spring_17 = (-lower_joint_12)
-        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
-    let lower_spring_18 = (-lower_spring_15)
+    let lower_spring_17 = lower_spring[2]
+        .mul_add(lower_spring_9, lower_joint_25 * lower_spring[1]);
+    let lower_spring_18 = lower_joint_25
+        .mul_add(lower_spring[0], lower_joint_13 * lower_spring[2]);
+    let lower_spring_19 = (-lower_joint_13)
+        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_9);
+    let lower_spring_20 = (-lower_spring_17)
         .mul_add(
             n(0.5),
-            lower_spring_11
+            lower_spring_13
                 .mul_add(
                     (-lower_spring[2])
-                        .mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
-                    lower_joint_12,
+                        .mul_add(lower_spring_18, lower_spring[1] * lower_spring_19),
+                    lower_joint_13,
                 ),
         );
-    let lower_spring_19 = (-lower_spring_11)
+    let lower_spring_21 = (-lower_spring_13)
         .mul_add(
-            lower_spring[0].mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
-            lower_spring_16.mul_add(n(0.5), lower_spring_7),
+            lower_spring[0].mul_add(lower_spring_19, lower_spring[2] * lower_spring_17),
+            lower_spring_18.mul_add(n(0.5), lower_spring_9),
         );
-    let lower_spring_20 = (-lower_spring_11)
+    let lower_spring_22 = (-lower_spring_13)
         .mul_add(
-            lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
-            (-lower_spring_17).mul_add(n(0.5), lower_joint_23),
+            lower_spring[1].mul_add(lower_spring_17, lower_spring[0] * lower_spring_18),
+            (-lower_spring_19).mul_add(n(0.5), lower_joint_25),
         );
-    let lower_spring_21 = lower_joint_19
-        .mul_add(lower_spring[2], lower_joint_24 * lower_spring[1]);
-    let lower_spring_22 = (-lower_joint_24)
-        .mul_add(lower_spring[0], lower_joint_14 * lower_spring[2]);
-    let lower_spring_23 = lower_joint_14
-        .mul_add(lower_spring[1], lower_joint_19 * lower_spring[0]);
-    let lower_spring_24 = (-lower_spring_11)
+    let lower_spring_23 = lower_joint_21
+        .mul_add(lower_spring[2], lower_joint_27 * lower_spring[1]);
+    let lower_spring_24 = (-lower_joint_27)
+        .mul_add(lower_spring[0], lower_joint_15 * lower_spring[2]);
+    let lower_spring_25 = lower_joint_15
+        .mul_add(lower_spring[1], lower_joint_21 * lower_spring[0]);
+    let lower_spring_26 = (-lower_spring_13)
         .mul_add(
-            lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
-            lower_spring_21.mul_add(n(0.5), lower_joint_14),
+            lower_spring[2].mul_add(lower_spring_24, lower_spring[1] * lower_spring_25),
+            lower_spring_23.mul_add(n(0.5), lower_joint_15),
         );
-    let lower_spring_25 = (-lower_spring_11)
+    let lower_spring_27 = (-lower_spring_13)
         .mul_add(
-            lower_spring[0].mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
-            (-lower_spring_22).mul_add(n(0.5), lower_joint_19),
+            lower_spring[0].mul_add(lower_spring_25, lower_spring[2] * lower_spring_23),
+            (-lower_spring_24).mul_add(n(0.5), lower_joint_21),
         );
-    let lower_spring_26 = (-lower_spring_23)
+    let lower_spring_28 = (-lower_spring_25)
         .mul_add(
             n(0.5),
-            lower_spring_11
+            lower_spring_13
                 .mul_add(
                     (-lower_spring[1])
-                        .mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
-                    lower_joint_24,
+                        .mul_add(lower_spring_23, lower_spring[0] * lower_spring_24),
+                    lower_joint_27,
                 ),
         );
     // lower: effort (9 additions, 3 multiplications)
     let lower_effort_6 = (-lower_spring_3)
         .mul_add(
-            lower_spring_13,
+            lower_spring_15,
             v[3]
                 .mul_add(
                     n(0.1),
                     lower_spring_4
                         .mul_add(
-                            lower_spring_14,
-                            lower_spring_2.mul_add(lower_spring_12, -tau[3]),
+                            lower_spring_16,
+                            lower_spring_2.mul_add(lower_spring_14, -tau[3]),
                         ),
                 ),
         );
     let lower_effort_7 = (-lower_spring_4)
         .mul_add(
-            lower_spring_20,
+            lower_spring_22,
             v[4]
                 .mul_add(
                     n(0.1),
                     lower_spring_3
                         .mul_add(
-                            lower_spring_19,
-                            lower_spring_2.mul_add(lower_spring_18, -tau[4]),
+                            lower_spring_21,
+                            lower_spring_2.mul_add(lower_spring_20, -tau[4]),
                         ),
                 ),
         );
@@ -549,11 +555,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             n(0.1),
             (-lower_spring_3)
                 .mul_add(
-                    lower_spring_25,
+                    lower_spring_27,
                     lower_spring_4
                         .mul_add(
-                            lower_spring_26,
-                            lower_spring_2.mul_add(lower_spring_24, tau[5]),
+                            lower_spring_28,
+                            lower_spring_2.mul_add(lower_spring_26, tau[5]),
                         ),
                 ),
         );
@@ -568,10 +574,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (lower_joint_16
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_13,
-                    lower_joint_10 * lower_composite_inertia_12,
+                    lower_joint_11 * lower_composite_inertia_12,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_14),
         );
@@ -581,20 +587,20 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_8 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_7,
-            (-((-lower_joint_16)
+            (-((-lower_joint_17)
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_10 * lower_composite_inertia_4,
+                    lower_joint_11 * lower_composite_inertia_4,
                 )))
                 .mul_add(n(0.6), lower_composite_inertia_7),
         );
     let lower_factor_9 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_7,
-            (lower_joint_17
+            (lower_joint_19
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_12 * lower_composite_inertia_4,
+                    lower_joint_13 * lower_composite_inertia_4,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
@@ -620,7 +626,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_10,
-                    (-lower_joint_20)
+                    (-lower_joint_22)
                         .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
@@ -634,16 +640,16 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
     let lower_factor_23 = lower_factor_15 * lower_factor_22;
-    let lower_factor_24 = (-lower_factor_15)
+    let lower_factor_24 = lower_factor_15
         .mul_add(
             lower_factor_23,
-            (-lower_factor_4)
+            lower_factor_4
                 .mul_add(
                     lower_factor_18,
-                    (-lower_composite_inertia_22)
+                    lower_composite_inertia_22
                         .mul_add(
                             lower_factor_10,
-                            lower_composite_inertia_22 + n(0.04000000000000001),
+                            upper_composite_inertia + upper_composite_inertia_2,
                         ),
                 ),
         );
@@ -656,38 +662,36 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_10,
-                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                            (-lower_joint_24).mul_add(n(0.3), lower_composite_inertia_15),
                         ),
                 ),
         );
     let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
     let lower_factor_27 = lower_factor_16 * lower_factor_22;
-    let lower_factor_28 = (-lower_factor_16)
+    let lower_factor_28 = lower_factor_16
         .mul_add(
             lower_factor_27,
-            (-lower_factor_5)
+            lower_factor_5
                 .mul_add(
                     lower_factor_20,
-                    (-lower_composite_inertia_24)
+                    lower_composite_inertia_24
                         .mul_add(
                             lower_factor_11,
-                            lower_composite_inertia_14 + n(0.62)
-                                - lower_composite_inertia_25,
+                            upper_composite_inertia + upper_composite_inertia_3,
                         ),
                 ),
         );
     let lower_factor_29 = lower_factor_17 * lower_factor_22;
-    let lower_factor_30 = (-lower_factor_17)
+    let lower_factor_30 = lower_factor_17
         .mul_add(
             lower_factor_29,
-            (-lower_factor_6)
+            lower_factor_6
                 .mul_add(
                     lower_factor_21,
-                    (-lower_composite_inertia_23)
+                    lower_composite_inertia_23
                         .mul_add(
                             lower_factor_12,
-                            lower_composite_inertia_6 + n(0.59)
-                                - lower_composite_inertia_25,
+                            upper_composite_inertia_2 + upper_composite_inertia_3,
                         ),
                 ),
         );
@@ -700,7 +704,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             upper_spring_4
                 .mul_add(
                     upper_spring_15 + upper_spring_16,
-                    upper_force_4 - lower_effort_5 - upper_spring_17 - tau[1],
+                    upper_force - lower_effort_5 - upper_spring_17 - tau[1],
                 ),
         );
     let lower_load_3 = (-lower_factor_14)
@@ -720,17 +724,17 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = (-lower_factor_26)
+    let upper_factor_3 = (-lower_factor_17)
         .mul_add(
-            upper_factor_2,
-            (-lower_factor_17)
+            lower_factor_27,
+            (-lower_factor_6)
                 .mul_add(
-                    lower_factor_27,
-                    (-lower_factor_6)
+                    lower_factor_20,
+                    (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_20,
-                            (-lower_composite_inertia_23)
-                                .mul_add(lower_factor_11, lower_composite_inertia_7),
+                            lower_factor_11,
+                            lower_factor_26
+                                .mul_add(upper_factor_2, lower_composite_inertia_7),
                         ),
                 ),
         );
@@ -739,7 +743,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // upper: load (3 additions, 3 multiplications)
-    let upper_load = upper_factor_2
+    let upper_load = (-upper_factor_2)
         .mul_add(
             lower_load_4,
             lower_factor_27
@@ -748,89 +752,89 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let upper_load_2 = (-upper_factor_4)
         .mul_add(
             lower_load_4,
-            (-lower_factor_29)
+            lower_factor_29
                 .mul_add(
                     lower_load_3,
-                    (-lower_factor_21)
+                    lower_factor_21
                         .mul_add(
                             lower_load,
-                            (-lower_effort_9).mul_add(lower_factor_12, upper_effort),
+                            lower_effort_9.mul_add(lower_factor_12, upper_effort),
                         ),
                 ),
         );
     // upper: response (3 additions, 6 multiplications)
-    let upper_acceleration = (n(1.0)
+    let upper_acceleration_5 = (n(1.0)
         / ((-upper_factor_3)
             .mul_add(
                 upper_factor_6,
                 (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
             ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
-    let upper_acceleration_2 = upper_factor_5
-        * (upper_factor_3.mul_add(upper_acceleration, upper_load));
-    let upper_acceleration_3 = upper_factor
+    let upper_acceleration_6 = upper_factor_5
+        * (upper_factor_3.mul_add(upper_acceleration_5, upper_load));
+    let upper_acceleration_7 = upper_factor
         * ((-lower_factor_26)
             .mul_add(
-                upper_acceleration,
-                lower_factor_25.mul_add(upper_acceleration_2, lower_load_4),
+                upper_acceleration_5,
+                (-lower_factor_25).mul_add(upper_acceleration_6, lower_load_4),
             ));
     // lower: response (12 additions, 15 multiplications)
-    let lower_acceleration_6 = lower_factor_22
+    let lower_acceleration_8 = lower_factor_22
         * ((-lower_factor_17)
             .mul_add(
-                upper_acceleration,
-                (-lower_factor_15)
+                upper_acceleration_5,
+                (-lower_factor_16)
                     .mul_add(
-                        upper_acceleration_3,
-                        lower_factor_16.mul_add(upper_acceleration_2, lower_load_3),
+                        upper_acceleration_6,
+                        lower_factor_15.mul_add(upper_acceleration_7, lower_load_3),
                     ),
             ));
-    let lower_response = (-lower_factor_5)
+    let lower_response = (-lower_factor_4)
         .mul_add(
-            upper_acceleration_2,
+            upper_acceleration_7,
             lower_factor_6
                 .mul_add(
-                    upper_acceleration,
-                    lower_factor_4
+                    upper_acceleration_5,
+                    lower_factor_5
                         .mul_add(
-                            upper_acceleration_3,
-                            lower_factor_3 * lower_acceleration_6,
+                            upper_acceleration_6,
+                            lower_factor_3 * lower_acceleration_8,
                         ),
                 ),
         );
-    let lower_acceleration_7 = lower_factor_13 * (lower_load - lower_response);
-    let lower_response_2 = (-lower_composite_inertia_24)
+    let lower_acceleration_9 = lower_factor_13 * (lower_load - lower_response);
+    let lower_response_2 = (-lower_composite_inertia_22)
         .mul_add(
-            upper_acceleration_2,
-            lower_composite_inertia_22
+            upper_acceleration_7,
+            lower_composite_inertia_24
                 .mul_add(
-                    upper_acceleration_3,
+                    upper_acceleration_6,
                     lower_composite_inertia_8
                         .mul_add(
-                            lower_acceleration_6,
-                            lower_composite_inertia_15 * lower_acceleration_7,
+                            lower_acceleration_8,
+                            lower_composite_inertia_15 * lower_acceleration_9,
                         ),
                 ),
         );
     [
-        -upper_acceleration,
-        -upper_acceleration_2,
-        -upper_acceleration_3,
-        -lower_acceleration_6,
-        lower_acceleration_7,
+        -upper_acceleration_5,
+        upper_acceleration_6,
+        upper_acceleration_7,
+        -lower_acceleration_8,
+        lower_acceleration_9,
         -(lower_factor
             * ((-lower_composite_inertia_23)
-                .mul_add(upper_acceleration, lower_effort_9 - lower_response_2))),
+                .mul_add(upper_acceleration_5, lower_effort_9 - lower_response_2))),
     ]
 }
 
 /// v̄ and p̄̇ from Q, p̄ and τ, (27), (35).
 ///
-/// Operations: 300 additions, 419 multiplications, 6 divisions, 4 function calls.
+/// Operations: 319 additions, 405 multiplications, 6 divisions, 4 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 6]; 2] {
     let n = T::from_f64;
-    // lower: joint (12 additions, 18 multiplications)
+    // lower: joint (21 additions, 9 multiplications)
     let lower_joint = q[11] * q[11];
     let lower_joint_2 = q[12] * q[12];
     let lower_joint_3 = q[9] * q[12];
@@ -840,143 +844,151 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_joint_7 = q[10] * q[10];
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
-    let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = lower_joint_3 + lower_joint_4;
-    let lower_joint_12 = lower_joint_11 * n(2.0);
-    let lower_joint_13 = lower_joint_5 - lower_joint_6;
-    let lower_joint_14 = lower_joint_13 * n(2.0);
-    let lower_joint_15 = lower_joint_3 - lower_joint_4;
-    let lower_joint_16 = lower_joint_15 * n(2.0);
-    let lower_joint_17 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_18 = lower_joint_8 + lower_joint_9;
-    let lower_joint_19 = lower_joint_18 * n(2.0);
-    let lower_joint_20 = lower_joint_5 + lower_joint_6;
-    let lower_joint_21 = lower_joint_20 * n(2.0);
-    let lower_joint_22 = lower_joint_8 - lower_joint_9;
-    let lower_joint_23 = lower_joint_22 * n(2.0);
-    let lower_joint_24 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    // lower: composite inertia (34 additions, 63 multiplications)
-    let lower_composite_inertia = lower_joint_10 * n(0.0825);
-    let lower_composite_inertia_2 = lower_joint_15 * n(0.165);
-    let lower_composite_inertia_3 = lower_joint_20 * n(0.01999999999999999);
-    let lower_composite_inertia_4 = lower_joint_15 * n(0.5);
-    let lower_composite_inertia_5 = lower_joint_10 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_21
+    let lower_joint_10 = lower_joint + lower_joint_2;
+    let lower_joint_11 = lower_joint_10 + lower_joint_10 - n(1.0);
+    let lower_joint_12 = lower_joint_3 + lower_joint_4;
+    let lower_joint_13 = lower_joint_12 + lower_joint_12;
+    let lower_joint_14 = lower_joint_5 - lower_joint_6;
+    let lower_joint_15 = lower_joint_14 + lower_joint_14;
+    let lower_joint_16 = lower_joint_3 - lower_joint_4;
+    let lower_joint_17 = lower_joint_16 + lower_joint_16;
+    let lower_joint_18 = lower_joint_2 + lower_joint_7;
+    let lower_joint_19 = lower_joint_18 + lower_joint_18 - n(1.0);
+    let lower_joint_20 = lower_joint_8 + lower_joint_9;
+    let lower_joint_21 = lower_joint_20 + lower_joint_20;
+    let lower_joint_22 = lower_joint_5 + lower_joint_6;
+    let lower_joint_23 = lower_joint_22 + lower_joint_22;
+    let lower_joint_24 = lower_joint_8 - lower_joint_9;
+    let lower_joint_25 = lower_joint_24 + lower_joint_24;
+    let lower_joint_26 = lower_joint + lower_joint_7;
+    let lower_joint_27 = lower_joint_26 + lower_joint_26 - n(1.0);
+    // lower: composite inertia (36 additions, 63 multiplications)
+    let lower_composite_inertia = lower_joint_11 * n(0.0825);
+    let lower_composite_inertia_2 = lower_joint_16 * n(0.165);
+    let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
+    let lower_composite_inertia_4 = lower_joint_16 * n(0.5);
+    let lower_composite_inertia_5 = lower_joint_11 * n(0.25);
+    let lower_composite_inertia_6 = lower_joint_23
         .mul_add(
             lower_composite_inertia_3,
-            lower_joint_16
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_10 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_7 = (-lower_joint_17)
-        .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_23
-                .mul_add(
-                    lower_composite_inertia_3,
-                    lower_joint_12 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_24)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_19)
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_14 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_9 = lower_joint_11 * n(0.165);
-    let lower_composite_inertia_10 = lower_joint_17 * n(0.0825);
-    let lower_composite_inertia_11 = lower_joint_22 * n(0.01999999999999999);
-    let lower_composite_inertia_12 = lower_joint_17 * n(0.25);
-    let lower_composite_inertia_13 = lower_joint_11 * n(0.5);
-    let lower_composite_inertia_14 = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_11,
             lower_joint_17
                 .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_12 * lower_composite_inertia_9,
+                    lower_composite_inertia_2,
+                    lower_joint_11 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_24)
+    let lower_composite_inertia_7 = (-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_2,
+            lower_joint_25
+                .mul_add(
+                    lower_composite_inertia_3,
+                    lower_joint_13 * lower_composite_inertia,
+                ),
+        );
+    let lower_composite_inertia_8 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_3,
+            (-lower_joint_21)
+                .mul_add(
+                    lower_composite_inertia_2,
+                    lower_joint_15 * lower_composite_inertia,
+                ),
+        );
+    let lower_composite_inertia_9 = lower_joint_12 * n(0.165);
+    let lower_composite_inertia_10 = lower_joint_19 * n(0.0825);
+    let lower_composite_inertia_11 = lower_joint_24 * n(0.02);
+    let lower_composite_inertia_12 = lower_joint_19 * n(0.25);
+    let lower_composite_inertia_13 = lower_joint_12 * n(0.5);
+    let lower_composite_inertia_14 = lower_joint_25
         .mul_add(
             lower_composite_inertia_11,
             lower_joint_19
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_14 * lower_composite_inertia_9,
+                    lower_joint_13 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = (-((-lower_joint_17)
+    let lower_composite_inertia_15 = (-lower_joint_27)
         .mul_add(
-            lower_composite_inertia_13,
-            lower_joint_12 * lower_composite_inertia_12,
-        )))
-        .mul_add(
-            n(0.6),
-            (-lower_joint_16)
+            lower_composite_inertia_11,
+            lower_joint_21
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_21
-                        .mul_add(
-                            lower_composite_inertia_11,
-                            lower_joint_10 * lower_composite_inertia_9,
-                        ),
+                    lower_joint_15 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_17 = lower_joint_13 * n(0.165);
-    let lower_composite_inertia_18 = lower_joint_18 * n(0.165);
-    let lower_composite_inertia_19 = lower_joint_24 * n(0.009999999999999995);
-    let lower_composite_inertia_20 = lower_joint_18 * n(0.5);
-    let lower_composite_inertia_21 = lower_joint_13 * n(0.5);
-    let lower_composite_inertia_22 = lower_joint_24
+    let lower_composite_inertia_16 = (-((-lower_joint_19)
         .mul_add(
-            lower_composite_inertia_19,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_14 * lower_composite_inertia_17,
-                ),
-        );
-    let lower_composite_inertia_23 = (-((-lower_joint_17)
-        .mul_add(
-            lower_composite_inertia_21,
-            lower_joint_12 * lower_composite_inertia_20,
+            lower_composite_inertia_13,
+            lower_joint_13 * lower_composite_inertia_12,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_21)
+            (-lower_joint_17)
                 .mul_add(
-                    lower_composite_inertia_19,
-                    (-lower_joint_16)
+                    lower_composite_inertia_10,
+                    lower_joint_23
                         .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_10 * lower_composite_inertia_17,
+                            lower_composite_inertia_11,
+                            lower_joint_11 * lower_composite_inertia_9,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_23)
+    let lower_composite_inertia_17 = lower_joint_14 * n(0.165);
+    let lower_composite_inertia_18 = lower_joint_20 * n(0.165);
+    let lower_composite_inertia_19 = lower_joint_27 * n(0.01);
+    let lower_composite_inertia_20 = lower_joint_20 * n(0.5);
+    let lower_composite_inertia_21 = lower_joint_14 * n(0.5);
+    let lower_composite_inertia_22 = lower_joint_27
         .mul_add(
             lower_composite_inertia_19,
-            (lower_joint_16
+            lower_joint_21
+                .mul_add(
+                    lower_composite_inertia_18,
+                    lower_joint_15 * lower_composite_inertia_17,
+                ),
+        );
+    let lower_composite_inertia_23 = (-((-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_21,
+            lower_joint_13 * lower_composite_inertia_20,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_23)
+                .mul_add(
+                    lower_composite_inertia_19,
+                    (-lower_joint_17)
+                        .mul_add(
+                            lower_composite_inertia_18,
+                            lower_joint_11 * lower_composite_inertia_17,
+                        ),
+                ),
+        );
+    let lower_composite_inertia_24 = (-lower_joint_25)
+        .mul_add(
+            lower_composite_inertia_19,
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_21,
-                    lower_joint_10 * lower_composite_inertia_20,
+                    lower_joint_11 * lower_composite_inertia_20,
                 ))
                 .mul_add(
                     n(0.6),
-                    lower_joint_17
+                    lower_joint_19
                         .mul_add(
                             lower_composite_inertia_18,
-                            lower_joint_12 * lower_composite_inertia_17,
+                            lower_joint_13 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
+    // upper: composite inertia (7 additions)
+    let upper_composite_inertia = lower_composite_inertia_6 - n(0.0875) - n(0.035);
+    let upper_composite_inertia_2 = lower_composite_inertia_14 - n(0.0875)
+        - n(0.005000000000000003);
+    let upper_composite_inertia_3 = lower_joint_27
+        .mul_add(n(0.3), lower_composite_inertia_22 - n(0.0875) - n(0.585));
     // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
@@ -987,10 +999,10 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (lower_joint_16
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_13,
-                    lower_joint_10 * lower_composite_inertia_12,
+                    lower_joint_11 * lower_composite_inertia_12,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_14),
         );
@@ -1000,20 +1012,20 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_8 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_7,
-            (-((-lower_joint_16)
+            (-((-lower_joint_17)
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_10 * lower_composite_inertia_4,
+                    lower_joint_11 * lower_composite_inertia_4,
                 )))
                 .mul_add(n(0.6), lower_composite_inertia_7),
         );
     let lower_factor_9 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_7,
-            (lower_joint_17
+            (lower_joint_19
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_12 * lower_composite_inertia_4,
+                    lower_joint_13 * lower_composite_inertia_4,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
@@ -1039,7 +1051,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_10,
-                    (-lower_joint_20)
+                    (-lower_joint_22)
                         .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
@@ -1053,16 +1065,16 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
     let lower_factor_23 = lower_factor_15 * lower_factor_22;
-    let lower_factor_24 = (-lower_factor_15)
+    let lower_factor_24 = lower_factor_15
         .mul_add(
             lower_factor_23,
-            (-lower_factor_4)
+            lower_factor_4
                 .mul_add(
                     lower_factor_18,
-                    (-lower_composite_inertia_22)
+                    lower_composite_inertia_22
                         .mul_add(
                             lower_factor_10,
-                            lower_composite_inertia_22 + n(0.04000000000000001),
+                            upper_composite_inertia + upper_composite_inertia_2,
                         ),
                 ),
         );
@@ -1075,38 +1087,36 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_10,
-                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                            (-lower_joint_24).mul_add(n(0.3), lower_composite_inertia_15),
                         ),
                 ),
         );
     let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
     let lower_factor_27 = lower_factor_16 * lower_factor_22;
-    let lower_factor_28 = (-lower_factor_16)
+    let lower_factor_28 = lower_factor_16
         .mul_add(
             lower_factor_27,
-            (-lower_factor_5)
+            lower_factor_5
                 .mul_add(
                     lower_factor_20,
-                    (-lower_composite_inertia_24)
+                    lower_composite_inertia_24
                         .mul_add(
                             lower_factor_11,
-                            lower_composite_inertia_14 + n(0.62)
-                                - lower_composite_inertia_25,
+                            upper_composite_inertia + upper_composite_inertia_3,
                         ),
                 ),
         );
     let lower_factor_29 = lower_factor_17 * lower_factor_22;
-    let lower_factor_30 = (-lower_factor_17)
+    let lower_factor_30 = lower_factor_17
         .mul_add(
             lower_factor_29,
-            (-lower_factor_6)
+            lower_factor_6
                 .mul_add(
                     lower_factor_21,
-                    (-lower_composite_inertia_23)
+                    lower_composite_inertia_23
                         .mul_add(
                             lower_factor_12,
-                            lower_composite_inertia_6 + n(0.59)
-                                - lower_composite_inertia_25,
+                            upper_composite_inertia_2 + upper_composite_inertia_3,
                         ),
                 ),
         );
@@ -1122,17 +1132,17 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = (-lower_factor_26)
+    let upper_factor_3 = (-lower_factor_17)
         .mul_add(
-            upper_factor_2,
-            (-lower_factor_17)
+            lower_factor_27,
+            (-lower_factor_6)
                 .mul_add(
-                    lower_factor_27,
-                    (-lower_factor_6)
+                    lower_factor_20,
+                    (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_20,
-                            (-lower_composite_inertia_23)
-                                .mul_add(lower_factor_11, lower_composite_inertia_7),
+                            lower_factor_11,
+                            lower_factor_26
+                                .mul_add(upper_factor_2, lower_composite_inertia_7),
                         ),
                 ),
         );
@@ -1141,27 +1151,24 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // upper: load (3 additions, 3 multiplications)
-    let upper_load = (-lower_factor_20)
+    let upper_load = (-upper_factor_2)
         .mul_add(
-            lower_load,
-            upper_factor_2
+            lower_load_3,
+            (-lower_factor_20)
                 .mul_add(
-                    lower_load_3,
+                    lower_load,
                     lower_factor_27
                         .mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1])),
                 ),
         );
-    let upper_load_2 = (-upper_factor_4)
+    let upper_load_2 = (-lower_factor_29)
         .mul_add(
-            lower_load_3,
-            (-lower_factor_29)
+            lower_load_2,
+            (-p[5])
                 .mul_add(
-                    lower_load_2,
-                    (-p[5])
-                        .mul_add(
-                            lower_factor_12,
-                            lower_factor_21.mul_add(lower_load, p[0]),
-                        ),
+                    lower_factor_12,
+                    upper_factor_4
+                        .mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0])),
                 ),
         );
     // upper: response (3 additions, 6 multiplications)
@@ -1170,249 +1177,251 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             .mul_add(
                 upper_factor_6,
                 (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
-            ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
+            ))) * ((-upper_factor_6).mul_add(upper_load, upper_load_2));
     let upper_speed_2 = upper_factor_5
-        * (upper_factor_3.mul_add(upper_speed, upper_load));
+        * ((-upper_factor_3).mul_add(upper_speed, upper_load));
     let upper_speed_3 = upper_factor
-        * ((-lower_factor_26)
-            .mul_add(upper_speed, lower_factor_25.mul_add(upper_speed_2, lower_load_3)));
+        * ((-lower_factor_25)
+            .mul_add(upper_speed_2, lower_factor_26.mul_add(upper_speed, lower_load_3)));
     // upper: weight (1 addition, 7 multiplications)
     let upper_weight = q[6] * n(9.81);
     let upper_weight_2 = q[7] * n(9.81);
     let upper_weight_3 = q[8] * n(9.81);
     // lower: response (12 additions, 15 multiplications)
     let lower_speed = lower_factor_22
-        * ((-lower_factor_17)
+        * ((-lower_factor_16)
             .mul_add(
-                upper_speed,
-                (-lower_factor_15)
+                upper_speed_2,
+                lower_factor_17
                     .mul_add(
-                        upper_speed_3,
-                        lower_factor_16.mul_add(upper_speed_2, lower_load_2),
+                        upper_speed,
+                        lower_factor_15.mul_add(upper_speed_3, lower_load_2),
                     ),
             ));
-    let lower_response = (-lower_factor_5)
+    let lower_response = (-lower_factor_6)
         .mul_add(
-            upper_speed_2,
-            lower_factor_6
+            upper_speed,
+            (-lower_factor_4)
                 .mul_add(
-                    upper_speed,
-                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
+                    upper_speed_3,
+                    lower_factor_5.mul_add(upper_speed_2, lower_factor_3 * lower_speed),
                 ),
         );
     let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
-    let lower_response_2 = (-lower_composite_inertia_22)
+    let lower_response_2 = (-lower_composite_inertia_24)
         .mul_add(
-            upper_speed_3,
+            upper_speed_2,
             (-lower_composite_inertia_8)
                 .mul_add(
                     lower_speed,
-                    lower_composite_inertia_24
+                    lower_composite_inertia_22
                         .mul_add(
-                            upper_speed_2,
+                            upper_speed_3,
                             lower_composite_inertia_15 * lower_speed_2,
                         ),
                 ),
         );
     let lower_speed_3 = lower_factor
-        * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_response_2));
+        * (lower_composite_inertia_23.mul_add(upper_speed, p[5] + lower_response_2));
     // lower: momentum (14 additions, 24 multiplications)
     let lower_momentum = upper_speed_2 * n(0.6);
     let lower_momentum_2 = upper_speed * n(0.6);
-    let lower_momentum_3 = lower_joint_12
-        .mul_add(lower_momentum_2, lower_joint_10 * lower_momentum);
-    let lower_momentum_4 = (-lower_joint_17)
-        .mul_add(lower_momentum_2, lower_joint_16 * lower_momentum);
-    let lower_momentum_5 = lower_joint_23
-        .mul_add(lower_momentum_2, lower_joint_21 * lower_momentum);
-    let lower_momentum_6 = (-lower_joint_12)
+    let lower_momentum_3 = lower_joint_13
+        .mul_add(lower_momentum_2, lower_joint_11 * lower_momentum);
+    let lower_momentum_4 = (-lower_joint_19)
+        .mul_add(lower_momentum_2, lower_joint_17 * lower_momentum);
+    let lower_momentum_5 = lower_joint_25
+        .mul_add(lower_momentum_2, lower_joint_23 * lower_momentum);
+    let lower_momentum_6 = (-lower_joint_15)
         .mul_add(
-            upper_speed_2,
-            (-lower_joint_12)
+            upper_speed_3,
+            (-lower_joint_11)
                 .mul_add(
-                    lower_speed_2,
-                    lower_joint_14
+                    upper_speed,
+                    (-lower_joint_13)
                         .mul_add(
-                            upper_speed_3,
-                            lower_joint_10
+                            lower_speed_2,
+                            lower_joint_13
                                 .mul_add(
-                                    upper_speed,
-                                    lower_joint_14
-                                        .mul_add(lower_speed_3, lower_joint_10 * lower_speed),
+                                    upper_speed_2,
+                                    lower_joint_15
+                                        .mul_add(lower_speed_3, lower_joint_11 * lower_speed),
                                 ),
                         ),
                 ),
         );
     let lower_momentum_7 = (-lower_joint_19)
         .mul_add(
-            upper_speed_3,
-            (-lower_joint_19)
+            upper_speed_2,
+            (-lower_joint_17)
                 .mul_add(
-                    lower_speed_3,
-                    lower_joint_17
-                        .mul_add(
-                            upper_speed_2,
-                            lower_joint_16
-                                .mul_add(
-                                    upper_speed,
-                                    lower_joint_17
-                                        .mul_add(lower_speed_2, lower_joint_16 * lower_speed),
-                                ),
-                        ),
-                ),
-        );
-    let lower_momentum_8 = (-lower_joint_24)
-        .mul_add(
-            upper_speed_3,
-            (-lower_joint_23)
-                .mul_add(
-                    upper_speed_2,
-                    (-lower_joint_24)
+                    upper_speed,
+                    (-lower_joint_21)
                         .mul_add(
                             lower_speed_3,
-                            (-lower_joint_23)
+                            lower_joint_21
                                 .mul_add(
-                                    lower_speed_2,
-                                    lower_joint_21
-                                        .mul_add(upper_speed, lower_joint_21 * lower_speed),
+                                    upper_speed_3,
+                                    lower_joint_19
+                                        .mul_add(lower_speed_2, lower_joint_17 * lower_speed),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_9 = lower_momentum_8 * n(0.009999999999999995);
-    let lower_momentum_10 = (-lower_momentum_4)
+    let lower_momentum_8 = (-lower_joint_23)
+        .mul_add(
+            upper_speed,
+            (-lower_joint_27)
+                .mul_add(
+                    lower_speed_3,
+                    (-lower_joint_25)
+                        .mul_add(
+                            lower_speed_2,
+                            lower_joint_27
+                                .mul_add(
+                                    upper_speed_3,
+                                    lower_joint_25
+                                        .mul_add(upper_speed_2, lower_joint_23 * lower_speed),
+                                ),
+                        ),
+                ),
+        );
+    let lower_momentum_9 = lower_momentum_8 * n(0.01);
+    let lower_momentum_10 = lower_momentum_4
         .mul_add(n(0.25), lower_momentum_6 * n(0.0825));
-    let lower_momentum_11 = lower_momentum_3
+    let lower_momentum_11 = (-lower_momentum_3)
         .mul_add(n(0.25), lower_momentum_7 * n(0.0825));
     let lower_momentum_12 = lower_momentum_7 * n(0.25);
     let lower_momentum_13 = lower_momentum_6 * n(0.25);
     // lower: weight (4 additions, 8 multiplications)
-    let lower_weight = ((-lower_joint_19)
+    let lower_weight = ((-lower_joint_21)
         .mul_add(
             upper_weight_3,
-            lower_joint_17.mul_add(upper_weight_2, lower_joint_16 * upper_weight),
+            lower_joint_19.mul_add(upper_weight_2, lower_joint_17 * upper_weight),
         )) * n(0.25);
-    let lower_weight_2 = ((-lower_joint_12)
+    let lower_weight_2 = ((-lower_joint_13)
         .mul_add(
             upper_weight_2,
-            lower_joint_14.mul_add(upper_weight_3, lower_joint_10 * upper_weight),
+            lower_joint_15.mul_add(upper_weight_3, lower_joint_11 * upper_weight),
         )) * n(0.25);
-    // lower: spring (48 additions, 72 multiplications, 2 function calls)
+    // lower: spring (50 additions, 70 multiplications, 2 function calls)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
     let lower_spring_2 = lower_spring[0] * n(15.0);
     let lower_spring_3 = lower_spring[1] * n(15.0);
     let lower_spring_4 = lower_spring[2] * n(15.0);
     let lower_spring_5 = q[9] * q[9];
-    let lower_spring_6 = (lower_joint_7 + lower_spring_5).mul_add(n(2.0), -n(1.0));
-    let lower_spring_7 = (lower_joint + lower_spring_5).mul_add(n(2.0), -n(1.0));
-    let lower_spring_8 = lower_joint_16
-        .mul_add(lower_spring[2], lower_joint_21 * lower_spring[1]);
-    let lower_spring_9 = (-lower_joint_21)
-        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_6);
-    let lower_spring_10 = lower_spring[1]
-        .mul_add(lower_spring_6, lower_joint_16 * lower_spring[0]);
-    let lower_spring_11 = (lower_spring[2]
+    let lower_spring_6 = lower_joint_7 + lower_spring_5;
+    let lower_spring_7 = lower_spring_6 + lower_spring_6 - n(1.0);
+    let lower_spring_8 = lower_joint + lower_spring_5;
+    let lower_spring_9 = lower_spring_8 + lower_spring_8 - n(1.0);
+    let lower_spring_10 = lower_joint_17
+        .mul_add(lower_spring[2], lower_joint_23 * lower_spring[1]);
+    let lower_spring_11 = (-lower_joint_23)
+        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
+    let lower_spring_12 = lower_spring[1]
+        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
+    let lower_spring_13 = (lower_spring[2]
         .mul_add(
             lower_spring[2],
             lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
         ))
         .dexp_inverse(0);
-    let lower_spring_12 = (-lower_spring_11)
+    let lower_spring_14 = (-lower_spring_13)
         .mul_add(
-            lower_spring[2].mul_add(lower_spring_9, lower_spring[1] * lower_spring_10),
-            lower_spring_8.mul_add(n(0.5), lower_spring_6),
+            lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
+            lower_spring_10.mul_add(n(0.5), lower_spring_7),
         );
-    let lower_spring_13 = (-lower_spring_11)
+    let lower_spring_15 = (-lower_spring_13)
         .mul_add(
-            lower_spring[0].mul_add(lower_spring_10, lower_spring[2] * lower_spring_8),
-            (-lower_spring_9).mul_add(n(0.5), lower_joint_16),
+            lower_spring[0].mul_add(lower_spring_12, lower_spring[2] * lower_spring_10),
+            (-lower_spring_11).mul_add(n(0.5), lower_joint_17),
         );
-    let lower_spring_14 = (-lower_spring_10)
+    let lower_spring_16 = (-lower_spring_12)
         .mul_add(
             n(0.5),
-            lower_spring_11
+            lower_spring_13
                 .mul_add(
                     (-lower_spring[1])
-                        .mul_add(lower_spring_8, lower_spring[0] * lower_spring_9),
-                    lower_joint_21,
+                        .mul_add(lower_spring_10, lower_spring[0] * lower_spring_11),
+                    lower_joint_23,
                 ),
         );
-    let lower_spring_15 = lower_spring[2]
-        .mul_add(lower_spring_7, lower_joint_23 * lower_spring[1]);
-    let lower_spring_16 = lower_joint_23
-        .mul_add(lower_spring[0], lower_joint_12 * lower_spring[2]);
-    let lower_spring_17 = (-lower_joint_12)
-        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_7);
-    let lower_spring_18 = (-lower_spring_15)
+    let lower_spring_17 = lower_spring[2]
+        .mul_add(lower_spring_9, lower_joint_25 * lower_spring[1]);
+    let lower_spring_18 = lower_joint_25
+        .mul_add(lower_spring[0], lower_joint_13 * lower_spring[2]);
+    let lower_spring_19 = (-lower_joint_13)
+        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_9);
+    let lower_spring_20 = (-lower_spring_17)
         .mul_add(
             n(0.5),
-            lower_spring_11
+            lower_spring_13
                 .mul_add(
                     (-lower_spring[2])
-                        .mul_add(lower_spring_16, lower_spring[1] * lower_spring_17),
-                    lower_joint_12,
+                        .mul_add(lower_spring_18, lower_spring[1] * lower_spring_19),
+                    lower_joint_13,
                 ),
         );
-    let lower_spring_19 = (-lower_spring_11)
+    let lower_spring_21 = (-lower_spring_13)
         .mul_add(
-            lower_spring[0].mul_add(lower_spring_17, lower_spring[2] * lower_spring_15),
-            lower_spring_16.mul_add(n(0.5), lower_spring_7),
+            lower_spring[0].mul_add(lower_spring_19, lower_spring[2] * lower_spring_17),
+            lower_spring_18.mul_add(n(0.5), lower_spring_9),
         );
-    let lower_spring_20 = (-lower_spring_11)
+    let lower_spring_22 = (-lower_spring_13)
         .mul_add(
-            lower_spring[1].mul_add(lower_spring_15, lower_spring[0] * lower_spring_16),
-            (-lower_spring_17).mul_add(n(0.5), lower_joint_23),
+            lower_spring[1].mul_add(lower_spring_17, lower_spring[0] * lower_spring_18),
+            (-lower_spring_19).mul_add(n(0.5), lower_joint_25),
         );
-    let lower_spring_21 = lower_joint_19
-        .mul_add(lower_spring[2], lower_joint_24 * lower_spring[1]);
-    let lower_spring_22 = (-lower_joint_24)
-        .mul_add(lower_spring[0], lower_joint_14 * lower_spring[2]);
-    let lower_spring_23 = lower_joint_14
-        .mul_add(lower_spring[1], lower_joint_19 * lower_spring[0]);
-    let lower_spring_24 = (-lower_spring_11)
+    let lower_spring_23 = lower_joint_21
+        .mul_add(lower_spring[2], lower_joint_27 * lower_spring[1]);
+    let lower_spring_24 = (-lower_joint_27)
+        .mul_add(lower_spring[0], lower_joint_15 * lower_spring[2]);
+    let lower_spring_25 = lower_joint_15
+        .mul_add(lower_spring[1], lower_joint_21 * lower_spring[0]);
+    let lower_spring_26 = (-lower_spring_13)
         .mul_add(
-            lower_spring[2].mul_add(lower_spring_22, lower_spring[1] * lower_spring_23),
-            lower_spring_21.mul_add(n(0.5), lower_joint_14),
+            lower_spring[2].mul_add(lower_spring_24, lower_spring[1] * lower_spring_25),
+            lower_spring_23.mul_add(n(0.5), lower_joint_15),
         );
-    let lower_spring_25 = (-lower_spring_11)
+    let lower_spring_27 = (-lower_spring_13)
         .mul_add(
-            lower_spring[0].mul_add(lower_spring_23, lower_spring[2] * lower_spring_21),
-            (-lower_spring_22).mul_add(n(0.5), lower_joint_19),
+            lower_spring[0].mul_add(lower_spring_25, lower_spring[2] * lower_spring_23),
+            (-lower_spring_24).mul_add(n(0.5), lower_joint_21),
         );
-    let lower_spring_26 = (-lower_spring_23)
+    let lower_spring_28 = (-lower_spring_25)
         .mul_add(
             n(0.5),
-            lower_spring_11
+            lower_spring_13
                 .mul_add(
                     (-lower_spring[1])
-                        .mul_add(lower_spring_21, lower_spring[0] * lower_spring_22),
-                    lower_joint_24,
+                        .mul_add(lower_spring_23, lower_spring[0] * lower_spring_24),
+                    lower_joint_27,
                 ),
         );
     // lower: effort (6 additions, 3 multiplications)
     let lower_effort = (-lower_spring_3)
         .mul_add(
-            lower_spring_13,
+            lower_spring_15,
             lower_speed
                 .mul_add(
                     n(0.1),
                     lower_spring_4
                         .mul_add(
-                            lower_spring_14,
-                            lower_spring_2.mul_add(lower_spring_12, -tau[3]),
+                            lower_spring_16,
+                            lower_spring_2.mul_add(lower_spring_14, -tau[3]),
                         ),
                 ),
         );
     let lower_effort_2 = (-lower_spring_4)
         .mul_add(
-            lower_spring_20,
+            lower_spring_22,
             lower_speed_2
                 .mul_add(
                     n(0.1),
                     lower_spring_3
                         .mul_add(
-                            lower_spring_19,
-                            lower_spring_2.mul_add(lower_spring_18, -tau[4]),
+                            lower_spring_21,
+                            lower_spring_2.mul_add(lower_spring_20, -tau[4]),
                         ),
                 ),
         );
@@ -1421,40 +1430,40 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             n(0.1),
             (-lower_spring_3)
                 .mul_add(
-                    lower_spring_25,
+                    lower_spring_27,
                     lower_spring_4
                         .mul_add(
-                            lower_spring_26,
-                            lower_spring_2.mul_add(lower_spring_24, tau[5]),
+                            lower_spring_28,
+                            lower_spring_2.mul_add(lower_spring_26, tau[5]),
                         ),
                 ),
         );
-    // lower: momentum rate (55 additions, 64 multiplications)
-    let lower_momentum_rate = (-lower_momentum_4)
+    // lower: momentum rate (58 additions, 61 multiplications)
+    let lower_momentum_rate = (-lower_momentum_7)
         .mul_add(
-            lower_momentum_12,
-            (-lower_momentum_3)
+            lower_momentum_10,
+            lower_momentum_4
                 .mul_add(
-                    lower_momentum_13,
-                    (-lower_momentum_7)
-                        .mul_add(lower_momentum_10, lower_momentum_6 * lower_momentum_11),
+                    lower_momentum_12,
+                    lower_momentum_3
+                        .mul_add(lower_momentum_13, lower_momentum_6 * lower_momentum_11),
                 ),
         );
-    let lower_momentum_rate_2 = (-lower_momentum_8)
+    let lower_momentum_rate_2 = (-lower_momentum_5)
         .mul_add(
-            lower_momentum_11,
-            lower_momentum_5
+            lower_momentum_13,
+            (-lower_momentum_8)
                 .mul_add(
-                    lower_momentum_13,
+                    lower_momentum_11,
                     lower_momentum_7.mul_add(lower_momentum_9, lower_weight),
                 ),
         );
-    let lower_momentum_rate_3 = (-lower_momentum_5)
+    let lower_momentum_rate_3 = (-lower_momentum_8)
         .mul_add(
-            lower_momentum_12,
-            (-lower_momentum_8)
+            lower_momentum_10,
+            lower_momentum_5
                 .mul_add(
-                    lower_momentum_10,
+                    lower_momentum_12,
                     lower_momentum_6.mul_add(lower_momentum_9, lower_weight_2),
                 ),
         );
@@ -1464,119 +1473,122 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         .mul_add(lower_momentum_9, q[9] * lower_momentum_10);
     let lower_momentum_rate_6 = q[11]
         .mul_add(lower_momentum_11, q[10] * lower_momentum_10);
-    let lower_momentum_rate_7 = (-((-q[11])
+    let lower_momentum_rate_7 = (-q[11])
         .mul_add(
             lower_momentum_rate_5,
             q[12].mul_add(lower_momentum_rate_6, q[10] * lower_momentum_rate_4),
-        )))
-        .mul_add(n(2.0), lower_momentum_9);
-    let lower_momentum_rate_8 = (-(q[11]
+        );
+    let lower_momentum_rate_8 = lower_momentum_9 - lower_momentum_rate_7
+        - lower_momentum_rate_7;
+    let lower_momentum_rate_9 = q[11]
         .mul_add(
             lower_momentum_rate_6,
             q[12].mul_add(lower_momentum_rate_5, q[9] * lower_momentum_rate_4),
-        )))
-        .mul_add(n(2.0), lower_momentum_11);
-    let lower_momentum_rate_9 = (-((-q[12])
+        );
+    let lower_momentum_rate_10 = lower_momentum_11 - lower_momentum_rate_9
+        - lower_momentum_rate_9;
+    let lower_momentum_rate_11 = (-q[12])
         .mul_add(
             lower_momentum_rate_4,
             q[10].mul_add(lower_momentum_rate_6, q[9] * lower_momentum_rate_5),
-        )))
-        .mul_add(n(2.0), lower_momentum_10);
-    let lower_momentum_rate_10 = (-lower_joint_21)
+        );
+    let lower_momentum_rate_12 = lower_momentum_10 - lower_momentum_rate_11
+        - lower_momentum_rate_11;
+    let lower_momentum_rate_13 = (-lower_joint_23)
         .mul_add(
             lower_momentum_rate,
-            (-lower_joint_10)
+            (-lower_joint_11)
                 .mul_add(
                     lower_momentum_rate_2,
                     (-lower_speed_3)
                         .mul_add(
-                            lower_momentum_rate_8,
-                            lower_joint_16
+                            lower_momentum_rate_10,
+                            lower_joint_17
                                 .mul_add(
                                     lower_momentum_rate_3,
-                                    lower_speed_2.mul_add(lower_momentum_rate_7, -lower_effort),
+                                    lower_speed_2.mul_add(lower_momentum_rate_8, -lower_effort),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_rate_11 = (-lower_joint_23)
+    let lower_momentum_rate_14 = (-lower_joint_25)
         .mul_add(
             lower_momentum_rate,
-            (-lower_joint_17)
+            (-lower_joint_19)
                 .mul_add(
                     lower_momentum_rate_3,
-                    (-lower_joint_12)
+                    (-lower_joint_13)
                         .mul_add(
                             lower_momentum_rate_2,
                             (-lower_speed_3)
                                 .mul_add(
-                                    lower_momentum_rate_9,
-                                    lower_speed.mul_add(lower_momentum_rate_7, lower_effort_2),
+                                    lower_momentum_rate_12,
+                                    lower_speed.mul_add(lower_momentum_rate_8, lower_effort_2),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_rate_12 = (-lower_joint_24)
+    let lower_momentum_rate_15 = (-lower_joint_27)
         .mul_add(
             lower_momentum_rate,
             (-lower_speed)
                 .mul_add(
-                    lower_momentum_rate_8,
-                    lower_joint_19
+                    lower_momentum_rate_10,
+                    lower_joint_21
                         .mul_add(
                             lower_momentum_rate_3,
-                            lower_joint_14
+                            lower_joint_15
                                 .mul_add(
                                     lower_momentum_rate_2,
                                     lower_speed_2
-                                        .mul_add(lower_momentum_rate_9, -lower_effort_3),
+                                        .mul_add(lower_momentum_rate_12, -lower_effort_3),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_rate_13 = (lower_joint_17
-        .mul_add(lower_momentum_13, lower_joint_12 * lower_momentum_12))
+    let lower_momentum_rate_16 = (lower_joint_19
+        .mul_add(lower_momentum_13, lower_joint_13 * lower_momentum_12))
         .mul_add(
             n(0.6),
-            lower_joint_21
+            lower_joint_23
                 .mul_add(
                     lower_momentum_9,
-                    lower_joint_16
-                        .mul_add(lower_momentum_11, lower_joint_10 * lower_momentum_10),
+                    lower_joint_17
+                        .mul_add(lower_momentum_11, lower_joint_11 * lower_momentum_10),
                 ),
         );
-    let lower_momentum_rate_14 = (-((-lower_joint_16)
-        .mul_add(lower_momentum_13, lower_joint_10 * lower_momentum_12)))
+    let lower_momentum_rate_17 = (-((-lower_joint_17)
+        .mul_add(lower_momentum_13, lower_joint_11 * lower_momentum_12)))
         .mul_add(
             n(0.6),
-            (-lower_joint_17)
-                .mul_add(
-                    lower_momentum_11,
-                    lower_joint_23
-                        .mul_add(lower_momentum_9, lower_joint_12 * lower_momentum_10),
-                ),
-        );
-    let lower_momentum_rate_15 = upper_speed_3
-        .mul_add(n(0.06), upper_speed.mul_add(n(0.59), lower_momentum_rate_13));
-    let lower_momentum_rate_16 = upper_speed_2.mul_add(n(0.62), -lower_momentum_rate_14);
-    let lower_momentum_rate_17 = (-lower_joint_24)
-        .mul_add(
-            lower_momentum_9,
             (-lower_joint_19)
                 .mul_add(
                     lower_momentum_11,
-                    lower_joint_14
+                    lower_joint_25
+                        .mul_add(lower_momentum_9, lower_joint_13 * lower_momentum_10),
+                ),
+        );
+    let lower_momentum_rate_18 = upper_speed_3
+        .mul_add(n(0.06), upper_speed.mul_add(n(0.59), -lower_momentum_rate_16));
+    let lower_momentum_rate_19 = upper_speed_2.mul_add(n(0.62), lower_momentum_rate_17);
+    let lower_momentum_rate_20 = (-lower_joint_15)
+        .mul_add(
+            lower_momentum_10,
+            lower_joint_27
+                .mul_add(
+                    lower_momentum_9,
+                    lower_joint_21
                         .mul_add(
-                            lower_momentum_10,
+                            lower_momentum_11,
                             upper_speed_3
                                 .mul_add(n(0.04000000000000001), upper_speed * n(0.06)),
                         ),
                 ),
         );
-    let lower_momentum_rate_18 = lower_joint_17
+    let lower_momentum_rate_21 = lower_joint_19
         .mul_add(
             lower_weight_2,
-            lower_joint_12
+            lower_joint_13
                 .mul_add(
                     lower_weight,
                     q[8].mul_add(n(1.9620000000000002), q[6] * n(11.772)),
@@ -1669,49 +1681,49 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     // upper: momentum rate (9 additions, 6 multiplications)
     let upper_momentum_rate = (-upper_speed_3)
         .mul_add(
-            lower_momentum_rate_16,
-            (-lower_joint_16)
+            lower_momentum_rate_19,
+            (-lower_joint_17)
                 .mul_add(
                     lower_weight_2,
                     upper_speed_2
                         .mul_add(
-                            lower_momentum_rate_17,
-                            lower_joint_10.mul_add(lower_weight, q[7] * n(11.772)),
+                            lower_momentum_rate_20,
+                            lower_joint_11.mul_add(lower_weight, q[7] * n(11.772)),
                         ),
                 ),
         );
     let upper_momentum_rate_2 = (-upper_speed_2)
         .mul_add(
-            lower_momentum_rate_15,
+            lower_momentum_rate_18,
             upper_speed
                 .mul_add(
-                    lower_momentum_rate_16,
-                    lower_joint_19
+                    lower_momentum_rate_19,
+                    lower_joint_21
                         .mul_add(
                             lower_weight_2,
-                            lower_joint_14
+                            lower_joint_15
                                 .mul_add(lower_weight, q[7] * n(1.9620000000000002)),
                         ),
                 ),
         );
     let upper_momentum_rate_3 = (-upper_speed_3)
         .mul_add(
-            lower_momentum_rate_15,
+            lower_momentum_rate_18,
             (-upper_spring_4)
                 .mul_add(
                     upper_spring_15 + upper_spring_16,
                     upper_speed
                         .mul_add(
-                            lower_momentum_rate_17,
-                            upper_spring_17 + tau[1] + lower_momentum_rate_18,
+                            lower_momentum_rate_20,
+                            upper_spring_17 + tau[1] + lower_momentum_rate_21,
                         ),
                 ),
         );
     [
         [
-            upper_speed,
-            upper_speed_2,
-            upper_speed_3,
+            -upper_speed,
+            -upper_speed_2,
+            -upper_speed_3,
             lower_speed,
             lower_speed_2,
             lower_speed_3,
@@ -1724,21 +1736,21 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ),
             upper_momentum_rate_3,
             tau[2] - upper_spring_18 - upper_momentum_rate_2,
-            lower_momentum_rate_10,
-            -lower_momentum_rate_11,
-            -lower_momentum_rate_12,
+            lower_momentum_rate_13,
+            -lower_momentum_rate_14,
+            -lower_momentum_rate_15,
         ],
     ]
 }
 
 /// H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.
 ///
-/// Operations: 149 additions, 222 multiplications, 6 divisions, 2 function calls.
+/// Operations: 163 additions, 213 multiplications, 6 divisions, 2 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let n = T::from_f64;
-    // lower: joint (12 additions, 18 multiplications)
+    // lower: joint (21 additions, 9 multiplications)
     let lower_joint = q[11] * q[11];
     let lower_joint_2 = q[12] * q[12];
     let lower_joint_3 = q[9] * q[12];
@@ -1748,143 +1760,151 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_joint_7 = q[10] * q[10];
     let lower_joint_8 = q[9] * q[10];
     let lower_joint_9 = q[11] * q[12];
-    let lower_joint_10 = (lower_joint + lower_joint_2).mul_add(n(2.0), -n(1.0));
-    let lower_joint_11 = lower_joint_3 + lower_joint_4;
-    let lower_joint_12 = lower_joint_11 * n(2.0);
-    let lower_joint_13 = lower_joint_5 - lower_joint_6;
-    let lower_joint_14 = lower_joint_13 * n(2.0);
-    let lower_joint_15 = lower_joint_3 - lower_joint_4;
-    let lower_joint_16 = lower_joint_15 * n(2.0);
-    let lower_joint_17 = (lower_joint_2 + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    let lower_joint_18 = lower_joint_8 + lower_joint_9;
-    let lower_joint_19 = lower_joint_18 * n(2.0);
-    let lower_joint_20 = lower_joint_5 + lower_joint_6;
-    let lower_joint_21 = lower_joint_20 * n(2.0);
-    let lower_joint_22 = lower_joint_8 - lower_joint_9;
-    let lower_joint_23 = lower_joint_22 * n(2.0);
-    let lower_joint_24 = (lower_joint + lower_joint_7).mul_add(n(2.0), -n(1.0));
-    // lower: composite inertia (34 additions, 66 multiplications)
-    let lower_composite_inertia = lower_joint_10 * n(0.0825);
-    let lower_composite_inertia_2 = lower_joint_15 * n(0.165);
-    let lower_composite_inertia_3 = lower_joint_20 * n(0.01999999999999999);
-    let lower_composite_inertia_4 = lower_joint_15 * n(0.5);
-    let lower_composite_inertia_5 = lower_joint_10 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_21
+    let lower_joint_10 = lower_joint + lower_joint_2;
+    let lower_joint_11 = lower_joint_10 + lower_joint_10 - n(1.0);
+    let lower_joint_12 = lower_joint_3 + lower_joint_4;
+    let lower_joint_13 = lower_joint_12 + lower_joint_12;
+    let lower_joint_14 = lower_joint_5 - lower_joint_6;
+    let lower_joint_15 = lower_joint_14 + lower_joint_14;
+    let lower_joint_16 = lower_joint_3 - lower_joint_4;
+    let lower_joint_17 = lower_joint_16 + lower_joint_16;
+    let lower_joint_18 = lower_joint_2 + lower_joint_7;
+    let lower_joint_19 = lower_joint_18 + lower_joint_18 - n(1.0);
+    let lower_joint_20 = lower_joint_8 + lower_joint_9;
+    let lower_joint_21 = lower_joint_20 + lower_joint_20;
+    let lower_joint_22 = lower_joint_5 + lower_joint_6;
+    let lower_joint_23 = lower_joint_22 + lower_joint_22;
+    let lower_joint_24 = lower_joint_8 - lower_joint_9;
+    let lower_joint_25 = lower_joint_24 + lower_joint_24;
+    let lower_joint_26 = lower_joint + lower_joint_7;
+    let lower_joint_27 = lower_joint_26 + lower_joint_26 - n(1.0);
+    // lower: composite inertia (36 additions, 66 multiplications)
+    let lower_composite_inertia = lower_joint_11 * n(0.0825);
+    let lower_composite_inertia_2 = lower_joint_16 * n(0.165);
+    let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
+    let lower_composite_inertia_4 = lower_joint_16 * n(0.5);
+    let lower_composite_inertia_5 = lower_joint_11 * n(0.25);
+    let lower_composite_inertia_6 = lower_joint_23
         .mul_add(
             lower_composite_inertia_3,
-            lower_joint_16
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_10 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_7 = (-lower_joint_17)
-        .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_23
-                .mul_add(
-                    lower_composite_inertia_3,
-                    lower_joint_12 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_24)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_19)
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_14 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_9 = lower_joint_11 * n(0.165);
-    let lower_composite_inertia_10 = lower_joint_17 * n(0.0825);
-    let lower_composite_inertia_11 = lower_joint_22 * n(0.01999999999999999);
-    let lower_composite_inertia_12 = lower_joint_17 * n(0.25);
-    let lower_composite_inertia_13 = lower_joint_11 * n(0.5);
-    let lower_composite_inertia_14 = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_11,
             lower_joint_17
                 .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_12 * lower_composite_inertia_9,
+                    lower_composite_inertia_2,
+                    lower_joint_11 * lower_composite_inertia,
                 ),
         );
-    let lower_composite_inertia_15 = (-lower_joint_24)
+    let lower_composite_inertia_7 = (-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_2,
+            lower_joint_25
+                .mul_add(
+                    lower_composite_inertia_3,
+                    lower_joint_13 * lower_composite_inertia,
+                ),
+        );
+    let lower_composite_inertia_8 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_3,
+            (-lower_joint_21)
+                .mul_add(
+                    lower_composite_inertia_2,
+                    lower_joint_15 * lower_composite_inertia,
+                ),
+        );
+    let lower_composite_inertia_9 = lower_joint_12 * n(0.165);
+    let lower_composite_inertia_10 = lower_joint_19 * n(0.0825);
+    let lower_composite_inertia_11 = lower_joint_24 * n(0.02);
+    let lower_composite_inertia_12 = lower_joint_19 * n(0.25);
+    let lower_composite_inertia_13 = lower_joint_12 * n(0.5);
+    let lower_composite_inertia_14 = lower_joint_25
         .mul_add(
             lower_composite_inertia_11,
             lower_joint_19
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_14 * lower_composite_inertia_9,
+                    lower_joint_13 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_16 = (-((-lower_joint_17)
+    let lower_composite_inertia_15 = (-lower_joint_27)
         .mul_add(
-            lower_composite_inertia_13,
-            lower_joint_12 * lower_composite_inertia_12,
-        )))
-        .mul_add(
-            n(0.6),
-            (-lower_joint_16)
+            lower_composite_inertia_11,
+            lower_joint_21
                 .mul_add(
                     lower_composite_inertia_10,
-                    lower_joint_21
-                        .mul_add(
-                            lower_composite_inertia_11,
-                            lower_joint_10 * lower_composite_inertia_9,
-                        ),
+                    lower_joint_15 * lower_composite_inertia_9,
                 ),
         );
-    let lower_composite_inertia_17 = lower_joint_13 * n(0.165);
-    let lower_composite_inertia_18 = lower_joint_18 * n(0.165);
-    let lower_composite_inertia_19 = lower_joint_24 * n(0.009999999999999995);
-    let lower_composite_inertia_20 = lower_joint_18 * n(0.5);
-    let lower_composite_inertia_21 = lower_joint_13 * n(0.5);
-    let lower_composite_inertia_22 = lower_joint_24
+    let lower_composite_inertia_16 = (-((-lower_joint_19)
         .mul_add(
-            lower_composite_inertia_19,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_14 * lower_composite_inertia_17,
-                ),
-        );
-    let lower_composite_inertia_23 = (-((-lower_joint_17)
-        .mul_add(
-            lower_composite_inertia_21,
-            lower_joint_12 * lower_composite_inertia_20,
+            lower_composite_inertia_13,
+            lower_joint_13 * lower_composite_inertia_12,
         )))
         .mul_add(
             n(0.6),
-            (-lower_joint_21)
+            (-lower_joint_17)
                 .mul_add(
-                    lower_composite_inertia_19,
-                    (-lower_joint_16)
+                    lower_composite_inertia_10,
+                    lower_joint_23
                         .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_10 * lower_composite_inertia_17,
+                            lower_composite_inertia_11,
+                            lower_joint_11 * lower_composite_inertia_9,
                         ),
                 ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_23)
+    let lower_composite_inertia_17 = lower_joint_14 * n(0.165);
+    let lower_composite_inertia_18 = lower_joint_20 * n(0.165);
+    let lower_composite_inertia_19 = lower_joint_27 * n(0.01);
+    let lower_composite_inertia_20 = lower_joint_20 * n(0.5);
+    let lower_composite_inertia_21 = lower_joint_14 * n(0.5);
+    let lower_composite_inertia_22 = lower_joint_27
         .mul_add(
             lower_composite_inertia_19,
-            (lower_joint_16
+            lower_joint_21
+                .mul_add(
+                    lower_composite_inertia_18,
+                    lower_joint_15 * lower_composite_inertia_17,
+                ),
+        );
+    let lower_composite_inertia_23 = (-((-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_21,
+            lower_joint_13 * lower_composite_inertia_20,
+        )))
+        .mul_add(
+            n(0.6),
+            (-lower_joint_23)
+                .mul_add(
+                    lower_composite_inertia_19,
+                    (-lower_joint_17)
+                        .mul_add(
+                            lower_composite_inertia_18,
+                            lower_joint_11 * lower_composite_inertia_17,
+                        ),
+                ),
+        );
+    let lower_composite_inertia_24 = (-lower_joint_25)
+        .mul_add(
+            lower_composite_inertia_19,
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_21,
-                    lower_joint_10 * lower_composite_inertia_20,
+                    lower_joint_11 * lower_composite_inertia_20,
                 ))
                 .mul_add(
                     n(0.6),
-                    lower_joint_17
+                    lower_joint_19
                         .mul_add(
                             lower_composite_inertia_18,
-                            lower_joint_12 * lower_composite_inertia_17,
+                            lower_joint_13 * lower_composite_inertia_17,
                         ),
                 ),
         );
-    let lower_composite_inertia_25 = lower_joint_24 * n(0.3);
+    // upper: composite inertia (9 additions)
+    let upper_composite_inertia = lower_composite_inertia_6 - n(0.0875) - n(0.035);
+    let upper_composite_inertia_2 = lower_composite_inertia_14 - n(0.0875)
+        - n(0.005000000000000003);
+    let upper_composite_inertia_3 = lower_joint_27
+        .mul_add(n(0.3), lower_composite_inertia_22 - n(0.0875) - n(0.585));
     // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
@@ -1895,10 +1915,10 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_5 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_2,
-            (lower_joint_16
+            (lower_joint_17
                 .mul_add(
                     lower_composite_inertia_13,
-                    lower_joint_10 * lower_composite_inertia_12,
+                    lower_joint_11 * lower_composite_inertia_12,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_14),
         );
@@ -1908,20 +1928,20 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_8 = (-lower_composite_inertia_24)
         .mul_add(
             lower_factor_7,
-            (-((-lower_joint_16)
+            (-((-lower_joint_17)
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_10 * lower_composite_inertia_4,
+                    lower_joint_11 * lower_composite_inertia_4,
                 )))
                 .mul_add(n(0.6), lower_composite_inertia_7),
         );
     let lower_factor_9 = (-lower_composite_inertia_23)
         .mul_add(
             lower_factor_7,
-            (lower_joint_17
+            (lower_joint_19
                 .mul_add(
                     lower_composite_inertia_5,
-                    lower_joint_12 * lower_composite_inertia_4,
+                    lower_joint_13 * lower_composite_inertia_4,
                 ))
                 .mul_add(n(0.6), lower_composite_inertia_6),
         );
@@ -1947,7 +1967,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
             (-lower_composite_inertia_23)
                 .mul_add(
                     lower_factor_10,
-                    (-lower_joint_20)
+                    (-lower_joint_22)
                         .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
                 ),
         );
@@ -1961,16 +1981,16 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
     let lower_factor_23 = lower_factor_15 * lower_factor_22;
-    let lower_factor_24 = (-lower_factor_15)
+    let lower_factor_24 = lower_factor_15
         .mul_add(
             lower_factor_23,
-            (-lower_factor_4)
+            lower_factor_4
                 .mul_add(
                     lower_factor_18,
-                    (-lower_composite_inertia_22)
+                    lower_composite_inertia_22
                         .mul_add(
                             lower_factor_10,
-                            lower_composite_inertia_22 + n(0.04000000000000001),
+                            upper_composite_inertia + upper_composite_inertia_2,
                         ),
                 ),
         );
@@ -1983,38 +2003,36 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_10,
-                            (-lower_joint_22).mul_add(n(0.3), lower_composite_inertia_15),
+                            (-lower_joint_24).mul_add(n(0.3), lower_composite_inertia_15),
                         ),
                 ),
         );
     let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
     let lower_factor_27 = lower_factor_16 * lower_factor_22;
-    let lower_factor_28 = (-lower_factor_16)
+    let lower_factor_28 = lower_factor_16
         .mul_add(
             lower_factor_27,
-            (-lower_factor_5)
+            lower_factor_5
                 .mul_add(
                     lower_factor_20,
-                    (-lower_composite_inertia_24)
+                    lower_composite_inertia_24
                         .mul_add(
                             lower_factor_11,
-                            lower_composite_inertia_14 + n(0.62)
-                                - lower_composite_inertia_25,
+                            upper_composite_inertia + upper_composite_inertia_3,
                         ),
                 ),
         );
     let lower_factor_29 = lower_factor_17 * lower_factor_22;
-    let lower_factor_30 = (-lower_factor_17)
+    let lower_factor_30 = lower_factor_17
         .mul_add(
             lower_factor_29,
-            (-lower_factor_6)
+            lower_factor_6
                 .mul_add(
                     lower_factor_21,
-                    (-lower_composite_inertia_23)
+                    lower_composite_inertia_23
                         .mul_add(
                             lower_factor_12,
-                            lower_composite_inertia_6 + n(0.59)
-                                - lower_composite_inertia_25,
+                            upper_composite_inertia_2 + upper_composite_inertia_3,
                         ),
                 ),
         );
@@ -2030,17 +2048,17 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = (-lower_factor_26)
+    let upper_factor_3 = (-lower_factor_17)
         .mul_add(
-            upper_factor_2,
-            (-lower_factor_17)
+            lower_factor_27,
+            (-lower_factor_6)
                 .mul_add(
-                    lower_factor_27,
-                    (-lower_factor_6)
+                    lower_factor_20,
+                    (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_20,
-                            (-lower_composite_inertia_23)
-                                .mul_add(lower_factor_11, lower_composite_inertia_7),
+                            lower_factor_11,
+                            lower_factor_26
+                                .mul_add(upper_factor_2, lower_composite_inertia_7),
                         ),
                 ),
         );
@@ -2049,27 +2067,24 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // upper: load (3 additions, 3 multiplications)
-    let upper_load = (-lower_factor_20)
+    let upper_load = (-upper_factor_2)
         .mul_add(
-            lower_load,
-            upper_factor_2
+            lower_load_3,
+            (-lower_factor_20)
                 .mul_add(
-                    lower_load_3,
+                    lower_load,
                     lower_factor_27
                         .mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1])),
                 ),
         );
-    let upper_load_2 = (-upper_factor_4)
+    let upper_load_2 = (-lower_factor_29)
         .mul_add(
-            lower_load_3,
-            (-lower_factor_29)
+            lower_load_2,
+            (-p[5])
                 .mul_add(
-                    lower_load_2,
-                    (-p[5])
-                        .mul_add(
-                            lower_factor_12,
-                            lower_factor_21.mul_add(lower_load, p[0]),
-                        ),
+                    lower_factor_12,
+                    upper_factor_4
+                        .mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0])),
                 ),
         );
     // upper: response (3 additions, 6 multiplications)
@@ -2078,12 +2093,12 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
             .mul_add(
                 upper_factor_6,
                 (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
-            ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
+            ))) * ((-upper_factor_6).mul_add(upper_load, upper_load_2));
     let upper_speed_2 = upper_factor_5
-        * (upper_factor_3.mul_add(upper_speed, upper_load));
+        * ((-upper_factor_3).mul_add(upper_speed, upper_load));
     let upper_speed_3 = upper_factor
-        * ((-lower_factor_26)
-            .mul_add(upper_speed, lower_factor_25.mul_add(upper_speed_2, lower_load_3)));
+        * ((-lower_factor_25)
+            .mul_add(upper_speed_2, lower_factor_26.mul_add(upper_speed, lower_load_3)));
     // upper: spring (20 additions, 34 multiplications, 1 function call)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
@@ -2145,49 +2160,49 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         );
     // lower: response (17 additions, 22 multiplications)
     let lower_speed = lower_factor_22
-        * ((-lower_factor_17)
+        * ((-lower_factor_16)
             .mul_add(
-                upper_speed,
-                (-lower_factor_15)
+                upper_speed_2,
+                lower_factor_17
                     .mul_add(
-                        upper_speed_3,
-                        lower_factor_16.mul_add(upper_speed_2, lower_load_2),
+                        upper_speed,
+                        lower_factor_15.mul_add(upper_speed_3, lower_load_2),
                     ),
             ));
-    let lower_response = (-lower_factor_5)
+    let lower_response = (-lower_factor_6)
         .mul_add(
-            upper_speed_2,
-            lower_factor_6
+            upper_speed,
+            (-lower_factor_4)
                 .mul_add(
-                    upper_speed,
-                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
+                    upper_speed_3,
+                    lower_factor_5.mul_add(upper_speed_2, lower_factor_3 * lower_speed),
                 ),
         );
     let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
-    let lower_response_2 = (-lower_composite_inertia_22)
+    let lower_response_2 = (-lower_composite_inertia_24)
         .mul_add(
-            upper_speed_3,
+            upper_speed_2,
             (-lower_composite_inertia_8)
                 .mul_add(
                     lower_speed,
-                    lower_composite_inertia_24
+                    lower_composite_inertia_22
                         .mul_add(
-                            upper_speed_2,
+                            upper_speed_3,
                             lower_composite_inertia_15 * lower_speed_2,
                         ),
                 ),
         );
-    let lower_response_3 = p[3]
+    let lower_response_3 = (-p[3])
         .mul_add(
             lower_speed,
             p[2].mul_add(upper_speed_3, p[1].mul_add(upper_speed_2, p[0] * upper_speed)),
         );
-    let lower_response_4 = p[5]
+    let lower_response_4 = (-p[5])
         .mul_add(
             lower_factor
-                * ((-lower_composite_inertia_23)
+                * (lower_composite_inertia_23
                     .mul_add(upper_speed, p[5] + lower_response_2)),
-            p[4].mul_add(lower_speed_2, lower_response_3),
+            (-p[4]).mul_add(lower_speed_2, lower_response_3),
         );
     // lower: spring (3 additions, 7 multiplications, 1 function call)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
@@ -2203,21 +2218,21 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     // upper: first moment (4 additions, 4 multiplications)
     let upper_first_moment = (-q[8])
         .mul_add(
-            lower_joint_24.mul_add(n(0.25), -n(1.2)),
+            lower_joint_27.mul_add(n(0.25), -n(1.2)),
             (-q[7])
                 .mul_add(
-                    lower_joint_22 * n(0.5),
-                    q[6] * (lower_joint_20.mul_add(n(0.5), -n(0.2))),
+                    lower_joint_24 * n(0.5),
+                    q[6] * (lower_joint_22.mul_add(n(0.5), -n(0.2))),
                 ),
         );
-    let upper_first_moment_2 = (-upper_first_moment)
+    let upper_first_moment_2 = (-lower_spring_2)
         .mul_add(
-            n(9.81),
-            lower_spring_2
+            n(0.5),
+            (-upper_spring_2)
                 .mul_add(
                     n(0.5),
-                    upper_spring_2.mul_add(n(0.5), lower_response_4 * n(0.5)),
+                    upper_first_moment.mul_add(n(9.81), lower_response_4 * n(0.5)),
                 ),
         );
-    [upper_first_moment_2]
+    [-upper_first_moment_2]
 }

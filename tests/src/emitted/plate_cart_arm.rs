@@ -130,7 +130,7 @@ impl ::hamel::compiled::OfState<16, 6, 6> for InverseDynamics {
 
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
-/// Operations: 248 additions, 333 multiplications, 6 divisions.
+/// Operations: 272 additions, 339 multiplications, 6 divisions.
 #[inline(always)]
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
@@ -151,17 +151,21 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
     let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // plate: acceleration (1 multiplication)
     let plate_acceleration = v[0] * v[0];
-    // cart: acceleration (4 additions, 10 multiplications)
-    let cart_acceleration = q[3] * plate_acceleration;
-    let cart_acceleration_2 = q[6] * plate_acceleration;
-    let cart_acceleration_3 = q[4]
-        .mul_add(cart_acceleration_2, q[1] * cart_acceleration);
-    let cart_acceleration_4 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_5 = (-q[5])
+    // cart: acceleration (5 additions, 9 multiplications)
+    let cart_acceleration = v[0] * v[2];
+    let cart_acceleration_2 = q[3] * plate_acceleration;
+    let cart_acceleration_3 = q[6] * plate_acceleration;
+    let cart_acceleration_4 = q[4]
+        .mul_add(cart_acceleration_3, q[1] * cart_acceleration_2);
+    let cart_acceleration_5 = cart_rate_z * cart_rate_z;
+    let cart_acceleration_6 = (-q[5])
         .mul_add(
-            cart_acceleration_2,
+            cart_acceleration_3,
             (-q[2])
-                .mul_add(cart_acceleration, v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0))),
+                .mul_add(
+                    cart_acceleration_2,
+                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
+                ),
         );
     // end_effector: acceleration (20 additions, 23 multiplications)
     let end_effector_acceleration = (-end_effector_joint_2)
@@ -179,10 +183,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_angular_velocity_2,
             end_effector_joint_2 * end_effector_angular_velocity,
         );
-    let end_effector_acceleration_4 = cart_acceleration_4
-        .mul_add(n(0.15), cart_acceleration_3);
-    let end_effector_acceleration_5 = cart_acceleration_4
-        .mul_add(n(0.02), cart_acceleration_5);
+    let end_effector_acceleration_4 = cart_acceleration_5
+        .mul_add(n(0.15), cart_acceleration_4);
+    let end_effector_acceleration_5 = cart_acceleration_5
+        .mul_add(n(0.02), cart_acceleration_6);
     let end_effector_acceleration_6 = (-q[13])
         .mul_add(
             n(9.81),
@@ -207,38 +211,60 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
     let end_effector_acceleration_12 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_13 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_14 = end_effector_rate_z * end_effector_rate_z;
-    // end_effector: force (30 additions, 39 multiplications)
-    let end_effector_force = (-end_effector_rate_z)
+    let end_effector_acceleration_15 = end_effector_acceleration_3
+        + end_effector_acceleration_10;
+    let end_effector_acceleration_16 = end_effector_acceleration_2
+        - end_effector_acceleration_11;
+    let end_effector_acceleration_17 = end_effector_acceleration_3
+        - end_effector_acceleration_10;
+    let end_effector_acceleration_18 = end_effector_acceleration
+        + end_effector_acceleration_13;
+    let end_effector_acceleration_19 = end_effector_acceleration_2
+        + end_effector_acceleration_11;
+    let end_effector_acceleration_20 = end_effector_acceleration
+        - end_effector_acceleration_13;
+    // end_effector: force (27 additions, 30 multiplications)
+    let end_effector_force = (-end_effector_acceleration_13)
         .mul_add(
-            n(0.027499999999999997),
-            end_effector_rate_y.mul_add(n(0.0078), end_effector_rate_x * n(0.19388)),
-        );
-    let end_effector_force_2 = end_effector_rate_z
-        .mul_add(
-            n(0.042300000000000004),
-            end_effector_rate_y.mul_add(n(0.18225), end_effector_rate_x * n(0.0078)),
-        );
-    let end_effector_force_3 = (-end_effector_rate_z)
-        .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_rate_y)
+            n(0.15511999999999998),
+            (end_effector_acceleration_12 - end_effector_acceleration_14)
                 .mul_add(
                     n(0.042300000000000004),
-                    end_effector_rate_x * n(0.027499999999999997),
+                    end_effector_acceleration_16
+                        .mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
                 ),
         );
-    let end_effector_force_4 = (-end_effector_acceleration_3)
+    let end_effector_force_2 = (end_effector_acceleration_9
+        - end_effector_acceleration_14)
+        .mul_add(
+            n(0.027499999999999997),
+            end_effector_acceleration_17
+                .mul_add(
+                    n(0.042300000000000004),
+                    end_effector_acceleration_11
+                        .mul_add(
+                            n(0.16674999999999998),
+                            end_effector_acceleration_2 * n(0.18225),
+                        ),
+                ),
+        );
+    let end_effector_force_3 = (-end_effector_acceleration_20)
+        .mul_add(
+            n(0.027499999999999997),
+            (-end_effector_acceleration_10)
+                .mul_add(
+                    n(0.01163),
+                    (end_effector_acceleration_9 - end_effector_acceleration_12)
+                        .mul_add(n(0.0078), end_effector_acceleration_3 * n(0.02713)),
+                ),
+        );
+    let end_effector_force_4 = (-end_effector_acceleration_15)
         .mul_add(
             n(0.027499999999999997),
             end_effector_acceleration_7
                 .mul_add(
                     n(0.51),
-                    end_effector_acceleration_8
-                        .mul_add(
-                            n(0.136),
-                            end_effector_acceleration_2
-                                .mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
-                        ),
+                    end_effector_acceleration_8.mul_add(n(0.136), end_effector_force),
                 ),
         );
     let end_effector_force_5 = (-end_effector_acceleration_6)
@@ -247,109 +273,90 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_acceleration_8
                 .mul_add(
                     n(0.085),
-                    end_effector_acceleration_3
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_acceleration_2
-                                .mul_add(n(0.18225), end_effector_acceleration * n(0.0078)),
-                        ),
+                    end_effector_acceleration_18.mul_add(n(0.0078), end_effector_force_2),
                 ),
         );
-    let end_effector_force_6 = (-end_effector_acceleration_3)
+    let end_effector_force_6 = (-end_effector_acceleration_6)
         .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_acceleration_2)
+            n(0.136),
+            (-end_effector_acceleration_7)
                 .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_6
-                        .mul_add(
-                            n(0.136),
-                            end_effector_acceleration_7
-                                .mul_add(
-                                    n(0.085),
-                                    end_effector_acceleration * n(0.027499999999999997),
-                                ),
-                        ),
+                    n(0.085),
+                    end_effector_acceleration_19
+                        .mul_add(n(0.042300000000000004), end_effector_force_3),
                 ),
         );
-    let end_effector_force_7 = end_effector_rate_z
-        .mul_add(
-            end_effector_force_2,
-            end_effector_rate_y.mul_add(end_effector_force_3, -end_effector_force_4),
-        );
-    let end_effector_force_8 = end_effector_rate_x
-        .mul_add(
-            end_effector_force_3,
-            end_effector_rate_z.mul_add(end_effector_force, end_effector_force_5),
-        );
-    let end_effector_force_9 = (-end_effector_rate_y)
-        .mul_add(
-            end_effector_force,
-            end_effector_rate_x.mul_add(end_effector_force_2, -end_effector_force_6),
-        );
-    let end_effector_force_10 = (-(end_effector_acceleration_2
-        + end_effector_acceleration_11))
+    let end_effector_force_7 = (-end_effector_acceleration_19)
         .mul_add(
             n(0.51),
-            (-(end_effector_acceleration_3 - end_effector_acceleration_10))
+            (-end_effector_acceleration_17)
                 .mul_add(
                     n(0.136),
                     (end_effector_acceleration_12 + end_effector_acceleration_14)
                         * n(0.085),
                 ),
         );
-    let end_effector_force_11 = (-(end_effector_acceleration
-        - end_effector_acceleration_13))
+    let end_effector_force_8 = (-end_effector_acceleration_20)
         .mul_add(
             n(0.51),
             (end_effector_acceleration_9 + end_effector_acceleration_14)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_3 + end_effector_acceleration_10)
-                        * n(0.085),
-                ),
+                .mul_add(n(0.136), end_effector_acceleration_15 * n(0.085)),
         );
-    let end_effector_force_12 = (end_effector_acceleration_9
+    let end_effector_force_9 = (end_effector_acceleration_9
         + end_effector_acceleration_12)
         .mul_add(
             n(0.51),
-            (end_effector_acceleration + end_effector_acceleration_13)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_2 - end_effector_acceleration_11)
-                        * n(0.085),
-                ),
+            end_effector_acceleration_18
+                .mul_add(n(0.136), end_effector_acceleration_16 * n(0.085)),
         );
     // end_effector: effort (12 additions, 17 multiplications)
-    let end_effector_effort = (-q[15])
+    let end_effector_effort = q[15]
         .mul_add(
-            end_effector_force_9,
-            (-q[14]).mul_add(end_effector_force_8, q[13] * end_effector_force_7),
+            end_effector_force_6,
+            q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4),
         );
     let end_effector_effort_2 = (-q[8])
         .mul_add(
-            end_effector_force_11,
-            q[9].mul_add(end_effector_force_12, q[7] * end_effector_force_10),
+            end_effector_force_8,
+            q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7),
         );
     let end_effector_effort_3 = (-q[11])
         .mul_add(
-            end_effector_force_11,
-            q[12].mul_add(end_effector_force_12, q[10] * end_effector_force_10),
+            end_effector_force_8,
+            q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7),
         );
-    // end_effector: composite inertia (75 additions, 113 multiplications)
+    // end_effector: composite inertia (83 additions, 119 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
         .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
     let end_effector_composite_inertia_3 = (-q[9])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
         );
     let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[15])
+    let end_effector_composite_inertia_7 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[7] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_8 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[10] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_9 = (-q[15])
         .mul_add(
             end_effector_composite_inertia_3,
             q[14]
@@ -358,7 +365,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                     q[13] * end_effector_composite_inertia,
                 ),
         );
-    let end_effector_composite_inertia_8 = (-q[9])
+    let end_effector_composite_inertia_10 = (-q[9])
         .mul_add(
             end_effector_composite_inertia_6,
             q[8]
@@ -367,7 +374,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                     q[7] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_9 = (-q[12])
+    let end_effector_composite_inertia_11 = (-q[12])
         .mul_add(
             end_effector_composite_inertia_6,
             q[11]
@@ -376,89 +383,98 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                     q[10] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_10 = end_effector_composite_inertia_8
+    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_9
-                .mul_add(n(0.15), end_effector_composite_inertia_7),
+            end_effector_composite_inertia_11
+                .mul_add(n(0.15), end_effector_composite_inertia_9),
         );
-    let end_effector_composite_inertia_11 = (-q[6])
+    let end_effector_composite_inertia_13 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_9,
-                    q[1] * end_effector_composite_inertia_8,
+                    end_effector_composite_inertia_11,
+                    q[1] * end_effector_composite_inertia_10,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_9,
-                        q[4] * end_effector_composite_inertia_8,
+                        end_effector_composite_inertia_11,
+                        q[4] * end_effector_composite_inertia_10,
                     )),
         );
-    let end_effector_composite_inertia_12 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_13 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
     let end_effector_composite_inertia_14 = (-q[12])
+        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
+    let end_effector_composite_inertia_15 = q[12]
+        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
+    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
         );
-    let end_effector_composite_inertia_15 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_16 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_17 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_18 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_14,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_13,
-                    q[13] * end_effector_composite_inertia_12,
-                ),
-        );
-    let end_effector_composite_inertia_19 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_17,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[7] * end_effector_composite_inertia_15,
-                ),
-        );
+    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
     let end_effector_composite_inertia_20 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_17,
+            end_effector_composite_inertia_16,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[10] * end_effector_composite_inertia_15,
+                    end_effector_composite_inertia_15,
+                    q[10] * end_effector_composite_inertia_14,
                 ),
         );
-    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
+    let end_effector_composite_inertia_21 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_16,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_15,
+                    q[13] * end_effector_composite_inertia_14,
+                ),
+        );
+    let end_effector_composite_inertia_22 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[7] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_23 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[10] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_20
-                .mul_add(n(0.15), end_effector_composite_inertia_18),
+            end_effector_composite_inertia_23
+                .mul_add(n(0.15), end_effector_composite_inertia_21),
         );
-    let end_effector_composite_inertia_22 = (-q[6])
+    let end_effector_composite_inertia_25 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_20,
-                    q[1] * end_effector_composite_inertia_19,
+                    end_effector_composite_inertia_23,
+                    q[1] * end_effector_composite_inertia_22,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_20,
-                        q[4] * end_effector_composite_inertia_19,
+                        end_effector_composite_inertia_23,
+                        q[4] * end_effector_composite_inertia_22,
                     )),
         );
-    let end_effector_composite_inertia_23 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_24 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_25 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_26 = q[14]
+    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_29 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -472,63 +488,66 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_27 = (-q[15])
+    let end_effector_composite_inertia_30 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
-                    n(0.027130000000000015),
+                    n(0.02713),
                     (-q[14])
                         .mul_add(
                             n(0.042300000000000004),
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_26,
+            end_effector_composite_inertia_29,
         );
-    let end_effector_composite_inertia_28 = (-q[9])
+    let end_effector_composite_inertia_31 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[7] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[7] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_29 = (-q[12])
+    let end_effector_composite_inertia_32 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[10] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[10] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
+    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_29
-                .mul_add(n(0.15), end_effector_composite_inertia_27),
+            end_effector_composite_inertia_32
+                .mul_add(n(0.15), end_effector_composite_inertia_30),
         );
-    let end_effector_composite_inertia_31 = (-q[6])
+    let end_effector_composite_inertia_34 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_29,
-                    q[1] * end_effector_composite_inertia_28,
+                    end_effector_composite_inertia_32,
+                    q[1] * end_effector_composite_inertia_31,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_29,
-                        q[4] * end_effector_composite_inertia_28,
+                        end_effector_composite_inertia_32,
+                        q[4] * end_effector_composite_inertia_31,
                     )),
         );
-    let end_effector_composite_inertia_32 = end_effector_composite_inertia_30
-        + end_effector_composite_inertia_31;
-    let end_effector_composite_inertia_33 = (-q[8])
+    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
+        + end_effector_composite_inertia_34;
+    let end_effector_composite_inertia_36 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_34 = (-q[11])
+    let end_effector_composite_inertia_37 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+    let end_effector_composite_inertia_38 = (-((-q[14])
+        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
+        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
     // cart: effort (7 additions, 6 multiplications)
     let cart_effort = (-end_effector_effort_2)
         .mul_add(
@@ -536,368 +555,368 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             (-end_effector_effort_3)
                 .mul_add(
                     n(0.15),
-                    cart_acceleration_3
+                    cart_acceleration_4
                         .mul_add(
                             n(0.046),
-                            cart_acceleration_5.mul_add(n(0.495), -end_effector_effort),
+                            cart_acceleration_6.mul_add(n(0.495), end_effector_effort),
                         ),
                 ),
         );
-    let cart_effort_2 = cart_acceleration_4
-        .mul_add(n(0.495), cart_acceleration_3.mul_add(n(5.7), end_effector_effort_2));
-    let cart_effort_3 = (-cart_acceleration_4)
-        .mul_add(n(0.046), cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_3));
+    let cart_effort_2 = cart_acceleration_5
+        .mul_add(n(0.495), cart_acceleration_4.mul_add(n(5.7), end_effector_effort_2));
+    let cart_effort_3 = (-cart_acceleration_5)
+        .mul_add(n(0.046), cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3));
     let cart_effort_4 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
             q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
-    // cart: composite inertia (15 additions, 20 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
+    // cart: composite inertia (31 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
+        .mul_add(
+            n(0.3),
+            end_effector_composite_inertia_7 - n(0.20162999999999998)
+                - n(0.12764999999999999),
+        );
+    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+        .mul_add(
+            n(0.15),
+            end_effector_composite_inertia_36
+                .mul_add(
+                    n(0.02),
+                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                ),
+        );
+    let cart_composite_inertia_5 = end_effector_composite_inertia_37
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_33
-                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
+            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
         );
-    let cart_composite_inertia_4 = (-q[6])
+    let cart_composite_inertia_6 = end_effector_composite_inertia_38
+        + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = end_effector_composite_inertia_38
+        + cart_composite_inertia_3;
+    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_9 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_5 = (q[3]
+    let cart_composite_inertia_10 = (-q[2])
+        .mul_add(
+            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[1]
+                * ((-q[2])
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_11 = (-q[5])
+        .mul_add(
+            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[4]
+                * ((-q[5])
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_12 = end_effector_composite_inertia_38
+        + cart_composite_inertia_8;
+    let cart_composite_inertia_13 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] * n(2.0));
-    let cart_composite_inertia_6 = (q[6]
+        )) * (q[3] + q[3]);
+    let cart_composite_inertia_14 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] * n(2.0));
+        )) * (q[6] + q[6]);
+    // plate: composite inertia (3 additions)
+    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
+        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
+        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: effort (3 additions)
-    let end_effector_effort_4 = end_effector_effort + tau[6];
+    let end_effector_effort_4 = end_effector_effort - tau[6];
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
-    let end_effector_factor_2 = end_effector_composite_inertia_18 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_18)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
+    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
+    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
+    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
         .mul_add(
             end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_13,
-                            q[10] * end_effector_composite_inertia_12,
-                        ),
-                ),
+            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
         );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[10] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_5 = (-end_effector_composite_inertia_28)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_19);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_30)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_21);
-    let end_effector_factor_7 = (-end_effector_composite_inertia_32)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_21 + end_effector_composite_inertia_22,
-        );
-    let end_effector_factor_8 = end_effector_composite_inertia_7 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[7] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_10 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
+    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
+    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
+    let end_effector_factor_9 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_32
+            end_effector_composite_inertia_35
                 .mul_add(
-                    end_effector_factor_10,
+                    end_effector_factor_8,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_12 = end_effector_composite_inertia_30 * end_effector_factor;
-    let end_effector_factor_13 = end_effector_composite_inertia_32 * end_effector_factor;
-    let end_effector_factor_14 = n(1.0) / end_effector_factor_3;
-    let end_effector_factor_15 = end_effector_factor_4 * end_effector_factor_14;
-    let end_effector_factor_16 = (-end_effector_factor_5)
+    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
+    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
+    let end_effector_factor_12 = n(1.0)
+        / ((-end_effector_composite_inertia_21)
+            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
+    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
+    let end_effector_factor_14 = (-end_effector_factor_4)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_28)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_8),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_31)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
         );
-    let end_effector_factor_17 = (-end_effector_factor_6)
+    let end_effector_factor_15 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_30)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_10),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_33)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
         );
-    let end_effector_factor_18 = (-end_effector_factor_7)
+    let end_effector_factor_16 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_35)
                 .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_10 + end_effector_composite_inertia_11,
+                    end_effector_factor_7,
+                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
                 ),
         );
-    let end_effector_factor_19 = end_effector_factor_5 * end_effector_factor_14;
-    let end_effector_factor_20 = end_effector_factor_6 * end_effector_factor_14;
-    let end_effector_factor_21 = end_effector_factor_7 * end_effector_factor_14;
-    let end_effector_factor_22 = (-end_effector_factor_7)
+    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
+    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
+    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
+    let end_effector_factor_20 = n(1.0)
+        / ((-end_effector_factor_3)
+            .mul_add(
+                end_effector_factor_13,
+                (-end_effector_composite_inertia_9)
+                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
+            ));
+    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
+    let end_effector_factor_22 = end_effector_factor_15
         .mul_add(
             end_effector_factor_21,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_5
                 .mul_add(
-                    end_effector_factor_13,
-                    cart_composite_inertia_3 + cart_composite_inertia_5
-                        + cart_composite_inertia_6 + n(2.05),
+                    end_effector_factor_17,
+                    end_effector_composite_inertia_33
+                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_15, end_effector_factor_9));
-    let end_effector_factor_24 = end_effector_factor_16 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_17
+    let end_effector_factor_23 = end_effector_factor_16
+        .mul_add(
+            end_effector_factor_21,
+            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
+        );
+    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
+    let end_effector_factor_25 = end_effector_factor_16
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_19,
-                    end_effector_composite_inertia_30
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_26 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_19, end_effector_factor_11),
-        );
-    let end_effector_factor_27 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_32)
+                    end_effector_factor_18,
+                    end_effector_composite_inertia_35
                         .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_3 - cart_composite_inertia_4,
+                            end_effector_factor_10,
+                            cart_composite_inertia_8 + cart_composite_inertia_9,
                         ),
                 ),
         );
-    let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-end_effector_effort_4)
         .mul_add(
             end_effector_factor_2,
-            (-q[12])
+            q[12]
                 .mul_add(
-                    end_effector_force_9,
-                    (-q[11])
+                    end_effector_force_6,
+                    q[11]
                         .mul_add(
-                            end_effector_force_8,
-                            q[10].mul_add(end_effector_force_7, tau[5]),
+                            end_effector_force_5,
+                            q[10].mul_add(end_effector_force_4, -tau[5]),
                         ),
                 ),
         );
     let end_effector_load_2 = (-end_effector_effort_4)
         .mul_add(
-            end_effector_factor_8,
-            (-q[9])
+            end_effector_factor_7,
+            q[9]
                 .mul_add(
-                    end_effector_force_9,
-                    (-q[8])
+                    end_effector_force_6,
+                    q[8]
                         .mul_add(
-                            end_effector_force_8,
-                            q[7].mul_add(end_effector_force_7, tau[4]),
+                            end_effector_force_5,
+                            q[7].mul_add(end_effector_force_4, -tau[4]),
                         ),
                 ),
         );
-    let end_effector_load_3 = (-end_effector_factor_15)
+    let end_effector_load_3 = (-end_effector_factor_13)
         .mul_add(end_effector_load, end_effector_load_2);
-    let end_effector_load_4 = (-end_effector_factor_24)
+    let end_effector_load_4 = end_effector_factor_21
+        .mul_add(
+            end_effector_load_3,
+            end_effector_factor_17
+                .mul_add(
+                    end_effector_load,
+                    end_effector_effort_4
+                        .mul_add(end_effector_factor_8, cart_effort_2 + tau[2]),
+                ),
+        );
+    let end_effector_load_5 = (-end_effector_factor_24)
+        .mul_add(
+            end_effector_load_3,
+            (-end_effector_factor_18)
+                .mul_add(
+                    end_effector_load,
+                    (-end_effector_effort_4)
+                        .mul_add(end_effector_factor_10, cart_effort - tau[1]),
+                ),
+        );
+    let end_effector_load_6 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_3,
             (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load,
                     (-end_effector_effort_4)
-                        .mul_add(end_effector_factor_10, cart_effort_2 + tau[2]),
-                ),
-        );
-    let end_effector_load_5 = end_effector_factor_27
-        .mul_add(
-            end_effector_load_3,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load,
-                    end_effector_effort_4
-                        .mul_add(end_effector_factor_12, cart_effort - tau[1]),
-                ),
-        );
-    let end_effector_load_6 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_3,
-            end_effector_factor_21
-                .mul_add(
-                    end_effector_load,
-                    end_effector_effort_4
                         .mul_add(
-                            end_effector_factor_13,
+                            end_effector_factor_11,
                             cart_effort - cart_effort_4 - tau[0],
                         ),
                 ),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_16
+        / (end_effector_factor_14
             .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
+                end_effector_factor_21,
+                end_effector_factor_4
                     .mul_add(
-                        end_effector_factor_19,
-                        end_effector_composite_inertia_28
-                            .mul_add(end_effector_factor_10, -n(5.7)),
+                        end_effector_factor_17,
+                        end_effector_composite_inertia_31
+                            .mul_add(end_effector_factor_8, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_17)
+    let cart_factor_2 = end_effector_factor_22 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_22)
         .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
+            cart_factor_2,
+            end_effector_factor_15
                 .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_30)
+                    end_effector_factor_24,
+                    end_effector_factor_5
                         .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_3),
+                            end_effector_factor_18,
+                            end_effector_composite_inertia_33
+                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
                         ),
                 ),
         );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
-    let cart_factor_5 = end_effector_factor_26 * cart_factor;
-    let cart_factor_6 = n(1.0) / cart_factor_3;
-    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_4 = (-end_effector_factor_23)
+        .mul_add(cart_factor_2, end_effector_factor_25);
+    let cart_factor_5 = end_effector_factor_23 * cart_factor;
+    let cart_factor_6 = (-end_effector_factor_16)
+        .mul_add(
+            end_effector_factor_26,
+            (-end_effector_factor_6)
+                .mul_add(
+                    end_effector_factor_19,
+                    (-end_effector_composite_inertia_35)
+                        .mul_add(
+                            end_effector_factor_11,
+                            end_effector_factor_23
+                                .mul_add(cart_factor_5, plate_composite_inertia),
+                        ),
+                ),
+        );
+    let cart_factor_7 = n(1.0) / cart_factor_3;
+    let cart_factor_8 = cart_factor_4 * cart_factor_7;
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
     // plate: response (1 multiplication)
-    let plate_acceleration_2 = plate_factor
-        * ((-cart_factor_7)
+    let plate_acceleration_2 = (n(1.0)
+        / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load,
                 cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_acceleration_6 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
-    let cart_acceleration_7 = cart_factor
-        * ((-end_effector_factor_26)
+    let cart_acceleration_7 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_acceleration_2, cart_load));
+    let cart_acceleration_8 = cart_factor
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_acceleration_2,
-                (-end_effector_factor_25)
-                    .mul_add(cart_acceleration_6, end_effector_load_4),
+                end_effector_factor_22.mul_add(cart_acceleration_7, end_effector_load_4),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_acceleration_15 = end_effector_factor_23
-        * (end_effector_factor_18
+    let end_effector_acceleration_21 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_acceleration_2,
-                end_effector_factor_17
+                (-end_effector_factor_14)
                     .mul_add(
-                        cart_acceleration_6,
-                        end_effector_factor_16
+                        cart_acceleration_8,
+                        end_effector_factor_15
                             .mul_add(cart_acceleration_7, end_effector_load_3),
                     ),
             ));
-    let end_effector_response = (-end_effector_factor_7)
+    let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            plate_acceleration_2,
-            (-end_effector_factor_6)
+            cart_acceleration_7,
+            end_effector_factor_6
                 .mul_add(
-                    cart_acceleration_6,
-                    (-end_effector_factor_5)
+                    plate_acceleration_2,
+                    end_effector_factor_4
                         .mul_add(
-                            cart_acceleration_7,
-                            end_effector_factor_4 * end_effector_acceleration_15,
+                            cart_acceleration_8,
+                            end_effector_factor_3 * end_effector_acceleration_21,
                         ),
                 ),
         );
-    let end_effector_acceleration_16 = end_effector_factor_14
+    let end_effector_acceleration_22 = end_effector_factor_12
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_30)
+    let end_effector_response_2 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_acceleration_6,
-            (-end_effector_composite_inertia_28)
+            cart_acceleration_7,
+            end_effector_composite_inertia_31
                 .mul_add(
-                    cart_acceleration_7,
-                    end_effector_composite_inertia_7
+                    cart_acceleration_8,
+                    end_effector_composite_inertia_9
                         .mul_add(
-                            end_effector_acceleration_15,
-                            end_effector_composite_inertia_18
-                                * end_effector_acceleration_16,
+                            end_effector_acceleration_21,
+                            end_effector_composite_inertia_21
+                                * end_effector_acceleration_22,
                         ),
                 ),
         );
     [
         -plate_acceleration_2,
-        -cart_acceleration_6,
-        -cart_acceleration_7,
-        end_effector_acceleration_15,
-        end_effector_acceleration_16,
-        end_effector_factor
-            * (end_effector_composite_inertia_32
+        cart_acceleration_7,
+        -cart_acceleration_8,
+        -end_effector_acceleration_21,
+        -end_effector_acceleration_22,
+        -(end_effector_factor
+            * ((-end_effector_composite_inertia_35)
                 .mul_add(
                     plate_acceleration_2,
                     end_effector_effort_4 - end_effector_response_2,
-                )),
+                ))),
     ]
 }
 
 /// Efforts τ̄ = S̄ᵀτ that the accelerations take at Q and v̄, (24), (34).
 ///
-/// Operations: 108 additions, 134 multiplications.
+/// Operations: 106 additions, 124 multiplications.
 #[inline(always)]
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
@@ -907,17 +926,22 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
     let plate_acceleration = v[0] * v[0];
     // cart: angular velocity (1 addition)
     let cart_rate_z = v[0] + v[1];
-    // cart: acceleration (8 additions, 12 multiplications)
-    let cart_acceleration = q[6].mul_add(a[0], q[3] * plate_acceleration);
-    let cart_acceleration_2 = (-q[6]).mul_add(plate_acceleration, q[3] * a[0]);
-    let cart_acceleration_3 = a[0] + a[1];
-    let cart_acceleration_4 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_5 = (-q[1])
-        .mul_add(cart_acceleration, q[4].mul_add(cart_acceleration_2, a[2]));
-    let cart_acceleration_6 = (-q[2])
+    // cart: acceleration (9 additions, 11 multiplications)
+    let cart_acceleration = v[0] * v[2];
+    let cart_acceleration_2 = q[6].mul_add(a[0], q[3] * plate_acceleration);
+    let cart_acceleration_3 = (-q[6]).mul_add(plate_acceleration, q[3] * a[0]);
+    let cart_acceleration_4 = a[0] + a[1];
+    let cart_acceleration_5 = cart_rate_z * cart_rate_z;
+    let cart_acceleration_6 = (-q[1])
+        .mul_add(cart_acceleration_2, q[4].mul_add(cart_acceleration_3, a[2]));
+    let cart_acceleration_7 = (-q[2])
         .mul_add(
-            cart_acceleration,
-            q[5].mul_add(cart_acceleration_2, v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0))),
+            cart_acceleration_2,
+            q[5]
+                .mul_add(
+                    cart_acceleration_3,
+                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
+                ),
         );
     // end_effector: joint (6 additions, 9 multiplications)
     let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
@@ -931,10 +955,10 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
     let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
     let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // end_effector: acceleration (34 additions, 37 multiplications)
-    let end_effector_acceleration = (-cart_acceleration_4)
-        .mul_add(n(0.15), cart_acceleration_3.mul_add(n(0.02), cart_acceleration_5));
-    let end_effector_acceleration_2 = cart_acceleration_4
-        .mul_add(n(0.02), cart_acceleration_3.mul_add(n(0.15), cart_acceleration_6));
+    let end_effector_acceleration = (-cart_acceleration_5)
+        .mul_add(n(0.15), cart_acceleration_4.mul_add(n(0.02), cart_acceleration_6));
+    let end_effector_acceleration_2 = cart_acceleration_5
+        .mul_add(n(0.02), cart_acceleration_4.mul_add(n(0.15), cart_acceleration_7));
     let end_effector_acceleration_3 = q[13]
         .mul_add(
             n(9.81),
@@ -1002,35 +1026,62 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
                 ),
         );
     let end_effector_acceleration_9 = q[13]
-        .mul_add(cart_acceleration_3, end_effector_acceleration_6);
+        .mul_add(cart_acceleration_4, end_effector_acceleration_6);
     let end_effector_acceleration_10 = q[14]
-        .mul_add(cart_acceleration_3, end_effector_acceleration_7);
+        .mul_add(cart_acceleration_4, end_effector_acceleration_7);
     let end_effector_acceleration_11 = q[15]
-        .mul_add(cart_acceleration_3, end_effector_acceleration_8);
+        .mul_add(cart_acceleration_4, end_effector_acceleration_8);
     let end_effector_acceleration_12 = end_effector_rate_x * end_effector_rate_x;
     let end_effector_acceleration_13 = end_effector_rate_x * end_effector_rate_y;
     let end_effector_acceleration_14 = end_effector_rate_x * end_effector_rate_z;
     let end_effector_acceleration_15 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_16 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_17 = end_effector_rate_z * end_effector_rate_z;
-    // end_effector: force (30 additions, 39 multiplications)
-    let end_effector_force = (-end_effector_rate_z)
+    let end_effector_acceleration_18 = end_effector_acceleration_11
+        + end_effector_acceleration_13;
+    let end_effector_acceleration_19 = end_effector_acceleration_10
+        - end_effector_acceleration_14;
+    let end_effector_acceleration_20 = end_effector_acceleration_11
+        - end_effector_acceleration_13;
+    let end_effector_acceleration_21 = end_effector_acceleration_9
+        + end_effector_acceleration_16;
+    let end_effector_acceleration_22 = end_effector_acceleration_10
+        + end_effector_acceleration_14;
+    let end_effector_acceleration_23 = end_effector_acceleration_9
+        - end_effector_acceleration_16;
+    // end_effector: force (27 additions, 30 multiplications)
+    let end_effector_force = (-end_effector_acceleration_16)
         .mul_add(
-            n(0.027499999999999997),
-            end_effector_rate_y.mul_add(n(0.0078), end_effector_rate_x * n(0.19388)),
-        );
-    let end_effector_force_2 = end_effector_rate_z
-        .mul_add(
-            n(0.042300000000000004),
-            end_effector_rate_y.mul_add(n(0.18225), end_effector_rate_x * n(0.0078)),
-        );
-    let end_effector_force_3 = (-end_effector_rate_z)
-        .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_rate_y)
+            n(0.15511999999999998),
+            (end_effector_acceleration_15 - end_effector_acceleration_17)
                 .mul_add(
                     n(0.042300000000000004),
-                    end_effector_rate_x * n(0.027499999999999997),
+                    end_effector_acceleration_19
+                        .mul_add(n(0.0078), end_effector_acceleration_9 * n(0.19388)),
+                ),
+        );
+    let end_effector_force_2 = (end_effector_acceleration_12
+        - end_effector_acceleration_17)
+        .mul_add(
+            n(0.027499999999999997),
+            end_effector_acceleration_20
+                .mul_add(
+                    n(0.042300000000000004),
+                    end_effector_acceleration_14
+                        .mul_add(
+                            n(0.16674999999999998),
+                            end_effector_acceleration_10 * n(0.18225),
+                        ),
+                ),
+        );
+    let end_effector_force_3 = (-end_effector_acceleration_23)
+        .mul_add(
+            n(0.027499999999999997),
+            (-end_effector_acceleration_13)
+                .mul_add(
+                    n(0.01163),
+                    (end_effector_acceleration_12 - end_effector_acceleration_15)
+                        .mul_add(n(0.0078), end_effector_acceleration_11 * n(0.02713)),
                 ),
         );
     let end_effector_force_4 = (-end_effector_acceleration_4)
@@ -1039,15 +1090,8 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
             (-end_effector_acceleration_5)
                 .mul_add(
                     n(0.136),
-                    (-end_effector_acceleration_11)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_acceleration_10
-                                .mul_add(
-                                    n(0.0078),
-                                    end_effector_acceleration_9 * n(0.19388),
-                                ),
-                        ),
+                    (-end_effector_acceleration_18)
+                        .mul_add(n(0.027499999999999997), end_effector_force),
                 ),
         );
     let end_effector_force_5 = (-end_effector_acceleration_5)
@@ -1056,97 +1100,57 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
             end_effector_acceleration_3
                 .mul_add(
                     n(0.51),
-                    end_effector_acceleration_11
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_acceleration_10
-                                .mul_add(
-                                    n(0.18225),
-                                    end_effector_acceleration_9 * n(0.0078),
-                                ),
-                        ),
+                    end_effector_acceleration_21.mul_add(n(0.0078), end_effector_force_2),
                 ),
         );
-    let end_effector_force_6 = (-end_effector_acceleration_3)
+    let end_effector_force_6 = end_effector_acceleration_3
         .mul_add(
             n(0.136),
-            (-end_effector_acceleration_4)
+            end_effector_acceleration_4
                 .mul_add(
                     n(0.085),
-                    (-end_effector_acceleration_11)
-                        .mul_add(
-                            n(0.027130000000000015),
-                            (-end_effector_acceleration_10)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_acceleration_9 * n(0.027499999999999997),
-                                ),
-                        ),
+                    end_effector_acceleration_22
+                        .mul_add(n(0.042300000000000004), end_effector_force_3),
                 ),
         );
-    let end_effector_force_7 = end_effector_rate_z
-        .mul_add(
-            end_effector_force_2,
-            end_effector_rate_y.mul_add(end_effector_force_3, -end_effector_force_4),
-        );
-    let end_effector_force_8 = end_effector_rate_x
-        .mul_add(
-            end_effector_force_3,
-            end_effector_rate_z.mul_add(end_effector_force, end_effector_force_5),
-        );
-    let end_effector_force_9 = (-end_effector_rate_y)
-        .mul_add(
-            end_effector_force,
-            end_effector_rate_x.mul_add(end_effector_force_2, -end_effector_force_6),
-        );
-    let end_effector_force_10 = (-(end_effector_acceleration_10
-        + end_effector_acceleration_14))
+    let end_effector_force_7 = (-end_effector_acceleration_22)
         .mul_add(
             n(0.51),
-            (-(end_effector_acceleration_11 - end_effector_acceleration_13))
+            (-end_effector_acceleration_20)
                 .mul_add(
                     n(0.136),
                     (end_effector_acceleration_15 + end_effector_acceleration_17)
                         * n(0.085),
                 ),
         );
-    let end_effector_force_11 = (-(end_effector_acceleration_9
-        - end_effector_acceleration_16))
+    let end_effector_force_8 = (-end_effector_acceleration_23)
         .mul_add(
             n(0.51),
             (end_effector_acceleration_12 + end_effector_acceleration_17)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_11 + end_effector_acceleration_13)
-                        * n(0.085),
-                ),
+                .mul_add(n(0.136), end_effector_acceleration_18 * n(0.085)),
         );
-    let end_effector_force_12 = (end_effector_acceleration_12
+    let end_effector_force_9 = (end_effector_acceleration_12
         + end_effector_acceleration_15)
         .mul_add(
             n(0.51),
-            (end_effector_acceleration_9 + end_effector_acceleration_16)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_10 - end_effector_acceleration_14)
-                        * n(0.085),
-                ),
+            end_effector_acceleration_21
+                .mul_add(n(0.136), end_effector_acceleration_19 * n(0.085)),
         );
     // end_effector: effort (12 additions, 17 multiplications)
-    let end_effector_effort = (-q[15])
+    let end_effector_effort = q[15]
         .mul_add(
-            end_effector_force_9,
-            (-q[14]).mul_add(end_effector_force_8, q[13] * end_effector_force_7),
+            end_effector_force_6,
+            q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4),
         );
     let end_effector_effort_2 = (-q[8])
         .mul_add(
-            end_effector_force_11,
-            q[9].mul_add(end_effector_force_12, q[7] * end_effector_force_10),
+            end_effector_force_8,
+            q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7),
         );
     let end_effector_effort_3 = (-q[11])
         .mul_add(
-            end_effector_force_11,
-            q[12].mul_add(end_effector_force_12, q[10] * end_effector_force_10),
+            end_effector_force_8,
+            q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7),
         );
     // cart: effort (7 additions, 6 multiplications)
     let cart_effort = (-end_effector_effort_2)
@@ -1155,34 +1159,33 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
             (-end_effector_effort_3)
                 .mul_add(
                     n(0.15),
-                    (-cart_acceleration_5)
+                    (-cart_acceleration_6)
                         .mul_add(
                             n(0.046),
-                            cart_acceleration_6
+                            cart_acceleration_7
                                 .mul_add(
                                     n(0.495),
-                                    cart_acceleration_3
-                                        .mul_add(n(0.16493), -end_effector_effort),
+                                    cart_acceleration_4.mul_add(n(0.16493), end_effector_effort),
                                 ),
                         ),
                 ),
         );
-    let cart_effort_2 = (-cart_acceleration_3)
+    let cart_effort_2 = (-cart_acceleration_4)
         .mul_add(
             n(0.046),
-            (-cart_acceleration_4)
+            (-cart_acceleration_5)
                 .mul_add(
                     n(0.495),
-                    cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_2),
+                    cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_2),
                 ),
         );
-    let cart_effort_3 = (-cart_acceleration_4)
+    let cart_effort_3 = (-cart_acceleration_5)
         .mul_add(
             n(0.046),
-            cart_acceleration_3
+            cart_acceleration_4
                 .mul_add(
                     n(0.495),
-                    cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3),
+                    cart_acceleration_7.mul_add(n(5.7), -end_effector_effort_3),
                 ),
         );
     let cart_effort_4 = (-q[6])
@@ -1194,41 +1197,50 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
         a[0].mul_add(n(2.05), cart_effort + cart_effort_4),
         cart_effort,
         cart_effort_2,
-        (-q[7])
+        q[9]
             .mul_add(
-                end_effector_force_7,
-                q[9].mul_add(end_effector_force_9, q[8] * end_effector_force_8),
+                end_effector_force_6,
+                q[8].mul_add(end_effector_force_5, q[7] * end_effector_force_4),
             ),
-        (-q[10])
+        q[12]
             .mul_add(
-                end_effector_force_7,
-                q[12].mul_add(end_effector_force_9, q[11] * end_effector_force_8),
+                end_effector_force_6,
+                q[11].mul_add(end_effector_force_5, q[10] * end_effector_force_4),
             ),
-        -end_effector_effort,
+        end_effector_effort,
     ]
 }
 
 /// Mass matrix M̄ by rows.
 ///
-/// Operations: 91 additions, 133 multiplications.
+/// Operations: 117 additions, 149 multiplications.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
     let n = T::from_f64;
-    // end_effector: composite inertia (75 additions, 113 multiplications)
+    // end_effector: composite inertia (83 additions, 119 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
         .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
     let end_effector_composite_inertia_3 = (-q[9])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
         );
     let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[12])
+    let end_effector_composite_inertia_7 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[7] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_8 = (-q[12])
         .mul_add(
             end_effector_composite_inertia_3,
             q[11]
@@ -1237,7 +1249,7 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[10] * end_effector_composite_inertia,
                 ),
         );
-    let end_effector_composite_inertia_8 = (-q[15])
+    let end_effector_composite_inertia_9 = (-q[15])
         .mul_add(
             end_effector_composite_inertia_3,
             q[14]
@@ -1246,7 +1258,7 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[13] * end_effector_composite_inertia,
                 ),
         );
-    let end_effector_composite_inertia_9 = (-q[9])
+    let end_effector_composite_inertia_10 = (-q[9])
         .mul_add(
             end_effector_composite_inertia_6,
             q[8]
@@ -1255,7 +1267,7 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[7] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_10 = (-q[12])
+    let end_effector_composite_inertia_11 = (-q[12])
         .mul_add(
             end_effector_composite_inertia_6,
             q[11]
@@ -1264,41 +1276,639 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[10] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_11 = end_effector_composite_inertia_9
+    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_10
-                .mul_add(n(0.15), end_effector_composite_inertia_8),
+            end_effector_composite_inertia_11
+                .mul_add(n(0.15), end_effector_composite_inertia_9),
         );
-    let end_effector_composite_inertia_12 = (-q[6])
+    let end_effector_composite_inertia_13 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[1] * end_effector_composite_inertia_9,
+                    end_effector_composite_inertia_11,
+                    q[1] * end_effector_composite_inertia_10,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_10,
-                        q[4] * end_effector_composite_inertia_9,
+                        end_effector_composite_inertia_11,
+                        q[4] * end_effector_composite_inertia_10,
                     )),
         );
-    let end_effector_composite_inertia_13 = end_effector_composite_inertia_11
-        + end_effector_composite_inertia_12;
+    let end_effector_composite_inertia_14 = end_effector_composite_inertia_12
+        + end_effector_composite_inertia_13;
+    let end_effector_composite_inertia_15 = (-q[12])
+        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
+    let end_effector_composite_inertia_16 = q[12]
+        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
+    let end_effector_composite_inertia_17 = (-q[12])
+        .mul_add(
+            n(0.02713),
+            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
+        );
+    let end_effector_composite_inertia_18 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_19 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_20 = q[11].mul_add(n(0.085), q[10] * n(0.136));
+    let end_effector_composite_inertia_21 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_17,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_16,
+                    q[10] * end_effector_composite_inertia_15,
+                ),
+        );
+    let end_effector_composite_inertia_22 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_17,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_16,
+                    q[13] * end_effector_composite_inertia_15,
+                ),
+        );
+    let end_effector_composite_inertia_23 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_20,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_19,
+                    q[7] * end_effector_composite_inertia_18,
+                ),
+        );
+    let end_effector_composite_inertia_24 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_20,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_19,
+                    q[10] * end_effector_composite_inertia_18,
+                ),
+        );
+    let end_effector_composite_inertia_25 = end_effector_composite_inertia_23
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_24
+                .mul_add(n(0.15), end_effector_composite_inertia_22),
+        );
+    let end_effector_composite_inertia_26 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_24,
+                    q[1] * end_effector_composite_inertia_23,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_24,
+                        q[4] * end_effector_composite_inertia_23,
+                    )),
+        );
+    let end_effector_composite_inertia_27 = end_effector_composite_inertia_25
+        + end_effector_composite_inertia_26;
+    let end_effector_composite_inertia_28 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_29 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_30 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_31 = q[14]
+        .mul_add(
+            q[15]
+                .mul_add(
+                    n(0.042300000000000004),
+                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
+                ),
+            q[13]
+                * ((-q[15])
+                    .mul_add(
+                        n(0.027499999999999997),
+                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
+                    )),
+        );
+    let end_effector_composite_inertia_32 = (-q[15])
+        .mul_add(
+            (-q[15])
+                .mul_add(
+                    n(0.02713),
+                    (-q[14])
+                        .mul_add(
+                            n(0.042300000000000004),
+                            q[13] * n(0.027499999999999997),
+                        ),
+                ),
+            end_effector_composite_inertia_31,
+        );
+    let end_effector_composite_inertia_33 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_30,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_29,
+                    q[7] * end_effector_composite_inertia_28,
+                ),
+        );
+    let end_effector_composite_inertia_34 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_30,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_29,
+                    q[10] * end_effector_composite_inertia_28,
+                ),
+        );
+    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_34
+                .mul_add(n(0.15), end_effector_composite_inertia_32),
+        );
+    let end_effector_composite_inertia_36 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_34,
+                    q[1] * end_effector_composite_inertia_33,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_34,
+                        q[4] * end_effector_composite_inertia_33,
+                    )),
+        );
+    let end_effector_composite_inertia_37 = end_effector_composite_inertia_35
+        + end_effector_composite_inertia_36;
+    let end_effector_composite_inertia_38 = (-q[8])
+        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
+    let end_effector_composite_inertia_39 = (-q[11])
+        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+    let end_effector_composite_inertia_40 = (-((-q[14])
+        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
+        .mul_add(n(0.6), end_effector_composite_inertia_32 - n(0.20162999999999998));
+    // cart: composite inertia (31 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_38 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_39 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_38)
+        .mul_add(
+            n(0.3),
+            end_effector_composite_inertia_7 - n(0.20162999999999998)
+                - n(0.12764999999999999),
+        );
+    let cart_composite_inertia_4 = (-end_effector_composite_inertia_39)
+        .mul_add(
+            n(0.15),
+            end_effector_composite_inertia_38
+                .mul_add(
+                    n(0.02),
+                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                ),
+        );
+    let cart_composite_inertia_5 = end_effector_composite_inertia_39
+        .mul_add(
+            n(0.04),
+            end_effector_composite_inertia_21 - n(0.20162999999999998) - n(0.03728),
+        );
+    let cart_composite_inertia_6 = end_effector_composite_inertia_40
+        + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = end_effector_composite_inertia_40
+        + cart_composite_inertia_3;
+    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_9 = (-q[6])
+        .mul_add(
+            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
+            q[3]
+                * ((-q[5])
+                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
+        );
+    let cart_composite_inertia_10 = cart_composite_inertia_8 + cart_composite_inertia_9;
+    let cart_composite_inertia_11 = (-q[3])
+        .mul_add(q[4] * n(5.7), q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2));
+    let cart_composite_inertia_12 = (-q[2])
+        .mul_add(
+            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[1]
+                * ((-q[2])
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_13 = (-q[5])
+        .mul_add(
+            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[4]
+                * ((-q[5])
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_14 = end_effector_composite_inertia_40
+        + cart_composite_inertia_8;
+    let cart_composite_inertia_15 = (q[3]
+        .mul_add(
+            n(2.85),
+            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
+        )) * (q[3] + q[3]);
+    let cart_composite_inertia_16 = (q[6]
+        .mul_add(
+            n(2.85),
+            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
+        )) * (q[6] + q[6]);
+    // plate: composite inertia (3 additions)
+    let plate_composite_inertia = cart_composite_inertia_12 + cart_composite_inertia_15
+        + n(1.1700000000000002) + cart_composite_inertia_13 + cart_composite_inertia_16
+        + n(0.8799999999999999) - cart_composite_inertia_14 - cart_composite_inertia_14;
+    [
+        [
+            plate_composite_inertia,
+            -cart_composite_inertia_10,
+            -cart_composite_inertia_11,
+            end_effector_composite_inertia_14,
+            end_effector_composite_inertia_27,
+            end_effector_composite_inertia_37,
+        ],
+        [
+            -cart_composite_inertia_10,
+            -cart_composite_inertia_8,
+            -cart_composite_inertia_2,
+            end_effector_composite_inertia_12,
+            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_35,
+        ],
+        [
+            -cart_composite_inertia_11,
+            -cart_composite_inertia_2,
+            n(5.7),
+            end_effector_composite_inertia_10,
+            end_effector_composite_inertia_23,
+            end_effector_composite_inertia_33,
+        ],
+        [
+            end_effector_composite_inertia_14,
+            end_effector_composite_inertia_12,
+            end_effector_composite_inertia_10,
+            end_effector_composite_inertia_7,
+            end_effector_composite_inertia_8,
+            end_effector_composite_inertia_9,
+        ],
+        [
+            end_effector_composite_inertia_27,
+            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_23,
+            end_effector_composite_inertia_8,
+            end_effector_composite_inertia_21,
+            end_effector_composite_inertia_22,
+        ],
+        [
+            end_effector_composite_inertia_37,
+            end_effector_composite_inertia_35,
+            end_effector_composite_inertia_33,
+            end_effector_composite_inertia_9,
+            end_effector_composite_inertia_22,
+            end_effector_composite_inertia_32,
+        ],
+    ]
+}
+
+/// Efforts τ̄ = S̄ᵀτ that no acceleration takes at Q and v̄.
+///
+/// Operations: 84 additions, 104 multiplications.
+#[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
+#[must_use]
+pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
+    let n = T::from_f64;
+    // cart: angular velocity (1 addition)
+    let cart_rate_z = v[0] + v[1];
+    // plate: acceleration (1 multiplication)
+    let plate_acceleration = v[0] * v[0];
+    // cart: acceleration (5 additions, 9 multiplications)
+    let cart_acceleration = v[0] * v[2];
+    let cart_acceleration_2 = q[3] * plate_acceleration;
+    let cart_acceleration_3 = q[6] * plate_acceleration;
+    let cart_acceleration_4 = q[4]
+        .mul_add(cart_acceleration_3, q[1] * cart_acceleration_2);
+    let cart_acceleration_5 = cart_rate_z * cart_rate_z;
+    let cart_acceleration_6 = (-q[5])
+        .mul_add(
+            cart_acceleration_3,
+            (-q[2])
+                .mul_add(
+                    cart_acceleration_2,
+                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
+                ),
+        );
+    // end_effector: joint (6 additions, 9 multiplications)
+    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
+    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
+    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
+    // end_effector: angular velocity (3 additions, 3 multiplications)
+    let end_effector_angular_velocity = q[13] * cart_rate_z;
+    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
+    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
+    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
+    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
+    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
+    // end_effector: acceleration (20 additions, 23 multiplications)
+    let end_effector_acceleration = (-end_effector_joint_2)
+        .mul_add(
+            end_effector_angular_velocity_3,
+            end_effector_joint_3 * end_effector_angular_velocity_2,
+        );
+    let end_effector_acceleration_2 = (-end_effector_joint_3)
+        .mul_add(
+            end_effector_angular_velocity,
+            end_effector_joint * end_effector_angular_velocity_3,
+        );
+    let end_effector_acceleration_3 = (-end_effector_joint)
+        .mul_add(
+            end_effector_angular_velocity_2,
+            end_effector_joint_2 * end_effector_angular_velocity,
+        );
+    let end_effector_acceleration_4 = cart_acceleration_5
+        .mul_add(n(0.15), cart_acceleration_4);
+    let end_effector_acceleration_5 = cart_acceleration_5
+        .mul_add(n(0.02), cart_acceleration_6);
+    let end_effector_acceleration_6 = (-q[13])
+        .mul_add(
+            n(9.81),
+            (-q[10])
+                .mul_add(end_effector_acceleration_5, q[7] * end_effector_acceleration_4),
+        );
+    let end_effector_acceleration_7 = (-q[14])
+        .mul_add(
+            n(9.81),
+            (-q[11])
+                .mul_add(end_effector_acceleration_5, q[8] * end_effector_acceleration_4),
+        );
+    let end_effector_acceleration_8 = (-q[15])
+        .mul_add(
+            n(9.81),
+            (-q[12])
+                .mul_add(end_effector_acceleration_5, q[9] * end_effector_acceleration_4),
+        );
+    let end_effector_acceleration_9 = end_effector_rate_x * end_effector_rate_x;
+    let end_effector_acceleration_10 = end_effector_rate_x * end_effector_rate_y;
+    let end_effector_acceleration_11 = end_effector_rate_x * end_effector_rate_z;
+    let end_effector_acceleration_12 = end_effector_rate_y * end_effector_rate_y;
+    let end_effector_acceleration_13 = end_effector_rate_y * end_effector_rate_z;
+    let end_effector_acceleration_14 = end_effector_rate_z * end_effector_rate_z;
+    let end_effector_acceleration_15 = end_effector_acceleration_3
+        + end_effector_acceleration_10;
+    let end_effector_acceleration_16 = end_effector_acceleration_2
+        - end_effector_acceleration_11;
+    let end_effector_acceleration_17 = end_effector_acceleration_3
+        - end_effector_acceleration_10;
+    let end_effector_acceleration_18 = end_effector_acceleration
+        + end_effector_acceleration_13;
+    let end_effector_acceleration_19 = end_effector_acceleration_2
+        + end_effector_acceleration_11;
+    let end_effector_acceleration_20 = end_effector_acceleration
+        - end_effector_acceleration_13;
+    // end_effector: force (27 additions, 30 multiplications)
+    let end_effector_force = (-end_effector_acceleration_13)
+        .mul_add(
+            n(0.15511999999999998),
+            (end_effector_acceleration_12 - end_effector_acceleration_14)
+                .mul_add(
+                    n(0.042300000000000004),
+                    end_effector_acceleration_16
+                        .mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
+                ),
+        );
+    let end_effector_force_2 = (end_effector_acceleration_9
+        - end_effector_acceleration_14)
+        .mul_add(
+            n(0.027499999999999997),
+            end_effector_acceleration_17
+                .mul_add(
+                    n(0.042300000000000004),
+                    end_effector_acceleration_11
+                        .mul_add(
+                            n(0.16674999999999998),
+                            end_effector_acceleration_2 * n(0.18225),
+                        ),
+                ),
+        );
+    let end_effector_force_3 = (-end_effector_acceleration_20)
+        .mul_add(
+            n(0.027499999999999997),
+            (-end_effector_acceleration_10)
+                .mul_add(
+                    n(0.01163),
+                    (end_effector_acceleration_9 - end_effector_acceleration_12)
+                        .mul_add(n(0.0078), end_effector_acceleration_3 * n(0.02713)),
+                ),
+        );
+    let end_effector_force_4 = (-end_effector_acceleration_15)
+        .mul_add(
+            n(0.027499999999999997),
+            end_effector_acceleration_7
+                .mul_add(
+                    n(0.51),
+                    end_effector_acceleration_8.mul_add(n(0.136), end_effector_force),
+                ),
+        );
+    let end_effector_force_5 = (-end_effector_acceleration_6)
+        .mul_add(
+            n(0.51),
+            end_effector_acceleration_8
+                .mul_add(
+                    n(0.085),
+                    end_effector_acceleration_18.mul_add(n(0.0078), end_effector_force_2),
+                ),
+        );
+    let end_effector_force_6 = (-end_effector_acceleration_6)
+        .mul_add(
+            n(0.136),
+            (-end_effector_acceleration_7)
+                .mul_add(
+                    n(0.085),
+                    end_effector_acceleration_19
+                        .mul_add(n(0.042300000000000004), end_effector_force_3),
+                ),
+        );
+    let end_effector_force_7 = (-end_effector_acceleration_19)
+        .mul_add(
+            n(0.51),
+            (-end_effector_acceleration_17)
+                .mul_add(
+                    n(0.136),
+                    (end_effector_acceleration_12 + end_effector_acceleration_14)
+                        * n(0.085),
+                ),
+        );
+    let end_effector_force_8 = (-end_effector_acceleration_20)
+        .mul_add(
+            n(0.51),
+            (end_effector_acceleration_9 + end_effector_acceleration_14)
+                .mul_add(n(0.136), end_effector_acceleration_15 * n(0.085)),
+        );
+    let end_effector_force_9 = (end_effector_acceleration_9
+        + end_effector_acceleration_12)
+        .mul_add(
+            n(0.51),
+            end_effector_acceleration_18
+                .mul_add(n(0.136), end_effector_acceleration_16 * n(0.085)),
+        );
+    // end_effector: effort (12 additions, 17 multiplications)
+    let end_effector_effort = q[15]
+        .mul_add(
+            end_effector_force_6,
+            q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4),
+        );
+    let end_effector_effort_2 = (-q[8])
+        .mul_add(
+            end_effector_force_8,
+            q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7),
+        );
+    let end_effector_effort_3 = (-q[11])
+        .mul_add(
+            end_effector_force_8,
+            q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7),
+        );
+    // cart: effort (7 additions, 6 multiplications)
+    let cart_effort = (-end_effector_effort_2)
+        .mul_add(
+            n(0.02),
+            (-end_effector_effort_3)
+                .mul_add(
+                    n(0.15),
+                    cart_acceleration_4
+                        .mul_add(
+                            n(0.046),
+                            cart_acceleration_6.mul_add(n(0.495), end_effector_effort),
+                        ),
+                ),
+        );
+    let cart_effort_2 = cart_acceleration_5
+        .mul_add(n(0.495), cart_acceleration_4.mul_add(n(5.7), end_effector_effort_2));
+    let cart_effort_3 = (-cart_acceleration_5)
+        .mul_add(n(0.046), cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3));
+    let cart_effort_4 = (-q[6])
+        .mul_add(
+            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
+        );
+    [
+        cart_effort - cart_effort_4,
+        cart_effort,
+        -cart_effort_2,
+        q[9]
+            .mul_add(
+                end_effector_force_6,
+                q[8].mul_add(end_effector_force_5, q[7] * end_effector_force_4),
+            ),
+        q[12]
+            .mul_add(
+                end_effector_force_6,
+                q[11].mul_add(end_effector_force_5, q[10] * end_effector_force_4),
+            ),
+        end_effector_effort,
+    ]
+}
+
+/// v̄ and p̄̇ from Q, p̄ and τ, (27), (35).
+///
+/// Operations: 266 additions, 340 multiplications, 6 divisions.
+#[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
+#[must_use]
+pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 6]; 2] {
+    let n = T::from_f64;
+    // end_effector: composite inertia (83 additions, 119 multiplications)
+    let end_effector_composite_inertia = (-q[9])
+        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
+    let end_effector_composite_inertia_2 = q[9]
+        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
+    let end_effector_composite_inertia_3 = (-q[9])
+        .mul_add(
+            n(0.02713),
+            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
+        );
+    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
+    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
+    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
+    let end_effector_composite_inertia_7 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[7] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_8 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[10] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_9 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[13] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_10 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_6,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_5,
+                    q[7] * end_effector_composite_inertia_4,
+                ),
+        );
+    let end_effector_composite_inertia_11 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_6,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_5,
+                    q[10] * end_effector_composite_inertia_4,
+                ),
+        );
+    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_11
+                .mul_add(n(0.15), end_effector_composite_inertia_9),
+        );
+    let end_effector_composite_inertia_13 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_11,
+                    q[1] * end_effector_composite_inertia_10,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_11,
+                        q[4] * end_effector_composite_inertia_10,
+                    )),
+        );
     let end_effector_composite_inertia_14 = (-q[12])
         .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
     let end_effector_composite_inertia_15 = q[12]
         .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
     let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
         );
     let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
     let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
     let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_20 = (-q[15])
+    let end_effector_composite_inertia_20 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_16,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_15,
+                    q[10] * end_effector_composite_inertia_14,
+                ),
+        );
+    let end_effector_composite_inertia_21 = (-q[15])
         .mul_add(
             end_effector_composite_inertia_16,
             q[14]
@@ -1307,7 +1917,7 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[13] * end_effector_composite_inertia_14,
                 ),
         );
-    let end_effector_composite_inertia_21 = (-q[9])
+    let end_effector_composite_inertia_22 = (-q[9])
         .mul_add(
             end_effector_composite_inertia_19,
             q[8]
@@ -1316,7 +1926,7 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[7] * end_effector_composite_inertia_17,
                 ),
         );
-    let end_effector_composite_inertia_22 = (-q[12])
+    let end_effector_composite_inertia_23 = (-q[12])
         .mul_add(
             end_effector_composite_inertia_19,
             q[11]
@@ -1325,28 +1935,26 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                     q[10] * end_effector_composite_inertia_17,
                 ),
         );
-    let end_effector_composite_inertia_23 = end_effector_composite_inertia_21
+    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_22
-                .mul_add(n(0.15), end_effector_composite_inertia_20),
+            end_effector_composite_inertia_23
+                .mul_add(n(0.15), end_effector_composite_inertia_21),
         );
-    let end_effector_composite_inertia_24 = (-q[6])
+    let end_effector_composite_inertia_25 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_22,
-                    q[1] * end_effector_composite_inertia_21,
+                    end_effector_composite_inertia_23,
+                    q[1] * end_effector_composite_inertia_22,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_22,
-                        q[4] * end_effector_composite_inertia_21,
+                        end_effector_composite_inertia_23,
+                        q[4] * end_effector_composite_inertia_22,
                     )),
         );
-    let end_effector_composite_inertia_25 = end_effector_composite_inertia_23
-        + end_effector_composite_inertia_24;
     let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
     let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
@@ -1368,7 +1976,7 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
         .mul_add(
             (-q[15])
                 .mul_add(
-                    n(0.027130000000000015),
+                    n(0.02713),
                     (-q[14])
                         .mul_add(
                             n(0.042300000000000004),
@@ -1421,851 +2029,306 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
     let end_effector_composite_inertia_37 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    // cart: composite inertia (15 additions, 20 multiplications)
+    let end_effector_composite_inertia_38 = (-((-q[14])
+        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
+        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
+    // cart: composite inertia (31 additions, 30 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_37)
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
         .mul_add(
-            n(0.04),
+            n(0.3),
+            end_effector_composite_inertia_7 - n(0.20162999999999998)
+                - n(0.12764999999999999),
+        );
+    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+        .mul_add(
+            n(0.15),
             end_effector_composite_inertia_36
-                .mul_add(n(0.3), end_effector_composite_inertia_30 + n(0.16493)),
-        );
-    let cart_composite_inertia_4 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
-            q[3]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
-        );
-    let cart_composite_inertia_5 = cart_composite_inertia_3 - cart_composite_inertia_4;
-    let cart_composite_inertia_6 = (-q[3])
-        .mul_add(q[4] * n(5.7), q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2));
-    let cart_composite_inertia_7 = (q[3]
-        .mul_add(
-            n(2.85),
-            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] * n(2.0));
-    let cart_composite_inertia_8 = (q[6]
-        .mul_add(
-            n(2.85),
-            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] * n(2.0));
-    [
-        [
-            cart_composite_inertia_3 + cart_composite_inertia_7
-                + cart_composite_inertia_8 + n(2.05),
-            cart_composite_inertia_5,
-            -cart_composite_inertia_6,
-            end_effector_composite_inertia_13,
-            end_effector_composite_inertia_25,
-            end_effector_composite_inertia_35,
-        ],
-        [
-            cart_composite_inertia_5,
-            cart_composite_inertia_3,
-            -cart_composite_inertia_2,
-            end_effector_composite_inertia_11,
-            end_effector_composite_inertia_23,
-            end_effector_composite_inertia_33,
-        ],
-        [
-            -cart_composite_inertia_6,
-            -cart_composite_inertia_2,
-            n(5.7),
-            end_effector_composite_inertia_9,
-            end_effector_composite_inertia_21,
-            end_effector_composite_inertia_31,
-        ],
-        [
-            end_effector_composite_inertia_13,
-            end_effector_composite_inertia_11,
-            end_effector_composite_inertia_9,
-            (-q[9])
                 .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[7] * end_effector_composite_inertia,
-                        ),
-                ),
-            end_effector_composite_inertia_7,
-            end_effector_composite_inertia_8,
-        ],
-        [
-            end_effector_composite_inertia_25,
-            end_effector_composite_inertia_23,
-            end_effector_composite_inertia_21,
-            end_effector_composite_inertia_7,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_15,
-                            q[10] * end_effector_composite_inertia_14,
-                        ),
-                ),
-            end_effector_composite_inertia_20,
-        ],
-        [
-            end_effector_composite_inertia_35,
-            end_effector_composite_inertia_33,
-            end_effector_composite_inertia_31,
-            end_effector_composite_inertia_8,
-            end_effector_composite_inertia_20,
-            end_effector_composite_inertia_30,
-        ],
-    ]
-}
-
-/// Efforts τ̄ = S̄ᵀτ that no acceleration takes at Q and v̄.
-///
-/// Operations: 86 additions, 114 multiplications.
-#[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
-#[must_use]
-pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
-    let n = T::from_f64;
-    // cart: angular velocity (1 addition)
-    let cart_rate_z = v[0] + v[1];
-    // plate: acceleration (1 multiplication)
-    let plate_acceleration = v[0] * v[0];
-    // cart: acceleration (4 additions, 10 multiplications)
-    let cart_acceleration = q[3] * plate_acceleration;
-    let cart_acceleration_2 = q[6] * plate_acceleration;
-    let cart_acceleration_3 = q[4]
-        .mul_add(cart_acceleration_2, q[1] * cart_acceleration);
-    let cart_acceleration_4 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_5 = (-q[5])
-        .mul_add(
-            cart_acceleration_2,
-            (-q[2])
-                .mul_add(cart_acceleration, v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0))),
-        );
-    // end_effector: joint (6 additions, 9 multiplications)
-    let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
-    let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
-    let end_effector_joint_3 = v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9]));
-    // end_effector: angular velocity (3 additions, 3 multiplications)
-    let end_effector_angular_velocity = q[13] * cart_rate_z;
-    let end_effector_angular_velocity_2 = q[14] * cart_rate_z;
-    let end_effector_angular_velocity_3 = q[15] * cart_rate_z;
-    let end_effector_rate_x = end_effector_joint + end_effector_angular_velocity;
-    let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
-    let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
-    // end_effector: acceleration (20 additions, 23 multiplications)
-    let end_effector_acceleration = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_angular_velocity_3,
-            end_effector_joint_3 * end_effector_angular_velocity_2,
-        );
-    let end_effector_acceleration_2 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_angular_velocity,
-            end_effector_joint * end_effector_angular_velocity_3,
-        );
-    let end_effector_acceleration_3 = (-end_effector_joint)
-        .mul_add(
-            end_effector_angular_velocity_2,
-            end_effector_joint_2 * end_effector_angular_velocity,
-        );
-    let end_effector_acceleration_4 = cart_acceleration_4
-        .mul_add(n(0.15), cart_acceleration_3);
-    let end_effector_acceleration_5 = cart_acceleration_4
-        .mul_add(n(0.02), cart_acceleration_5);
-    let end_effector_acceleration_6 = (-q[13])
-        .mul_add(
-            n(9.81),
-            (-q[10])
-                .mul_add(end_effector_acceleration_5, q[7] * end_effector_acceleration_4),
-        );
-    let end_effector_acceleration_7 = (-q[14])
-        .mul_add(
-            n(9.81),
-            (-q[11])
-                .mul_add(end_effector_acceleration_5, q[8] * end_effector_acceleration_4),
-        );
-    let end_effector_acceleration_8 = (-q[15])
-        .mul_add(
-            n(9.81),
-            (-q[12])
-                .mul_add(end_effector_acceleration_5, q[9] * end_effector_acceleration_4),
-        );
-    let end_effector_acceleration_9 = end_effector_rate_x * end_effector_rate_x;
-    let end_effector_acceleration_10 = end_effector_rate_x * end_effector_rate_y;
-    let end_effector_acceleration_11 = end_effector_rate_x * end_effector_rate_z;
-    let end_effector_acceleration_12 = end_effector_rate_y * end_effector_rate_y;
-    let end_effector_acceleration_13 = end_effector_rate_y * end_effector_rate_z;
-    let end_effector_acceleration_14 = end_effector_rate_z * end_effector_rate_z;
-    // end_effector: force (30 additions, 39 multiplications)
-    let end_effector_force = (-end_effector_rate_z)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_rate_y.mul_add(n(0.0078), end_effector_rate_x * n(0.19388)),
-        );
-    let end_effector_force_2 = end_effector_rate_z
-        .mul_add(
-            n(0.042300000000000004),
-            end_effector_rate_y.mul_add(n(0.18225), end_effector_rate_x * n(0.0078)),
-        );
-    let end_effector_force_3 = (-end_effector_rate_z)
-        .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_rate_y)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_rate_x * n(0.027499999999999997),
+                    n(0.02),
+                    end_effector_composite_inertia_8 + n(0.002300000000000001),
                 ),
         );
-    let end_effector_force_4 = (-end_effector_acceleration_3)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_7
-                .mul_add(
-                    n(0.51),
-                    end_effector_acceleration_8
-                        .mul_add(
-                            n(0.136),
-                            end_effector_acceleration_2
-                                .mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_force_5 = (-end_effector_acceleration_6)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_8
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_3
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_acceleration_2
-                                .mul_add(n(0.18225), end_effector_acceleration * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_force_6 = (-end_effector_acceleration_3)
-        .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_acceleration_2)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_6
-                        .mul_add(
-                            n(0.136),
-                            end_effector_acceleration_7
-                                .mul_add(
-                                    n(0.085),
-                                    end_effector_acceleration * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_force_7 = end_effector_rate_z
-        .mul_add(
-            end_effector_force_2,
-            end_effector_rate_y.mul_add(end_effector_force_3, -end_effector_force_4),
-        );
-    let end_effector_force_8 = end_effector_rate_x
-        .mul_add(
-            end_effector_force_3,
-            end_effector_rate_z.mul_add(end_effector_force, end_effector_force_5),
-        );
-    let end_effector_force_9 = (-end_effector_rate_y)
-        .mul_add(
-            end_effector_force,
-            end_effector_rate_x.mul_add(end_effector_force_2, -end_effector_force_6),
-        );
-    let end_effector_force_10 = (-(end_effector_acceleration_2
-        + end_effector_acceleration_11))
-        .mul_add(
-            n(0.51),
-            (-(end_effector_acceleration_3 - end_effector_acceleration_10))
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_12 + end_effector_acceleration_14)
-                        * n(0.085),
-                ),
-        );
-    let end_effector_force_11 = (-(end_effector_acceleration
-        - end_effector_acceleration_13))
-        .mul_add(
-            n(0.51),
-            (end_effector_acceleration_9 + end_effector_acceleration_14)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_3 + end_effector_acceleration_10)
-                        * n(0.085),
-                ),
-        );
-    let end_effector_force_12 = (end_effector_acceleration_9
-        + end_effector_acceleration_12)
-        .mul_add(
-            n(0.51),
-            (end_effector_acceleration + end_effector_acceleration_13)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_2 - end_effector_acceleration_11)
-                        * n(0.085),
-                ),
-        );
-    // end_effector: effort (12 additions, 17 multiplications)
-    let end_effector_effort = (-q[15])
-        .mul_add(
-            end_effector_force_9,
-            (-q[14]).mul_add(end_effector_force_8, q[13] * end_effector_force_7),
-        );
-    let end_effector_effort_2 = (-q[8])
-        .mul_add(
-            end_effector_force_11,
-            q[9].mul_add(end_effector_force_12, q[7] * end_effector_force_10),
-        );
-    let end_effector_effort_3 = (-q[11])
-        .mul_add(
-            end_effector_force_11,
-            q[12].mul_add(end_effector_force_12, q[10] * end_effector_force_10),
-        );
-    // cart: effort (7 additions, 6 multiplications)
-    let cart_effort = (-end_effector_effort_2)
-        .mul_add(
-            n(0.02),
-            (-end_effector_effort_3)
-                .mul_add(
-                    n(0.15),
-                    cart_acceleration_3
-                        .mul_add(
-                            n(0.046),
-                            cart_acceleration_5.mul_add(n(0.495), -end_effector_effort),
-                        ),
-                ),
-        );
-    let cart_effort_2 = cart_acceleration_4
-        .mul_add(n(0.495), cart_acceleration_3.mul_add(n(5.7), end_effector_effort_2));
-    let cart_effort_3 = (-cart_acceleration_4)
-        .mul_add(n(0.046), cart_acceleration_5.mul_add(n(5.7), -end_effector_effort_3));
-    let cart_effort_4 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
-            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
-        );
-    [
-        cart_effort - cart_effort_4,
-        cart_effort,
-        -cart_effort_2,
-        (-q[7])
-            .mul_add(
-                end_effector_force_7,
-                q[9].mul_add(end_effector_force_9, q[8] * end_effector_force_8),
-            ),
-        (-q[10])
-            .mul_add(
-                end_effector_force_7,
-                q[12].mul_add(end_effector_force_9, q[11] * end_effector_force_8),
-            ),
-        -end_effector_effort,
-    ]
-}
-
-/// v̄ and p̄̇ from Q, p̄ and τ, (27), (35).
-///
-/// Operations: 240 additions, 324 multiplications, 6 divisions.
-#[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
-#[must_use]
-pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 6]; 2] {
-    let n = T::from_f64;
-    // end_effector: composite inertia (75 additions, 113 multiplications)
-    let end_effector_composite_inertia = (-q[9])
-        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
-    let end_effector_composite_inertia_2 = q[9]
-        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
-    let end_effector_composite_inertia_3 = (-q[9])
-        .mul_add(
-            n(0.027130000000000015),
-            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
-        );
-    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
-    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
-    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_3,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[13] * end_effector_composite_inertia,
-                ),
-        );
-    let end_effector_composite_inertia_8 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_6,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[7] * end_effector_composite_inertia_4,
-                ),
-        );
-    let end_effector_composite_inertia_9 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_6,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[10] * end_effector_composite_inertia_4,
-                ),
-        );
-    let end_effector_composite_inertia_10 = end_effector_composite_inertia_8
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_9
-                .mul_add(n(0.15), end_effector_composite_inertia_7),
-        );
-    let end_effector_composite_inertia_11 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_9,
-                    q[1] * end_effector_composite_inertia_8,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_9,
-                        q[4] * end_effector_composite_inertia_8,
-                    )),
-        );
-    let end_effector_composite_inertia_12 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_13 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
-    let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(
-            n(0.027130000000000015),
-            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
-        );
-    let end_effector_composite_inertia_15 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_16 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_17 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_18 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_14,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_13,
-                    q[13] * end_effector_composite_inertia_12,
-                ),
-        );
-    let end_effector_composite_inertia_19 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_17,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[7] * end_effector_composite_inertia_15,
-                ),
-        );
-    let end_effector_composite_inertia_20 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_17,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[10] * end_effector_composite_inertia_15,
-                ),
-        );
-    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_20
-                .mul_add(n(0.15), end_effector_composite_inertia_18),
-        );
-    let end_effector_composite_inertia_22 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_20,
-                    q[1] * end_effector_composite_inertia_19,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_20,
-                        q[4] * end_effector_composite_inertia_19,
-                    )),
-        );
-    let end_effector_composite_inertia_23 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_24 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_25 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_26 = q[14]
-        .mul_add(
-            q[15]
-                .mul_add(
-                    n(0.042300000000000004),
-                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        n(0.027499999999999997),
-                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
-                    )),
-        );
-    let end_effector_composite_inertia_27 = (-q[15])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    n(0.027130000000000015),
-                    (-q[14])
-                        .mul_add(
-                            n(0.042300000000000004),
-                            q[13] * n(0.027499999999999997),
-                        ),
-                ),
-            end_effector_composite_inertia_26,
-        );
-    let end_effector_composite_inertia_28 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_25,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[7] * end_effector_composite_inertia_23,
-                ),
-        );
-    let end_effector_composite_inertia_29 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_25,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[10] * end_effector_composite_inertia_23,
-                ),
-        );
-    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_29
-                .mul_add(n(0.15), end_effector_composite_inertia_27),
-        );
-    let end_effector_composite_inertia_31 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_29,
-                    q[1] * end_effector_composite_inertia_28,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_29,
-                        q[4] * end_effector_composite_inertia_28,
-                    )),
-        );
-    let end_effector_composite_inertia_32 = end_effector_composite_inertia_30
-        + end_effector_composite_inertia_31;
-    let end_effector_composite_inertia_33 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_34 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    // cart: composite inertia (15 additions, 20 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
+    let cart_composite_inertia_5 = end_effector_composite_inertia_37
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_33
-                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
+            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
         );
-    let cart_composite_inertia_4 = (-q[6])
+    let cart_composite_inertia_6 = end_effector_composite_inertia_38
+        + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = end_effector_composite_inertia_38
+        + cart_composite_inertia_3;
+    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_9 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_5 = (q[3]
+    let cart_composite_inertia_10 = (-q[2])
+        .mul_add(
+            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[1]
+                * ((-q[2])
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_11 = (-q[5])
+        .mul_add(
+            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[4]
+                * ((-q[5])
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_12 = end_effector_composite_inertia_38
+        + cart_composite_inertia_8;
+    let cart_composite_inertia_13 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] * n(2.0));
-    let cart_composite_inertia_6 = (q[6]
+        )) * (q[3] + q[3]);
+    let cart_composite_inertia_14 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] * n(2.0));
+        )) * (q[6] + q[6]);
+    // plate: composite inertia (3 additions)
+    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
+        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
+        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
-    let end_effector_factor_2 = end_effector_composite_inertia_18 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_18)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
+    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
+    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
+    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
         .mul_add(
             end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_13,
-                            q[10] * end_effector_composite_inertia_12,
-                        ),
-                ),
+            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
         );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[10] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_5 = (-end_effector_composite_inertia_28)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_19);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_30)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_21);
-    let end_effector_factor_7 = (-end_effector_composite_inertia_32)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_21 + end_effector_composite_inertia_22,
-        );
-    let end_effector_factor_8 = end_effector_composite_inertia_7 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[7] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_10 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
+    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
+    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
+    let end_effector_factor_9 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_32
+            end_effector_composite_inertia_35
                 .mul_add(
-                    end_effector_factor_10,
+                    end_effector_factor_8,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_12 = end_effector_composite_inertia_30 * end_effector_factor;
-    let end_effector_factor_13 = end_effector_composite_inertia_32 * end_effector_factor;
-    let end_effector_factor_14 = n(1.0) / end_effector_factor_3;
-    let end_effector_factor_15 = end_effector_factor_4 * end_effector_factor_14;
-    let end_effector_factor_16 = (-end_effector_factor_5)
+    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
+    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
+    let end_effector_factor_12 = n(1.0)
+        / ((-end_effector_composite_inertia_21)
+            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
+    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
+    let end_effector_factor_14 = (-end_effector_factor_4)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_28)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_8),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_31)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
         );
-    let end_effector_factor_17 = (-end_effector_factor_6)
+    let end_effector_factor_15 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_30)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_10),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_33)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
         );
-    let end_effector_factor_18 = (-end_effector_factor_7)
+    let end_effector_factor_16 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_35)
                 .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_10 + end_effector_composite_inertia_11,
+                    end_effector_factor_7,
+                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
                 ),
         );
-    let end_effector_factor_19 = end_effector_factor_5 * end_effector_factor_14;
-    let end_effector_factor_20 = end_effector_factor_6 * end_effector_factor_14;
-    let end_effector_factor_21 = end_effector_factor_7 * end_effector_factor_14;
-    let end_effector_factor_22 = (-end_effector_factor_7)
+    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
+    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
+    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
+    let end_effector_factor_20 = n(1.0)
+        / ((-end_effector_factor_3)
+            .mul_add(
+                end_effector_factor_13,
+                (-end_effector_composite_inertia_9)
+                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
+            ));
+    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
+    let end_effector_factor_22 = end_effector_factor_15
         .mul_add(
             end_effector_factor_21,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_5
                 .mul_add(
-                    end_effector_factor_13,
-                    cart_composite_inertia_3 + cart_composite_inertia_5
-                        + cart_composite_inertia_6 + n(2.05),
+                    end_effector_factor_17,
+                    end_effector_composite_inertia_33
+                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_15, end_effector_factor_9));
-    let end_effector_factor_24 = end_effector_factor_16 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_17
+    let end_effector_factor_23 = end_effector_factor_16
+        .mul_add(
+            end_effector_factor_21,
+            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
+        );
+    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
+    let end_effector_factor_25 = end_effector_factor_16
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_19,
-                    end_effector_composite_inertia_30
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_26 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_19, end_effector_factor_11),
-        );
-    let end_effector_factor_27 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_32)
+                    end_effector_factor_18,
+                    end_effector_composite_inertia_35
                         .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_3 - cart_composite_inertia_4,
+                            end_effector_factor_10,
+                            cart_composite_inertia_8 + cart_composite_inertia_9,
                         ),
                 ),
         );
-    let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_15)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
+    let end_effector_load_2 = (-end_effector_factor_13)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_7, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_21)
         .mul_add(
             end_effector_load_2,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
+            (-end_effector_factor_17)
+                .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[2])),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_16
+        / (end_effector_factor_14
             .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
+                end_effector_factor_21,
+                end_effector_factor_4
                     .mul_add(
-                        end_effector_factor_19,
-                        end_effector_composite_inertia_28
-                            .mul_add(end_effector_factor_10, -n(5.7)),
+                        end_effector_factor_17,
+                        end_effector_composite_inertia_31
+                            .mul_add(end_effector_factor_8, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_17)
+    let cart_factor_2 = end_effector_factor_22 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_22)
         .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
+            cart_factor_2,
+            end_effector_factor_15
                 .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_30)
+                    end_effector_factor_24,
+                    end_effector_factor_5
                         .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_3),
+                            end_effector_factor_18,
+                            end_effector_composite_inertia_33
+                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
                         ),
                 ),
         );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
-    let cart_factor_5 = end_effector_factor_26 * cart_factor;
-    let cart_factor_6 = n(1.0) / cart_factor_3;
-    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_4 = (-end_effector_factor_23)
+        .mul_add(cart_factor_2, end_effector_factor_25);
+    let cart_factor_5 = end_effector_factor_23 * cart_factor;
+    let cart_factor_6 = (-end_effector_factor_16)
+        .mul_add(
+            end_effector_factor_26,
+            (-end_effector_factor_6)
+                .mul_add(
+                    end_effector_factor_19,
+                    (-end_effector_composite_inertia_35)
+                        .mul_add(
+                            end_effector_factor_11,
+                            end_effector_factor_23
+                                .mul_add(cart_factor_5, plate_composite_inertia),
+                        ),
+                ),
+        );
+    let cart_factor_7 = n(1.0) / cart_factor_3;
+    let cart_factor_8 = cart_factor_4 * cart_factor_7;
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_20)
+                    (-end_effector_factor_18)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
+                            (-p[5]).mul_add(end_effector_factor_10, p[1]),
                         ),
                 ),
         );
     let cart_load_2 = (-cart_factor_5)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_29)
+            (-end_effector_factor_26)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_21)
+                    (-end_effector_factor_19)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
+                            (-p[5]).mul_add(end_effector_factor_11, p[0]),
                         ),
                 ),
         );
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
     // plate: response (1 multiplication)
-    let plate_speed = plate_factor * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
+        * ((-cart_factor_8).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
-    let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
+    let cart_speed = cart_factor_7 * (cart_factor_4.mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_speed,
-                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
+                cart_speed,
+                end_effector_factor_23.mul_add(plate_speed, end_effector_load_3),
             ));
     // cart: momentum (6 additions, 10 multiplications)
     let cart_momentum = q[6] * plate_speed;
     let cart_momentum_2 = q[3] * plate_speed;
     let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
-    let cart_momentum_4 = plate_speed + cart_speed;
+    let cart_momentum_4 = plate_speed - cart_speed;
     let cart_momentum_5 = (-q[4])
         .mul_add(cart_momentum_2, q[1].mul_add(cart_momentum, cart_speed_2));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_speed = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_speed = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_speed,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_speed,
-                        end_effector_factor_16.mul_add(cart_speed_2, end_effector_load_2),
+                        end_effector_factor_14.mul_add(cart_speed_2, end_effector_load_2),
                     ),
             ));
     let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            cart_speed_2,
-            end_effector_factor_7
+            cart_speed,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_speed,
+                    cart_speed_2,
                     end_effector_factor_6
-                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
+                        .mul_add(plate_speed, end_effector_factor_3 * end_effector_speed),
                 ),
         );
-    let end_effector_speed_2 = end_effector_factor_14
+    let end_effector_speed_2 = end_effector_factor_12
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_28)
+    let end_effector_response_2 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_speed_2,
-            end_effector_composite_inertia_30
+            cart_speed,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_speed,
-                    end_effector_composite_inertia_7
+                    cart_speed_2,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_speed,
-                            end_effector_composite_inertia_18 * end_effector_speed_2,
+                            end_effector_composite_inertia_21 * end_effector_speed_2,
                         ),
                 ),
         );
     let end_effector_speed_3 = end_effector_factor
-        * ((-end_effector_composite_inertia_32)
+        * ((-end_effector_composite_inertia_35)
             .mul_add(plate_speed, p[5] - end_effector_response_2));
     // end_effector: momentum (23 additions, 32 multiplications)
     let end_effector_momentum = (-cart_momentum_4).mul_add(n(0.02), cart_momentum_5);
@@ -2333,7 +2396,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
         );
     let end_effector_momentum_11 = (-end_effector_momentum_8)
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-end_effector_momentum_7)
                 .mul_add(
                     n(0.042300000000000004),
@@ -2510,7 +2573,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
     [
         [
             plate_speed,
-            cart_speed,
+            -cart_speed,
             -cart_speed_2,
             end_effector_speed,
             end_effector_speed_2,
@@ -2600,7 +2663,7 @@ pub fn momenta<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
                     n(0.085),
                     (-end_effector_momentum_8)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_momentum_7)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -2680,25 +2743,43 @@ pub fn momenta<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
 
 /// v̄ = M̄⁻¹ p̄.
 ///
-/// Operations: 156 additions, 219 multiplications, 6 divisions.
+/// Operations: 182 additions, 235 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
     let n = T::from_f64;
-    // end_effector: composite inertia (75 additions, 113 multiplications)
+    // end_effector: composite inertia (83 additions, 119 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
         .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
     let end_effector_composite_inertia_3 = (-q[9])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
         );
     let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[15])
+    let end_effector_composite_inertia_7 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[7] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_8 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[10] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_9 = (-q[15])
         .mul_add(
             end_effector_composite_inertia_3,
             q[14]
@@ -2707,7 +2788,7 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                     q[13] * end_effector_composite_inertia,
                 ),
         );
-    let end_effector_composite_inertia_8 = (-q[9])
+    let end_effector_composite_inertia_10 = (-q[9])
         .mul_add(
             end_effector_composite_inertia_6,
             q[8]
@@ -2716,7 +2797,7 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                     q[7] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_9 = (-q[12])
+    let end_effector_composite_inertia_11 = (-q[12])
         .mul_add(
             end_effector_composite_inertia_6,
             q[11]
@@ -2725,89 +2806,98 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                     q[10] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_10 = end_effector_composite_inertia_8
+    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_9
-                .mul_add(n(0.15), end_effector_composite_inertia_7),
+            end_effector_composite_inertia_11
+                .mul_add(n(0.15), end_effector_composite_inertia_9),
         );
-    let end_effector_composite_inertia_11 = (-q[6])
+    let end_effector_composite_inertia_13 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_9,
-                    q[1] * end_effector_composite_inertia_8,
+                    end_effector_composite_inertia_11,
+                    q[1] * end_effector_composite_inertia_10,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_9,
-                        q[4] * end_effector_composite_inertia_8,
+                        end_effector_composite_inertia_11,
+                        q[4] * end_effector_composite_inertia_10,
                     )),
         );
-    let end_effector_composite_inertia_12 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_13 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
     let end_effector_composite_inertia_14 = (-q[12])
+        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
+    let end_effector_composite_inertia_15 = q[12]
+        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
+    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
         );
-    let end_effector_composite_inertia_15 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_16 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_17 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_18 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_14,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_13,
-                    q[13] * end_effector_composite_inertia_12,
-                ),
-        );
-    let end_effector_composite_inertia_19 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_17,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[7] * end_effector_composite_inertia_15,
-                ),
-        );
+    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
     let end_effector_composite_inertia_20 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_17,
+            end_effector_composite_inertia_16,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[10] * end_effector_composite_inertia_15,
+                    end_effector_composite_inertia_15,
+                    q[10] * end_effector_composite_inertia_14,
                 ),
         );
-    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
+    let end_effector_composite_inertia_21 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_16,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_15,
+                    q[13] * end_effector_composite_inertia_14,
+                ),
+        );
+    let end_effector_composite_inertia_22 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[7] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_23 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[10] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_20
-                .mul_add(n(0.15), end_effector_composite_inertia_18),
+            end_effector_composite_inertia_23
+                .mul_add(n(0.15), end_effector_composite_inertia_21),
         );
-    let end_effector_composite_inertia_22 = (-q[6])
+    let end_effector_composite_inertia_25 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_20,
-                    q[1] * end_effector_composite_inertia_19,
+                    end_effector_composite_inertia_23,
+                    q[1] * end_effector_composite_inertia_22,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_20,
-                        q[4] * end_effector_composite_inertia_19,
+                        end_effector_composite_inertia_23,
+                        q[4] * end_effector_composite_inertia_22,
                     )),
         );
-    let end_effector_composite_inertia_23 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_24 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_25 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_26 = q[14]
+    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_29 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -2821,386 +2911,405 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_27 = (-q[15])
+    let end_effector_composite_inertia_30 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
-                    n(0.027130000000000015),
+                    n(0.02713),
                     (-q[14])
                         .mul_add(
                             n(0.042300000000000004),
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_26,
+            end_effector_composite_inertia_29,
         );
-    let end_effector_composite_inertia_28 = (-q[9])
+    let end_effector_composite_inertia_31 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[7] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[7] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_29 = (-q[12])
+    let end_effector_composite_inertia_32 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[10] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[10] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
+    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_29
-                .mul_add(n(0.15), end_effector_composite_inertia_27),
+            end_effector_composite_inertia_32
+                .mul_add(n(0.15), end_effector_composite_inertia_30),
         );
-    let end_effector_composite_inertia_31 = (-q[6])
+    let end_effector_composite_inertia_34 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_29,
-                    q[1] * end_effector_composite_inertia_28,
+                    end_effector_composite_inertia_32,
+                    q[1] * end_effector_composite_inertia_31,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_29,
-                        q[4] * end_effector_composite_inertia_28,
+                        end_effector_composite_inertia_32,
+                        q[4] * end_effector_composite_inertia_31,
                     )),
         );
-    let end_effector_composite_inertia_32 = end_effector_composite_inertia_30
-        + end_effector_composite_inertia_31;
-    let end_effector_composite_inertia_33 = (-q[8])
+    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
+        + end_effector_composite_inertia_34;
+    let end_effector_composite_inertia_36 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_34 = (-q[11])
+    let end_effector_composite_inertia_37 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    // cart: composite inertia (15 additions, 20 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
+    let end_effector_composite_inertia_38 = (-((-q[14])
+        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
+        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
+    // cart: composite inertia (31 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
+        .mul_add(
+            n(0.3),
+            end_effector_composite_inertia_7 - n(0.20162999999999998)
+                - n(0.12764999999999999),
+        );
+    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+        .mul_add(
+            n(0.15),
+            end_effector_composite_inertia_36
+                .mul_add(
+                    n(0.02),
+                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                ),
+        );
+    let cart_composite_inertia_5 = end_effector_composite_inertia_37
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_33
-                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
+            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
         );
-    let cart_composite_inertia_4 = (-q[6])
+    let cart_composite_inertia_6 = end_effector_composite_inertia_38
+        + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = end_effector_composite_inertia_38
+        + cart_composite_inertia_3;
+    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_9 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_5 = (q[3]
+    let cart_composite_inertia_10 = (-q[2])
+        .mul_add(
+            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[1]
+                * ((-q[2])
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_11 = (-q[5])
+        .mul_add(
+            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[4]
+                * ((-q[5])
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_12 = end_effector_composite_inertia_38
+        + cart_composite_inertia_8;
+    let cart_composite_inertia_13 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] * n(2.0));
-    let cart_composite_inertia_6 = (q[6]
+        )) * (q[3] + q[3]);
+    let cart_composite_inertia_14 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] * n(2.0));
+        )) * (q[6] + q[6]);
+    // plate: composite inertia (3 additions)
+    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
+        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
+        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
-    let end_effector_factor_2 = end_effector_composite_inertia_18 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_18)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
+    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
+    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
+    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
         .mul_add(
             end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_13,
-                            q[10] * end_effector_composite_inertia_12,
-                        ),
-                ),
+            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
         );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[10] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_5 = (-end_effector_composite_inertia_28)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_19);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_30)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_21);
-    let end_effector_factor_7 = (-end_effector_composite_inertia_32)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_21 + end_effector_composite_inertia_22,
-        );
-    let end_effector_factor_8 = end_effector_composite_inertia_7 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[7] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_10 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
+    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
+    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
+    let end_effector_factor_9 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_32
+            end_effector_composite_inertia_35
                 .mul_add(
-                    end_effector_factor_10,
+                    end_effector_factor_8,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_12 = end_effector_composite_inertia_30 * end_effector_factor;
-    let end_effector_factor_13 = end_effector_composite_inertia_32 * end_effector_factor;
-    let end_effector_factor_14 = n(1.0) / end_effector_factor_3;
-    let end_effector_factor_15 = end_effector_factor_4 * end_effector_factor_14;
-    let end_effector_factor_16 = (-end_effector_factor_5)
+    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
+    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
+    let end_effector_factor_12 = n(1.0)
+        / ((-end_effector_composite_inertia_21)
+            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
+    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
+    let end_effector_factor_14 = (-end_effector_factor_4)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_28)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_8),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_31)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
         );
-    let end_effector_factor_17 = (-end_effector_factor_6)
+    let end_effector_factor_15 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_30)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_10),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_33)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
         );
-    let end_effector_factor_18 = (-end_effector_factor_7)
+    let end_effector_factor_16 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_35)
                 .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_10 + end_effector_composite_inertia_11,
+                    end_effector_factor_7,
+                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
                 ),
         );
-    let end_effector_factor_19 = end_effector_factor_5 * end_effector_factor_14;
-    let end_effector_factor_20 = end_effector_factor_6 * end_effector_factor_14;
-    let end_effector_factor_21 = end_effector_factor_7 * end_effector_factor_14;
-    let end_effector_factor_22 = (-end_effector_factor_7)
+    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
+    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
+    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
+    let end_effector_factor_20 = n(1.0)
+        / ((-end_effector_factor_3)
+            .mul_add(
+                end_effector_factor_13,
+                (-end_effector_composite_inertia_9)
+                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
+            ));
+    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
+    let end_effector_factor_22 = end_effector_factor_15
         .mul_add(
             end_effector_factor_21,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_5
                 .mul_add(
-                    end_effector_factor_13,
-                    cart_composite_inertia_3 + cart_composite_inertia_5
-                        + cart_composite_inertia_6 + n(2.05),
+                    end_effector_factor_17,
+                    end_effector_composite_inertia_33
+                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_15, end_effector_factor_9));
-    let end_effector_factor_24 = end_effector_factor_16 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_17
+    let end_effector_factor_23 = end_effector_factor_16
+        .mul_add(
+            end_effector_factor_21,
+            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
+        );
+    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
+    let end_effector_factor_25 = end_effector_factor_16
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_19,
-                    end_effector_composite_inertia_30
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_26 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_19, end_effector_factor_11),
-        );
-    let end_effector_factor_27 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_32)
+                    end_effector_factor_18,
+                    end_effector_composite_inertia_35
                         .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_3 - cart_composite_inertia_4,
+                            end_effector_factor_10,
+                            cart_composite_inertia_8 + cart_composite_inertia_9,
                         ),
                 ),
         );
-    let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_15)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
+    let end_effector_load_2 = (-end_effector_factor_13)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_7, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_21)
         .mul_add(
             end_effector_load_2,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
+            (-end_effector_factor_17)
+                .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[2])),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_16
+        / (end_effector_factor_14
             .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
+                end_effector_factor_21,
+                end_effector_factor_4
                     .mul_add(
-                        end_effector_factor_19,
-                        end_effector_composite_inertia_28
-                            .mul_add(end_effector_factor_10, -n(5.7)),
+                        end_effector_factor_17,
+                        end_effector_composite_inertia_31
+                            .mul_add(end_effector_factor_8, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_17)
+    let cart_factor_2 = end_effector_factor_22 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_22)
         .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
+            cart_factor_2,
+            end_effector_factor_15
                 .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_30)
+                    end_effector_factor_24,
+                    end_effector_factor_5
                         .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_3),
+                            end_effector_factor_18,
+                            end_effector_composite_inertia_33
+                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
                         ),
                 ),
         );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
-    let cart_factor_5 = end_effector_factor_26 * cart_factor;
-    let cart_factor_6 = n(1.0) / cart_factor_3;
-    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_4 = (-end_effector_factor_23)
+        .mul_add(cart_factor_2, end_effector_factor_25);
+    let cart_factor_5 = end_effector_factor_23 * cart_factor;
+    let cart_factor_6 = (-end_effector_factor_16)
+        .mul_add(
+            end_effector_factor_26,
+            (-end_effector_factor_6)
+                .mul_add(
+                    end_effector_factor_19,
+                    (-end_effector_composite_inertia_35)
+                        .mul_add(
+                            end_effector_factor_11,
+                            end_effector_factor_23
+                                .mul_add(cart_factor_5, plate_composite_inertia),
+                        ),
+                ),
+        );
+    let cart_factor_7 = n(1.0) / cart_factor_3;
+    let cart_factor_8 = cart_factor_4 * cart_factor_7;
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_20)
+                    (-end_effector_factor_18)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
+                            (-p[5]).mul_add(end_effector_factor_10, p[1]),
                         ),
                 ),
         );
     let cart_load_2 = (-cart_factor_5)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_29)
+            (-end_effector_factor_26)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_21)
+                    (-end_effector_factor_19)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
+                            (-p[5]).mul_add(end_effector_factor_11, p[0]),
                         ),
                 ),
         );
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
     // plate: response (1 multiplication)
-    let plate_speed = plate_factor * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
+        * ((-cart_factor_8).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
-    let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
+    let cart_speed = cart_factor_7 * (cart_factor_4.mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_speed,
-                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
+                cart_speed,
+                end_effector_factor_23.mul_add(plate_speed, end_effector_load_3),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_speed = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_speed = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_speed,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_speed,
-                        end_effector_factor_16.mul_add(cart_speed_2, end_effector_load_2),
+                        end_effector_factor_14.mul_add(cart_speed_2, end_effector_load_2),
                     ),
             ));
     let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            cart_speed_2,
-            end_effector_factor_7
+            cart_speed,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_speed,
+                    cart_speed_2,
                     end_effector_factor_6
-                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
+                        .mul_add(plate_speed, end_effector_factor_3 * end_effector_speed),
                 ),
         );
-    let end_effector_speed_2 = end_effector_factor_14
+    let end_effector_speed_2 = end_effector_factor_12
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_28)
+    let end_effector_response_2 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_speed_2,
-            end_effector_composite_inertia_30
+            cart_speed,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_speed,
-                    end_effector_composite_inertia_7
+                    cart_speed_2,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_speed,
-                            end_effector_composite_inertia_18 * end_effector_speed_2,
+                            end_effector_composite_inertia_21 * end_effector_speed_2,
                         ),
                 ),
         );
     [
         plate_speed,
-        cart_speed,
+        -cart_speed,
         -cart_speed_2,
         end_effector_speed,
         end_effector_speed_2,
         end_effector_factor
-            * ((-end_effector_composite_inertia_32)
+            * ((-end_effector_composite_inertia_35)
                 .mul_add(plate_speed, p[5] - end_effector_response_2)),
     ]
 }
 
 /// H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.
 ///
-/// Operations: 166 additions, 230 multiplications, 6 divisions.
+/// Operations: 190 additions, 243 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
     let n = T::from_f64;
-    // end_effector: composite inertia (77 additions, 116 multiplications)
+    // end_effector: composite inertia (83 additions, 119 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
         .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
     let end_effector_composite_inertia_3 = (-q[9])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
         );
     let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[15])
+    let end_effector_composite_inertia_7 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[7] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_8 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[10] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_9 = (-q[15])
         .mul_add(
             end_effector_composite_inertia_3,
             q[14]
@@ -3209,7 +3318,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                     q[13] * end_effector_composite_inertia,
                 ),
         );
-    let end_effector_composite_inertia_8 = (-q[9])
+    let end_effector_composite_inertia_10 = (-q[9])
         .mul_add(
             end_effector_composite_inertia_6,
             q[8]
@@ -3218,7 +3327,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                     q[7] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_9 = (-q[12])
+    let end_effector_composite_inertia_11 = (-q[12])
         .mul_add(
             end_effector_composite_inertia_6,
             q[11]
@@ -3227,89 +3336,98 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                     q[10] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_10 = end_effector_composite_inertia_8
+    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_9
-                .mul_add(n(0.15), end_effector_composite_inertia_7),
+            end_effector_composite_inertia_11
+                .mul_add(n(0.15), end_effector_composite_inertia_9),
         );
-    let end_effector_composite_inertia_11 = (-q[6])
+    let end_effector_composite_inertia_13 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_9,
-                    q[1] * end_effector_composite_inertia_8,
+                    end_effector_composite_inertia_11,
+                    q[1] * end_effector_composite_inertia_10,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_9,
-                        q[4] * end_effector_composite_inertia_8,
+                        end_effector_composite_inertia_11,
+                        q[4] * end_effector_composite_inertia_10,
                     )),
         );
-    let end_effector_composite_inertia_12 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_13 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
     let end_effector_composite_inertia_14 = (-q[12])
+        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
+    let end_effector_composite_inertia_15 = q[12]
+        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
+    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
         );
-    let end_effector_composite_inertia_15 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_16 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_17 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_18 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_14,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_13,
-                    q[13] * end_effector_composite_inertia_12,
-                ),
-        );
-    let end_effector_composite_inertia_19 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_17,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[7] * end_effector_composite_inertia_15,
-                ),
-        );
+    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
     let end_effector_composite_inertia_20 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_17,
+            end_effector_composite_inertia_16,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[10] * end_effector_composite_inertia_15,
+                    end_effector_composite_inertia_15,
+                    q[10] * end_effector_composite_inertia_14,
                 ),
         );
-    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
+    let end_effector_composite_inertia_21 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_16,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_15,
+                    q[13] * end_effector_composite_inertia_14,
+                ),
+        );
+    let end_effector_composite_inertia_22 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[7] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_23 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[10] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_20
-                .mul_add(n(0.15), end_effector_composite_inertia_18),
+            end_effector_composite_inertia_23
+                .mul_add(n(0.15), end_effector_composite_inertia_21),
         );
-    let end_effector_composite_inertia_22 = (-q[6])
+    let end_effector_composite_inertia_25 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_20,
-                    q[1] * end_effector_composite_inertia_19,
+                    end_effector_composite_inertia_23,
+                    q[1] * end_effector_composite_inertia_22,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_20,
-                        q[4] * end_effector_composite_inertia_19,
+                        end_effector_composite_inertia_23,
+                        q[4] * end_effector_composite_inertia_22,
                     )),
         );
-    let end_effector_composite_inertia_23 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_24 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_25 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_26 = q[14]
+    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_29 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -3323,376 +3441,375 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_27 = (-q[15])
+    let end_effector_composite_inertia_30 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
-                    n(0.027130000000000015),
+                    n(0.02713),
                     (-q[14])
                         .mul_add(
                             n(0.042300000000000004),
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_26,
+            end_effector_composite_inertia_29,
         );
-    let end_effector_composite_inertia_28 = (-q[9])
+    let end_effector_composite_inertia_31 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[7] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[7] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_29 = (-q[12])
+    let end_effector_composite_inertia_32 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[10] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[10] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
+    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_29
-                .mul_add(n(0.15), end_effector_composite_inertia_27),
+            end_effector_composite_inertia_32
+                .mul_add(n(0.15), end_effector_composite_inertia_30),
         );
-    let end_effector_composite_inertia_31 = (-q[6])
+    let end_effector_composite_inertia_34 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_29,
-                    q[1] * end_effector_composite_inertia_28,
+                    end_effector_composite_inertia_32,
+                    q[1] * end_effector_composite_inertia_31,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_29,
-                        q[4] * end_effector_composite_inertia_28,
+                        end_effector_composite_inertia_32,
+                        q[4] * end_effector_composite_inertia_31,
                     )),
         );
-    let end_effector_composite_inertia_32 = end_effector_composite_inertia_30
-        + end_effector_composite_inertia_31;
-    let end_effector_composite_inertia_33 = (-q[8])
+    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
+        + end_effector_composite_inertia_34;
+    let end_effector_composite_inertia_36 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_34 = (-q[11])
+    let end_effector_composite_inertia_37 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    // cart: composite inertia (16 additions, 20 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
+    let end_effector_composite_inertia_38 = (-q[14])
+        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)));
+    let end_effector_composite_inertia_39 = (-end_effector_composite_inertia_38)
+        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
+    // cart: composite inertia (32 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
+        .mul_add(
+            n(0.3),
+            end_effector_composite_inertia_7 - n(0.20162999999999998)
+                - n(0.12764999999999999),
+        );
+    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+        .mul_add(
+            n(0.15),
+            end_effector_composite_inertia_36
+                .mul_add(
+                    n(0.02),
+                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                ),
+        );
+    let cart_composite_inertia_5 = end_effector_composite_inertia_37
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_33
-                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
+            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
         );
-    let cart_composite_inertia_4 = (-q[6])
+    let cart_composite_inertia_6 = end_effector_composite_inertia_39
+        + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = end_effector_composite_inertia_39
+        + cart_composite_inertia_3;
+    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_9 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_5 = (q[3]
+    let cart_composite_inertia_10 = (-q[2])
+        .mul_add(
+            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[1]
+                * ((-q[2])
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_11 = (-q[5])
+        .mul_add(
+            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[4]
+                * ((-q[5])
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_12 = end_effector_composite_inertia_39
+        + cart_composite_inertia_8;
+    let cart_composite_inertia_13 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] * n(2.0));
-    let cart_composite_inertia_6 = (q[6]
+        )) * (q[3] + q[3]);
+    let cart_composite_inertia_14 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] * n(2.0));
+        )) * (q[6] + q[6]);
+    // plate: composite inertia (3 additions)
+    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
+        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
+        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
-    let end_effector_factor_2 = end_effector_composite_inertia_18 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_18)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
+    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
+    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
+    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
         .mul_add(
             end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_13,
-                            q[10] * end_effector_composite_inertia_12,
-                        ),
-                ),
+            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
         );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[10] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_5 = (-end_effector_composite_inertia_28)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_19);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_30)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_21);
-    let end_effector_factor_7 = (-end_effector_composite_inertia_32)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_21 + end_effector_composite_inertia_22,
-        );
-    let end_effector_factor_8 = end_effector_composite_inertia_7 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[7] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_10 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
+    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
+    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
+    let end_effector_factor_9 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_32
+            end_effector_composite_inertia_35
                 .mul_add(
-                    end_effector_factor_10,
+                    end_effector_factor_8,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_12 = end_effector_composite_inertia_30 * end_effector_factor;
-    let end_effector_factor_13 = end_effector_composite_inertia_32 * end_effector_factor;
-    let end_effector_factor_14 = n(1.0) / end_effector_factor_3;
-    let end_effector_factor_15 = end_effector_factor_4 * end_effector_factor_14;
-    let end_effector_factor_16 = (-end_effector_factor_5)
+    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
+    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
+    let end_effector_factor_12 = n(1.0)
+        / ((-end_effector_composite_inertia_21)
+            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
+    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
+    let end_effector_factor_14 = (-end_effector_factor_4)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_28)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_8),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_31)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
         );
-    let end_effector_factor_17 = (-end_effector_factor_6)
+    let end_effector_factor_15 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_30)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_10),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_33)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
         );
-    let end_effector_factor_18 = (-end_effector_factor_7)
+    let end_effector_factor_16 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_35)
                 .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_10 + end_effector_composite_inertia_11,
+                    end_effector_factor_7,
+                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
                 ),
         );
-    let end_effector_factor_19 = end_effector_factor_5 * end_effector_factor_14;
-    let end_effector_factor_20 = end_effector_factor_6 * end_effector_factor_14;
-    let end_effector_factor_21 = end_effector_factor_7 * end_effector_factor_14;
-    let end_effector_factor_22 = (-end_effector_factor_7)
+    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
+    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
+    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
+    let end_effector_factor_20 = n(1.0)
+        / ((-end_effector_factor_3)
+            .mul_add(
+                end_effector_factor_13,
+                (-end_effector_composite_inertia_9)
+                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
+            ));
+    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
+    let end_effector_factor_22 = end_effector_factor_15
         .mul_add(
             end_effector_factor_21,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_5
                 .mul_add(
-                    end_effector_factor_13,
-                    cart_composite_inertia_3 + cart_composite_inertia_5
-                        + cart_composite_inertia_6 + n(2.05),
+                    end_effector_factor_17,
+                    end_effector_composite_inertia_33
+                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_15, end_effector_factor_9));
-    let end_effector_factor_24 = end_effector_factor_16 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_17
+    let end_effector_factor_23 = end_effector_factor_16
+        .mul_add(
+            end_effector_factor_21,
+            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
+        );
+    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
+    let end_effector_factor_25 = end_effector_factor_16
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_19,
-                    end_effector_composite_inertia_30
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_26 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_19, end_effector_factor_11),
-        );
-    let end_effector_factor_27 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_32)
+                    end_effector_factor_18,
+                    end_effector_composite_inertia_35
                         .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_3 - cart_composite_inertia_4,
+                            end_effector_factor_10,
+                            cart_composite_inertia_8 + cart_composite_inertia_9,
                         ),
                 ),
         );
-    let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_15)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
+    let end_effector_load_2 = (-end_effector_factor_13)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_7, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_21)
         .mul_add(
             end_effector_load_2,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
+            (-end_effector_factor_17)
+                .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[2])),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_16
+        / (end_effector_factor_14
             .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
+                end_effector_factor_21,
+                end_effector_factor_4
                     .mul_add(
-                        end_effector_factor_19,
-                        end_effector_composite_inertia_28
-                            .mul_add(end_effector_factor_10, -n(5.7)),
+                        end_effector_factor_17,
+                        end_effector_composite_inertia_31
+                            .mul_add(end_effector_factor_8, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_17)
+    let cart_factor_2 = end_effector_factor_22 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_22)
         .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
+            cart_factor_2,
+            end_effector_factor_15
                 .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_30)
+                    end_effector_factor_24,
+                    end_effector_factor_5
                         .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_3),
+                            end_effector_factor_18,
+                            end_effector_composite_inertia_33
+                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
                         ),
                 ),
         );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
-    let cart_factor_5 = end_effector_factor_26 * cart_factor;
-    let cart_factor_6 = n(1.0) / cart_factor_3;
-    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_4 = (-end_effector_factor_23)
+        .mul_add(cart_factor_2, end_effector_factor_25);
+    let cart_factor_5 = end_effector_factor_23 * cart_factor;
+    let cart_factor_6 = (-end_effector_factor_16)
+        .mul_add(
+            end_effector_factor_26,
+            (-end_effector_factor_6)
+                .mul_add(
+                    end_effector_factor_19,
+                    (-end_effector_composite_inertia_35)
+                        .mul_add(
+                            end_effector_factor_11,
+                            end_effector_factor_23
+                                .mul_add(cart_factor_5, plate_composite_inertia),
+                        ),
+                ),
+        );
+    let cart_factor_7 = n(1.0) / cart_factor_3;
+    let cart_factor_8 = cart_factor_4 * cart_factor_7;
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_20)
+                    (-end_effector_factor_18)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
+                            (-p[5]).mul_add(end_effector_factor_10, p[1]),
                         ),
                 ),
         );
     let cart_load_2 = (-cart_factor_5)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_29)
+            (-end_effector_factor_26)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_21)
+                    (-end_effector_factor_19)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
+                            (-p[5]).mul_add(end_effector_factor_11, p[0]),
                         ),
                 ),
         );
-    // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
     // plate: response (1 multiplication)
-    let plate_speed = plate_factor * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
+        * ((-cart_factor_8).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
-    let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
+    let cart_speed = cart_factor_7 * (cart_factor_4.mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_speed,
-                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
+                cart_speed,
+                end_effector_factor_23.mul_add(plate_speed, end_effector_load_3),
             ));
     // end_effector: response (17 additions, 22 multiplications)
-    let end_effector_speed = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_speed = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_speed,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_speed,
-                        end_effector_factor_16.mul_add(cart_speed_2, end_effector_load_2),
+                        end_effector_factor_14.mul_add(cart_speed_2, end_effector_load_2),
                     ),
             ));
     let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            cart_speed_2,
-            end_effector_factor_7
+            cart_speed,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_speed,
+                    cart_speed_2,
                     end_effector_factor_6
-                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
+                        .mul_add(plate_speed, end_effector_factor_3 * end_effector_speed),
                 ),
         );
-    let end_effector_speed_2 = end_effector_factor_14
+    let end_effector_speed_2 = end_effector_factor_12
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_28)
+    let end_effector_response_2 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_speed_2,
-            end_effector_composite_inertia_30
+            cart_speed,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_speed,
-                    end_effector_composite_inertia_7
+                    cart_speed_2,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_speed,
-                            end_effector_composite_inertia_18 * end_effector_speed_2,
+                            end_effector_composite_inertia_21 * end_effector_speed_2,
                         ),
                 ),
         );
     let end_effector_response_3 = (-p[2])
         .mul_add(
             cart_speed_2,
-            p[3]
+            (-p[1])
                 .mul_add(
-                    end_effector_speed,
-                    p[1].mul_add(cart_speed, p[0] * plate_speed),
+                    cart_speed,
+                    p[3].mul_add(end_effector_speed, p[0] * plate_speed),
                 ),
         );
     let end_effector_response_4 = p[5]
         .mul_add(
             end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(plate_speed, p[5] - end_effector_response_2)),
             p[4].mul_add(end_effector_speed_2, end_effector_response_3),
         );
-    // plate: first moment (2 additions, 1 multiplication)
-    let plate_first_moment = (-q[14])
-        .mul_add(
-            n(0.136),
-            q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))),
-        );
-    [plate_first_moment.mul_add(n(9.81), end_effector_response_4 * n(0.5))]
+    [
+        (end_effector_composite_inertia_38 + n(1.31) - n(0.36))
+            .mul_add(n(9.81), end_effector_response_4 * n(0.5)),
+    ]
 }
 
 /// Kinetic and potential energy, J.
@@ -3776,7 +3893,7 @@ pub fn energies<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 2] {
                     n(0.085),
                     (-end_effector_momentum_8)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_momentum_7)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -3894,7 +4011,7 @@ pub fn poses<T: Scalar>(q: &[T; 16]) -> [[T; 12]; 3] {
 
 /// For each speed ∂v̄̇/∂ϕ, ∂v̄̇/∂v̄ and ∂v̄̇/∂τ in local coordinates ϕ about Q, then v̄̇; where constraints couple joints ∂v̄/∂ϕ and ∂v̄/∂v̄ of the speeds that they complete after these.
 ///
-/// Operations: 1244 additions, 1521 multiplications, 6 divisions.
+/// Operations: 1275 additions, 1523 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics_derivatives<T: Scalar>(
@@ -3918,21 +4035,22 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // plate: acceleration (1 multiplication)
     let plate_acceleration = v[0] * v[0];
-    // cart: acceleration (4 additions, 10 multiplications)
-    let cart_acceleration = v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0));
-    let cart_acceleration_2 = q[3] * plate_acceleration;
-    let cart_acceleration_3 = q[6] * plate_acceleration;
-    let cart_acceleration_4 = q[4]
-        .mul_add(cart_acceleration_3, q[1] * cart_acceleration_2);
-    let cart_acceleration_5 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_6 = (-q[5])
+    // cart: acceleration (5 additions, 9 multiplications)
+    let cart_acceleration = v[0] * v[2];
+    let cart_acceleration_2 = v[1].mul_add(v[2], cart_acceleration + cart_acceleration);
+    let cart_acceleration_3 = q[3] * plate_acceleration;
+    let cart_acceleration_4 = q[6] * plate_acceleration;
+    let cart_acceleration_5 = q[4]
+        .mul_add(cart_acceleration_4, q[1] * cart_acceleration_3);
+    let cart_acceleration_6 = cart_rate_z * cart_rate_z;
+    let cart_acceleration_7 = (-q[5])
         .mul_add(
-            cart_acceleration_3,
-            (-q[2]).mul_add(cart_acceleration_2, cart_acceleration),
+            cart_acceleration_4,
+            (-q[2]).mul_add(cart_acceleration_3, cart_acceleration_2),
         );
     // cart: force (3 additions, 6 multiplications)
-    let cart_force = cart_acceleration_5 * n(0.495);
-    let cart_force_2 = cart_acceleration_5 * n(0.046);
+    let cart_force = cart_acceleration_6 * n(0.495);
+    let cart_force_2 = cart_acceleration_6 * n(0.046);
     // end_effector: acceleration (20 additions, 23 multiplications)
     let end_effector_acceleration = (-end_effector_joint_2)
         .mul_add(
@@ -3949,10 +4067,10 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_angular_velocity_2,
             end_effector_joint_2 * end_effector_angular_velocity,
         );
-    let end_effector_acceleration_4 = cart_acceleration_5 * n(0.15);
-    let end_effector_acceleration_5 = cart_acceleration_5 * n(0.02);
-    let end_effector_acceleration_6 = cart_acceleration_4 + end_effector_acceleration_4;
-    let end_effector_acceleration_7 = cart_acceleration_6 + end_effector_acceleration_5;
+    let end_effector_acceleration_4 = cart_acceleration_6 * n(0.15);
+    let end_effector_acceleration_5 = cart_acceleration_6 * n(0.02);
+    let end_effector_acceleration_6 = cart_acceleration_5 + end_effector_acceleration_4;
+    let end_effector_acceleration_7 = cart_acceleration_7 + end_effector_acceleration_5;
     let end_effector_acceleration_8 = q[13] * n(9.81);
     let end_effector_acceleration_9 = (-q[10])
         .mul_add(
@@ -3977,112 +4095,99 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_acceleration_17 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_18 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_19 = end_effector_rate_z * end_effector_rate_z;
-    // end_effector: force (30 additions, 39 multiplications)
-    let end_effector_force = (-end_effector_rate_z)
+    let end_effector_acceleration_20 = end_effector_acceleration_3
+        + end_effector_acceleration_15;
+    let end_effector_acceleration_21 = end_effector_acceleration_2
+        - end_effector_acceleration_16;
+    let end_effector_acceleration_22 = end_effector_acceleration_3
+        - end_effector_acceleration_15;
+    let end_effector_acceleration_23 = end_effector_acceleration
+        + end_effector_acceleration_18;
+    let end_effector_acceleration_24 = end_effector_acceleration_2
+        + end_effector_acceleration_16;
+    let end_effector_acceleration_25 = end_effector_acceleration
+        - end_effector_acceleration_18;
+    // end_effector: force (27 additions, 30 multiplications)
+    let end_effector_force = end_effector_acceleration_18 * n(0.15511999999999998);
+    let end_effector_force_2 = (end_effector_acceleration_17
+        - end_effector_acceleration_19) * n(0.042300000000000004);
+    let end_effector_force_3 = (-end_effector_acceleration_20)
         .mul_add(
             n(0.027499999999999997),
-            end_effector_rate_y.mul_add(n(0.0078), end_effector_rate_x * n(0.19388)),
+            end_effector_acceleration_21
+                .mul_add(
+                    n(0.0078),
+                    end_effector_acceleration
+                        .mul_add(n(0.19388), end_effector_force_2 - end_effector_force),
+                ),
         );
-    let end_effector_force_2 = end_effector_rate_z
+    let end_effector_force_4 = end_effector_acceleration_16 * n(0.16674999999999998);
+    let end_effector_force_5 = (end_effector_acceleration_14
+        - end_effector_acceleration_19) * n(0.027499999999999997);
+    let end_effector_force_6 = end_effector_acceleration_23
         .mul_add(
-            n(0.042300000000000004),
-            end_effector_rate_y.mul_add(n(0.18225), end_effector_rate_x * n(0.0078)),
-        );
-    let end_effector_force_3 = (-end_effector_rate_z)
-        .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_rate_y)
+            n(0.0078),
+            end_effector_acceleration_22
                 .mul_add(
                     n(0.042300000000000004),
-                    end_effector_rate_x * n(0.027499999999999997),
+                    end_effector_acceleration_2
+                        .mul_add(n(0.18225), end_effector_force_4 + end_effector_force_5),
                 ),
         );
-    let end_effector_force_4 = end_effector_rate_z
-        .mul_add(end_effector_force_2, end_effector_rate_y * end_effector_force_3);
-    let end_effector_force_5 = end_effector_rate_x
-        .mul_add(end_effector_force_3, end_effector_rate_z * end_effector_force);
-    let end_effector_force_6 = (-end_effector_rate_y)
-        .mul_add(end_effector_force, end_effector_rate_x * end_effector_force_2);
-    let end_effector_force_7 = (-end_effector_acceleration_3)
+    let end_effector_force_7 = end_effector_acceleration_15 * n(0.01163);
+    let end_effector_force_8 = (end_effector_acceleration_14
+        - end_effector_acceleration_17) * n(0.0078);
+    let end_effector_force_9 = (-end_effector_acceleration_25)
         .mul_add(
             n(0.027499999999999997),
-            end_effector_acceleration_11
+            end_effector_acceleration_24
                 .mul_add(
-                    n(0.51),
-                    end_effector_acceleration_13
-                        .mul_add(
-                            n(0.136),
-                            end_effector_acceleration_2
-                                .mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
-                        ),
+                    n(0.042300000000000004),
+                    end_effector_acceleration_3
+                        .mul_add(n(0.02713), end_effector_force_8 - end_effector_force_7),
                 ),
         );
-    let end_effector_force_8 = (-end_effector_acceleration_9)
+    let end_effector_force_10 = end_effector_acceleration_11
         .mul_add(
             n(0.51),
-            end_effector_acceleration_13
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_3
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_acceleration_2
-                                .mul_add(n(0.18225), end_effector_acceleration * n(0.0078)),
-                        ),
-                ),
+            end_effector_acceleration_13.mul_add(n(0.136), end_effector_force_3),
         );
-    let end_effector_force_9 = (-end_effector_acceleration_3)
+    let end_effector_force_11 = (-end_effector_acceleration_9)
         .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_acceleration_2)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_9
-                        .mul_add(
-                            n(0.136),
-                            end_effector_acceleration_11
-                                .mul_add(
-                                    n(0.085),
-                                    end_effector_acceleration * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
+            n(0.51),
+            end_effector_acceleration_13.mul_add(n(0.085), end_effector_force_6),
         );
-    let end_effector_force_10 = end_effector_force_4 - end_effector_force_7;
-    let end_effector_force_11 = end_effector_force_5 + end_effector_force_8;
-    let end_effector_force_12 = end_effector_force_6 - end_effector_force_9;
+    let end_effector_force_12 = (-end_effector_acceleration_9)
+        .mul_add(
+            n(0.136),
+            (-end_effector_acceleration_11).mul_add(n(0.085), end_effector_force_9),
+        );
     let end_effector_force_13 = (end_effector_acceleration_17
         + end_effector_acceleration_19) * n(0.085);
-    let end_effector_force_14 = (-(end_effector_acceleration_2
-        + end_effector_acceleration_16))
+    let end_effector_force_14 = (-end_effector_acceleration_24)
         .mul_add(
             n(0.51),
-            (-(end_effector_acceleration_3 - end_effector_acceleration_15))
-                .mul_add(n(0.136), end_effector_force_13),
+            (-end_effector_acceleration_22).mul_add(n(0.136), end_effector_force_13),
         );
     let end_effector_force_15 = (end_effector_acceleration_14
         + end_effector_acceleration_19) * n(0.136);
-    let end_effector_force_16 = (-(end_effector_acceleration
-        - end_effector_acceleration_18))
+    let end_effector_force_16 = (-end_effector_acceleration_25)
         .mul_add(
             n(0.51),
-            (end_effector_acceleration_3 + end_effector_acceleration_15)
-                .mul_add(n(0.085), end_effector_force_15),
+            end_effector_acceleration_20.mul_add(n(0.085), end_effector_force_15),
         );
     let end_effector_force_17 = (end_effector_acceleration_14
         + end_effector_acceleration_17) * n(0.51);
-    let end_effector_force_18 = (end_effector_acceleration
-        + end_effector_acceleration_18)
+    let end_effector_force_18 = end_effector_acceleration_23
         .mul_add(
             n(0.136),
-            (end_effector_acceleration_2 - end_effector_acceleration_16)
-                .mul_add(n(0.085), end_effector_force_17),
+            end_effector_acceleration_21.mul_add(n(0.085), end_effector_force_17),
         );
     // end_effector: effort (12 additions, 17 multiplications)
-    let end_effector_effort = (-q[15])
+    let end_effector_effort = q[15]
         .mul_add(
             end_effector_force_12,
-            (-q[14]).mul_add(end_effector_force_11, q[13] * end_effector_force_10),
+            q[14].mul_add(end_effector_force_11, q[13] * end_effector_force_10),
         );
     let end_effector_effort_2 = (-q[8])
         .mul_add(
@@ -4094,20 +4199,38 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_force_16,
             q[12].mul_add(end_effector_force_18, q[10] * end_effector_force_14),
         );
-    // end_effector: composite inertia (75 additions, 113 multiplications)
+    // end_effector: composite inertia (83 additions, 119 multiplications)
     let end_effector_composite_inertia = (-q[9])
         .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
     let end_effector_composite_inertia_2 = q[9]
         .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
     let end_effector_composite_inertia_3 = (-q[9])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
         );
     let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[15])
+    let end_effector_composite_inertia_7 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[7] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_8 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_3,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_2,
+                    q[10] * end_effector_composite_inertia,
+                ),
+        );
+    let end_effector_composite_inertia_9 = (-q[15])
         .mul_add(
             end_effector_composite_inertia_3,
             q[14]
@@ -4116,7 +4239,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[13] * end_effector_composite_inertia,
                 ),
         );
-    let end_effector_composite_inertia_8 = (-q[9])
+    let end_effector_composite_inertia_10 = (-q[9])
         .mul_add(
             end_effector_composite_inertia_6,
             q[8]
@@ -4125,7 +4248,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[7] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_9 = (-q[12])
+    let end_effector_composite_inertia_11 = (-q[12])
         .mul_add(
             end_effector_composite_inertia_6,
             q[11]
@@ -4134,89 +4257,98 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[10] * end_effector_composite_inertia_4,
                 ),
         );
-    let end_effector_composite_inertia_10 = end_effector_composite_inertia_8
+    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_9
-                .mul_add(n(0.15), end_effector_composite_inertia_7),
+            end_effector_composite_inertia_11
+                .mul_add(n(0.15), end_effector_composite_inertia_9),
         );
-    let end_effector_composite_inertia_11 = (-q[6])
+    let end_effector_composite_inertia_13 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_9,
-                    q[1] * end_effector_composite_inertia_8,
+                    end_effector_composite_inertia_11,
+                    q[1] * end_effector_composite_inertia_10,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_9,
-                        q[4] * end_effector_composite_inertia_8,
+                        end_effector_composite_inertia_11,
+                        q[4] * end_effector_composite_inertia_10,
                     )),
         );
-    let end_effector_composite_inertia_12 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_13 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
     let end_effector_composite_inertia_14 = (-q[12])
+        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
+    let end_effector_composite_inertia_15 = q[12]
+        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
+    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.027130000000000015),
+            n(0.02713),
             (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
         );
-    let end_effector_composite_inertia_15 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_16 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_17 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_18 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_14,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_13,
-                    q[13] * end_effector_composite_inertia_12,
-                ),
-        );
-    let end_effector_composite_inertia_19 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_17,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[7] * end_effector_composite_inertia_15,
-                ),
-        );
+    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
     let end_effector_composite_inertia_20 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_17,
+            end_effector_composite_inertia_16,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[10] * end_effector_composite_inertia_15,
+                    end_effector_composite_inertia_15,
+                    q[10] * end_effector_composite_inertia_14,
                 ),
         );
-    let end_effector_composite_inertia_21 = end_effector_composite_inertia_19
+    let end_effector_composite_inertia_21 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_16,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_15,
+                    q[13] * end_effector_composite_inertia_14,
+                ),
+        );
+    let end_effector_composite_inertia_22 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[7] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_23 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_19,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_18,
+                    q[10] * end_effector_composite_inertia_17,
+                ),
+        );
+    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_20
-                .mul_add(n(0.15), end_effector_composite_inertia_18),
+            end_effector_composite_inertia_23
+                .mul_add(n(0.15), end_effector_composite_inertia_21),
         );
-    let end_effector_composite_inertia_22 = (-q[6])
+    let end_effector_composite_inertia_25 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_20,
-                    q[1] * end_effector_composite_inertia_19,
+                    end_effector_composite_inertia_23,
+                    q[1] * end_effector_composite_inertia_22,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_20,
-                        q[4] * end_effector_composite_inertia_19,
+                        end_effector_composite_inertia_23,
+                        q[4] * end_effector_composite_inertia_22,
                     )),
         );
-    let end_effector_composite_inertia_23 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_24 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_25 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_26 = q[14]
+    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_29 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -4230,63 +4362,66 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_27 = (-q[15])
+    let end_effector_composite_inertia_30 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
-                    n(0.027130000000000015),
+                    n(0.02713),
                     (-q[14])
                         .mul_add(
                             n(0.042300000000000004),
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_26,
+            end_effector_composite_inertia_29,
         );
-    let end_effector_composite_inertia_28 = (-q[9])
+    let end_effector_composite_inertia_31 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[7] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[7] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_29 = (-q[12])
+    let end_effector_composite_inertia_32 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_25,
+            end_effector_composite_inertia_28,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[10] * end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_27,
+                    q[10] * end_effector_composite_inertia_26,
                 ),
         );
-    let end_effector_composite_inertia_30 = end_effector_composite_inertia_28
+    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_29
-                .mul_add(n(0.15), end_effector_composite_inertia_27),
+            end_effector_composite_inertia_32
+                .mul_add(n(0.15), end_effector_composite_inertia_30),
         );
-    let end_effector_composite_inertia_31 = (-q[6])
+    let end_effector_composite_inertia_34 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_29,
-                    q[1] * end_effector_composite_inertia_28,
+                    end_effector_composite_inertia_32,
+                    q[1] * end_effector_composite_inertia_31,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_29,
-                        q[4] * end_effector_composite_inertia_28,
+                        end_effector_composite_inertia_32,
+                        q[4] * end_effector_composite_inertia_31,
                     )),
         );
-    let end_effector_composite_inertia_32 = end_effector_composite_inertia_30
-        + end_effector_composite_inertia_31;
-    let end_effector_composite_inertia_33 = (-q[8])
+    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
+        + end_effector_composite_inertia_34;
+    let end_effector_composite_inertia_36 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_34 = (-q[11])
+    let end_effector_composite_inertia_37 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+    let end_effector_composite_inertia_38 = (-((-q[14])
+        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
+        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
     // cart: effort (7 additions, 6 multiplications)
     let cart_effort = (-end_effector_effort_2)
         .mul_add(
@@ -4294,324 +4429,325 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             (-end_effector_effort_3)
                 .mul_add(
                     n(0.15),
-                    cart_acceleration_4
+                    cart_acceleration_5
                         .mul_add(
                             n(0.046),
-                            cart_acceleration_6.mul_add(n(0.495), -end_effector_effort),
+                            cart_acceleration_7.mul_add(n(0.495), end_effector_effort),
                         ),
                 ),
         );
-    let cart_effort_2 = cart_acceleration_4
+    let cart_effort_2 = cart_acceleration_5
         .mul_add(n(5.7), cart_force + end_effector_effort_2);
-    let cart_effort_3 = cart_acceleration_6
+    let cart_effort_3 = cart_acceleration_7
         .mul_add(n(5.7), -cart_force_2 - end_effector_effort_3);
     let cart_effort_4 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
             q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
-    // cart: composite inertia (15 additions, 20 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_33 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_34 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_34)
+    // cart: composite inertia (31 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
+    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
+        .mul_add(
+            n(0.3),
+            end_effector_composite_inertia_7 - n(0.20162999999999998)
+                - n(0.12764999999999999),
+        );
+    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+        .mul_add(
+            n(0.15),
+            end_effector_composite_inertia_36
+                .mul_add(
+                    n(0.02),
+                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                ),
+        );
+    let cart_composite_inertia_5 = end_effector_composite_inertia_37
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_33
-                .mul_add(n(0.3), end_effector_composite_inertia_27 + n(0.16493)),
+            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
         );
-    let cart_composite_inertia_4 = (-q[6])
+    let cart_composite_inertia_6 = end_effector_composite_inertia_38
+        + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = end_effector_composite_inertia_38
+        + cart_composite_inertia_3;
+    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_9 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_5 = (q[3]
+    let cart_composite_inertia_10 = (-q[2])
+        .mul_add(
+            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[1]
+                * ((-q[2])
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_11 = (-q[5])
+        .mul_add(
+            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[4]
+                * ((-q[5])
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+        );
+    let cart_composite_inertia_12 = end_effector_composite_inertia_38
+        + cart_composite_inertia_8;
+    let cart_composite_inertia_13 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] * n(2.0));
-    let cart_composite_inertia_6 = (q[6]
+        )) * (q[3] + q[3]);
+    let cart_composite_inertia_14 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] * n(2.0));
+        )) * (q[6] + q[6]);
+    // plate: composite inertia (3 additions)
+    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
+        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
+        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: effort (3 additions)
-    let end_effector_effort_4 = end_effector_effort + tau[6];
+    let end_effector_effort_4 = end_effector_effort - tau[6];
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_27;
-    let end_effector_factor_2 = end_effector_composite_inertia_18 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_18)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
+    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
+    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
+    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
         .mul_add(
             end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_13,
-                            q[10] * end_effector_composite_inertia_12,
-                        ),
-                ),
+            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
         );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[10] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_5 = (-end_effector_composite_inertia_28)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_19);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_30)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_21);
-    let end_effector_factor_7 = (-end_effector_composite_inertia_32)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_21 + end_effector_composite_inertia_22,
-        );
-    let end_effector_factor_8 = end_effector_composite_inertia_7 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_7)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_3,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_2,
-                            q[7] * end_effector_composite_inertia,
-                        ),
-                ),
-        );
-    let end_effector_factor_10 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
+    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
+    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
+    let end_effector_factor_9 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_32
+            end_effector_composite_inertia_35
                 .mul_add(
-                    end_effector_factor_10,
+                    end_effector_factor_8,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_12 = end_effector_composite_inertia_30 * end_effector_factor;
-    let end_effector_factor_13 = end_effector_composite_inertia_32 * end_effector_factor;
-    let end_effector_factor_14 = n(1.0) / end_effector_factor_3;
-    let end_effector_factor_15 = end_effector_factor_4 * end_effector_factor_14;
-    let end_effector_factor_16 = (-end_effector_factor_5)
+    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
+    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
+    let end_effector_factor_12 = n(1.0)
+        / ((-end_effector_composite_inertia_21)
+            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
+    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
+    let end_effector_factor_14 = (-end_effector_factor_4)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_28)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_8),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_31)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
         );
-    let end_effector_factor_17 = (-end_effector_factor_6)
+    let end_effector_factor_15 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_30)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_10),
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_33)
+                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
         );
-    let end_effector_factor_18 = (-end_effector_factor_7)
+    let end_effector_factor_16 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_15,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_13,
+            (-end_effector_composite_inertia_35)
                 .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_10 + end_effector_composite_inertia_11,
+                    end_effector_factor_7,
+                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
                 ),
         );
-    let end_effector_factor_19 = end_effector_factor_5 * end_effector_factor_14;
-    let end_effector_factor_20 = end_effector_factor_6 * end_effector_factor_14;
-    let end_effector_factor_21 = end_effector_factor_7 * end_effector_factor_14;
-    let end_effector_factor_22 = (-end_effector_factor_7)
+    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
+    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
+    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
+    let end_effector_factor_20 = n(1.0)
+        / ((-end_effector_factor_3)
+            .mul_add(
+                end_effector_factor_13,
+                (-end_effector_composite_inertia_9)
+                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
+            ));
+    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
+    let end_effector_factor_22 = end_effector_factor_15
         .mul_add(
             end_effector_factor_21,
-            (-end_effector_composite_inertia_32)
+            end_effector_factor_5
                 .mul_add(
-                    end_effector_factor_13,
-                    cart_composite_inertia_3 + cart_composite_inertia_5
-                        + cart_composite_inertia_6 + n(2.05),
+                    end_effector_factor_17,
+                    end_effector_composite_inertia_33
+                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_15, end_effector_factor_9));
-    let end_effector_factor_24 = end_effector_factor_16 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_17
+    let end_effector_factor_23 = end_effector_factor_16
+        .mul_add(
+            end_effector_factor_21,
+            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
+        );
+    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
+    let end_effector_factor_25 = end_effector_factor_16
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_19,
-                    end_effector_composite_inertia_30
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_26 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_19, end_effector_factor_11),
-        );
-    let end_effector_factor_27 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_32)
+                    end_effector_factor_18,
+                    end_effector_composite_inertia_35
                         .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_3 - cart_composite_inertia_4,
+                            end_effector_factor_10,
+                            cart_composite_inertia_8 + cart_composite_inertia_9,
                         ),
                 ),
         );
-    let end_effector_factor_29 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-end_effector_effort_4)
         .mul_add(
             end_effector_factor_2,
-            (-q[12])
+            q[12]
                 .mul_add(
                     end_effector_force_12,
-                    (-q[11])
+                    q[11]
                         .mul_add(
                             end_effector_force_11,
-                            q[10].mul_add(end_effector_force_10, tau[5]),
+                            q[10].mul_add(end_effector_force_10, -tau[5]),
                         ),
                 ),
         );
     let end_effector_load_2 = (-end_effector_effort_4)
         .mul_add(
-            end_effector_factor_8,
-            (-q[9])
+            end_effector_factor_7,
+            q[9]
                 .mul_add(
                     end_effector_force_12,
-                    (-q[8])
+                    q[8]
                         .mul_add(
                             end_effector_force_11,
-                            q[7].mul_add(end_effector_force_10, tau[4]),
+                            q[7].mul_add(end_effector_force_10, -tau[4]),
                         ),
                 ),
         );
-    let end_effector_load_3 = (-end_effector_factor_15)
+    let end_effector_load_3 = (-end_effector_factor_13)
         .mul_add(end_effector_load, end_effector_load_2);
-    let end_effector_load_4 = (-end_effector_factor_24)
+    let end_effector_load_4 = end_effector_factor_21
+        .mul_add(
+            end_effector_load_3,
+            end_effector_factor_17
+                .mul_add(
+                    end_effector_load,
+                    end_effector_effort_4
+                        .mul_add(end_effector_factor_8, cart_effort_2 + tau[2]),
+                ),
+        );
+    let end_effector_load_5 = (-end_effector_factor_24)
+        .mul_add(
+            end_effector_load_3,
+            (-end_effector_factor_18)
+                .mul_add(
+                    end_effector_load,
+                    (-end_effector_effort_4)
+                        .mul_add(end_effector_factor_10, cart_effort - tau[1]),
+                ),
+        );
+    let end_effector_load_6 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_3,
             (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load,
                     (-end_effector_effort_4)
-                        .mul_add(end_effector_factor_10, cart_effort_2 + tau[2]),
-                ),
-        );
-    let end_effector_load_5 = end_effector_factor_27
-        .mul_add(
-            end_effector_load_3,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load,
-                    end_effector_effort_4
-                        .mul_add(end_effector_factor_12, cart_effort - tau[1]),
-                ),
-        );
-    let end_effector_load_6 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_3,
-            end_effector_factor_21
-                .mul_add(
-                    end_effector_load,
-                    end_effector_effort_4
                         .mul_add(
-                            end_effector_factor_13,
+                            end_effector_factor_11,
                             cart_effort - cart_effort_4 - tau[0],
                         ),
                 ),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_16
+        / (end_effector_factor_14
             .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
+                end_effector_factor_21,
+                end_effector_factor_4
                     .mul_add(
-                        end_effector_factor_19,
-                        end_effector_composite_inertia_28
-                            .mul_add(end_effector_factor_10, -n(5.7)),
+                        end_effector_factor_17,
+                        end_effector_composite_inertia_31
+                            .mul_add(end_effector_factor_8, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_17)
+    let cart_factor_2 = end_effector_factor_22 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_22)
         .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
+            cart_factor_2,
+            end_effector_factor_15
                 .mul_add(
-                    end_effector_factor_20,
-                    (-end_effector_composite_inertia_30)
+                    end_effector_factor_24,
+                    end_effector_factor_5
                         .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_3),
+                            end_effector_factor_18,
+                            end_effector_composite_inertia_33
+                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
                         ),
                 ),
         );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
-    let cart_factor_5 = end_effector_factor_26 * cart_factor;
-    let cart_factor_6 = n(1.0) / cart_factor_3;
-    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_4 = (-end_effector_factor_23)
+        .mul_add(cart_factor_2, end_effector_factor_25);
+    let cart_factor_5 = end_effector_factor_23 * cart_factor;
+    let cart_factor_6 = (-end_effector_factor_16)
+        .mul_add(
+            end_effector_factor_26,
+            (-end_effector_factor_6)
+                .mul_add(
+                    end_effector_factor_19,
+                    (-end_effector_composite_inertia_35)
+                        .mul_add(
+                            end_effector_factor_11,
+                            end_effector_factor_23
+                                .mul_add(cart_factor_5, plate_composite_inertia),
+                        ),
+                ),
+        );
+    let cart_factor_7 = n(1.0) / cart_factor_3;
+    let cart_factor_8 = cart_factor_4 * cart_factor_7;
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
     // plate: factor (1 division)
-    let plate_factor = n(1.0)
-        / ((-cart_factor_4)
-            .mul_add(
-                cart_factor_7,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        end_effector_factor_29,
-                        end_effector_factor_26
-                            .mul_add(cart_factor_5, end_effector_factor_22),
-                    ),
-            ));
+    let plate_factor = n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6));
     // plate: response (1 multiplication)
     let plate_acceleration_2 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load,
                 cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_acceleration_7 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
-    let cart_acceleration_8 = cart_factor
-        * ((-end_effector_factor_26)
+    let cart_acceleration_8 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_acceleration_2, cart_load));
+    let cart_acceleration_9 = cart_factor
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_acceleration_2,
-                (-end_effector_factor_25)
-                    .mul_add(cart_acceleration_7, end_effector_load_4),
+                end_effector_factor_22.mul_add(cart_acceleration_8, end_effector_load_4),
             ));
     // cart: acceleration (7 additions, 6 multiplications)
-    let cart_acceleration_9 = q[6] * plate_acceleration_2;
-    let cart_acceleration_10 = cart_acceleration_2 - cart_acceleration_9;
-    let cart_acceleration_11 = q[3] * plate_acceleration_2;
-    let cart_acceleration_12 = cart_acceleration_3 + cart_acceleration_11;
-    let cart_acceleration_13 = plate_acceleration_2 + cart_acceleration_7;
-    let cart_acceleration_14 = q[4]
+    let cart_acceleration_10 = q[6] * plate_acceleration_2;
+    let cart_acceleration_11 = cart_acceleration_3 - cart_acceleration_10;
+    let cart_acceleration_12 = q[3] * plate_acceleration_2;
+    let cart_acceleration_13 = cart_acceleration_4 + cart_acceleration_12;
+    let cart_acceleration_14 = plate_acceleration_2 - cart_acceleration_8;
+    let cart_acceleration_15 = q[4]
         .mul_add(
-            cart_acceleration_12,
-            q[1].mul_add(cart_acceleration_10, cart_acceleration_8),
+            cart_acceleration_13,
+            q[1].mul_add(cart_acceleration_11, cart_acceleration_9),
         );
-    let cart_acceleration_15 = (-q[5])
+    let cart_acceleration_16 = (-q[5])
         .mul_add(
-            cart_acceleration_12,
-            (-q[2]).mul_add(cart_acceleration_10, cart_acceleration),
+            cart_acceleration_13,
+            (-q[2]).mul_add(cart_acceleration_11, cart_acceleration_2),
         );
     // cart: motion (11 additions, 16 multiplications)
     let cart_motion = v[0] * q[6];
@@ -4619,126 +4755,138 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_motion_3 = (-q[4]).mul_add(cart_motion_2, q[1] * cart_motion);
     let cart_motion_4 = (-q[5]).mul_add(cart_motion_2, q[2] * cart_motion);
     let cart_motion_5 = v[2] - cart_motion_3;
-    // cart: variation (4 additions, 3 multiplications)
+    // cart: variation (5 additions, 2 multiplications)
     let cart_variation = v[0] + cart_rate_z;
     let cart_variation_2 = cart_motion_3 - cart_motion_5;
-    let cart_variation_3 = cart_motion_4 * n(2.0);
+    let cart_variation_3 = cart_motion_4 + cart_motion_4;
     let cart_variation_4 = (-v[0])
         .mul_add(
             cart_motion_3,
-            (-q[5]).mul_add(cart_acceleration_11, q[2] * cart_acceleration_9),
+            (-q[5]).mul_add(cart_acceleration_12, q[2] * cart_acceleration_10),
         );
     let cart_variation_5 = (-q[4])
         .mul_add(
-            cart_acceleration_11,
-            v[0].mul_add(cart_motion_4, q[1] * cart_acceleration_9),
+            cart_acceleration_12,
+            v[0].mul_add(cart_motion_4, q[1] * cart_acceleration_10),
         );
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_acceleration_20 = end_effector_factor_23
-        * (end_effector_factor_18
+    let end_effector_acceleration_26 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_acceleration_2,
-                end_effector_factor_17
+                (-end_effector_factor_14)
                     .mul_add(
-                        cart_acceleration_7,
-                        end_effector_factor_16
+                        cart_acceleration_9,
+                        end_effector_factor_15
                             .mul_add(cart_acceleration_8, end_effector_load_3),
                     ),
             ));
-    let end_effector_response = (-end_effector_factor_7)
+    let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            plate_acceleration_2,
-            (-end_effector_factor_6)
+            cart_acceleration_8,
+            end_effector_factor_6
                 .mul_add(
-                    cart_acceleration_7,
-                    (-end_effector_factor_5)
+                    plate_acceleration_2,
+                    end_effector_factor_4
                         .mul_add(
-                            cart_acceleration_8,
-                            end_effector_factor_4 * end_effector_acceleration_20,
+                            cart_acceleration_9,
+                            end_effector_factor_3 * end_effector_acceleration_26,
                         ),
                 ),
         );
-    let end_effector_acceleration_21 = end_effector_factor_14
+    let end_effector_acceleration_27 = end_effector_factor_12
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_30)
+    let end_effector_response_2 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_acceleration_7,
-            (-end_effector_composite_inertia_28)
+            cart_acceleration_8,
+            end_effector_composite_inertia_31
                 .mul_add(
-                    cart_acceleration_8,
-                    end_effector_composite_inertia_7
+                    cart_acceleration_9,
+                    end_effector_composite_inertia_9
                         .mul_add(
-                            end_effector_acceleration_20,
-                            end_effector_composite_inertia_18
-                                * end_effector_acceleration_21,
+                            end_effector_acceleration_26,
+                            end_effector_composite_inertia_21
+                                * end_effector_acceleration_27,
                         ),
                 ),
         );
-    let end_effector_acceleration_22 = end_effector_factor
-        * (end_effector_composite_inertia_32
+    let end_effector_acceleration_28 = end_effector_factor
+        * ((-end_effector_composite_inertia_35)
             .mul_add(
                 plate_acceleration_2,
                 end_effector_effort_4 - end_effector_response_2,
             ));
     // end_effector: acceleration (28 additions, 20 multiplications)
-    let end_effector_acceleration_23 = cart_acceleration_13 * n(0.02);
-    let end_effector_acceleration_24 = cart_acceleration_13 * n(0.15);
-    let end_effector_acceleration_25 = cart_acceleration_14 + end_effector_acceleration_4
-        + end_effector_acceleration_23;
-    let end_effector_acceleration_26 = cart_acceleration_15 + end_effector_acceleration_5
-        - end_effector_acceleration_24;
-    let end_effector_acceleration_27 = (-q[7])
+    let end_effector_acceleration_29 = cart_acceleration_14 * n(0.02);
+    let end_effector_acceleration_30 = cart_acceleration_14 * n(0.15);
+    let end_effector_acceleration_31 = cart_acceleration_15 + end_effector_acceleration_4
+        + end_effector_acceleration_29;
+    let end_effector_acceleration_32 = cart_acceleration_16 + end_effector_acceleration_5
+        - end_effector_acceleration_30;
+    let end_effector_acceleration_33 = (-q[7])
         .mul_add(
-            end_effector_acceleration_25,
-            q[10].mul_add(end_effector_acceleration_26, end_effector_acceleration_8),
+            end_effector_acceleration_31,
+            q[10].mul_add(end_effector_acceleration_32, end_effector_acceleration_8),
         );
-    let end_effector_acceleration_28 = (-q[8])
+    let end_effector_acceleration_34 = (-q[8])
         .mul_add(
-            end_effector_acceleration_25,
-            q[11].mul_add(end_effector_acceleration_26, end_effector_acceleration_10),
+            end_effector_acceleration_31,
+            q[11].mul_add(end_effector_acceleration_32, end_effector_acceleration_10),
         );
-    let end_effector_acceleration_29 = (-q[9])
+    let end_effector_acceleration_35 = (-q[9])
         .mul_add(
-            end_effector_acceleration_25,
-            q[12].mul_add(end_effector_acceleration_26, end_effector_acceleration_12),
+            end_effector_acceleration_31,
+            q[12].mul_add(end_effector_acceleration_32, end_effector_acceleration_12),
         );
-    let end_effector_acceleration_30 = q[13]
+    let end_effector_acceleration_36 = q[13]
         .mul_add(
-            end_effector_acceleration_22,
+            end_effector_acceleration_28,
             q[10]
                 .mul_add(
-                    end_effector_acceleration_21,
-                    q[7] * end_effector_acceleration_20,
+                    end_effector_acceleration_27,
+                    q[7] * end_effector_acceleration_26,
                 ),
         );
-    let end_effector_acceleration_31 = q[14]
+    let end_effector_acceleration_37 = q[14]
         .mul_add(
-            end_effector_acceleration_22,
+            end_effector_acceleration_28,
             q[11]
                 .mul_add(
-                    end_effector_acceleration_21,
-                    q[8] * end_effector_acceleration_20,
+                    end_effector_acceleration_27,
+                    q[8] * end_effector_acceleration_26,
                 ),
         );
-    let end_effector_acceleration_32 = q[15]
+    let end_effector_acceleration_38 = q[15]
         .mul_add(
-            end_effector_acceleration_22,
+            end_effector_acceleration_28,
             q[12]
                 .mul_add(
-                    end_effector_acceleration_21,
-                    q[9] * end_effector_acceleration_20,
+                    end_effector_acceleration_27,
+                    q[9] * end_effector_acceleration_26,
                 ),
         );
-    let end_effector_acceleration_33 = q[13] * cart_acceleration_13;
-    let end_effector_acceleration_34 = q[14] * cart_acceleration_13;
-    let end_effector_acceleration_35 = q[15] * cart_acceleration_13;
-    let end_effector_acceleration_36 = end_effector_acceleration
-        + end_effector_acceleration_30 - end_effector_acceleration_33;
-    let end_effector_acceleration_37 = end_effector_acceleration_2
-        + end_effector_acceleration_31 - end_effector_acceleration_34;
-    let end_effector_acceleration_38 = end_effector_acceleration_3
-        + end_effector_acceleration_32 - end_effector_acceleration_35;
-    // end_effector: motion (34 additions, 41 multiplications)
+    let end_effector_acceleration_39 = q[13] * cart_acceleration_14;
+    let end_effector_acceleration_40 = q[14] * cart_acceleration_14;
+    let end_effector_acceleration_41 = q[15] * cart_acceleration_14;
+    let end_effector_acceleration_42 = end_effector_acceleration
+        - end_effector_acceleration_36 - end_effector_acceleration_39;
+    let end_effector_acceleration_43 = end_effector_acceleration_2
+        - end_effector_acceleration_37 - end_effector_acceleration_40;
+    let end_effector_acceleration_44 = end_effector_acceleration_3
+        - end_effector_acceleration_38 - end_effector_acceleration_41;
+    let end_effector_acceleration_45 = end_effector_acceleration_15
+        + end_effector_acceleration_44;
+    let end_effector_acceleration_46 = end_effector_acceleration_16
+        - end_effector_acceleration_43;
+    let end_effector_acceleration_47 = end_effector_acceleration_15
+        - end_effector_acceleration_44;
+    let end_effector_acceleration_48 = end_effector_acceleration_18
+        + end_effector_acceleration_42;
+    let end_effector_acceleration_49 = end_effector_acceleration_16
+        + end_effector_acceleration_43;
+    let end_effector_acceleration_50 = end_effector_acceleration_18
+        - end_effector_acceleration_42;
+    // end_effector: motion (37 additions, 41 multiplications)
     let end_effector_motion = cart_rate_z.mul_add(n(0.02), cart_motion_5);
     let end_effector_motion_2 = (-cart_rate_z).mul_add(n(0.15), cart_motion_4);
     let end_effector_motion_3 = (-q[10])
@@ -4748,9 +4896,9 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_motion_5 = (-q[12])
         .mul_add(end_effector_motion_2, q[9] * end_effector_motion);
     let end_effector_motion_6 = cart_rate_z
-        .mul_add(cart_motion_4, end_effector_acceleration_23 + cart_acceleration_14);
+        .mul_add(cart_motion_4, end_effector_acceleration_29 + cart_acceleration_15);
     let end_effector_motion_7 = cart_rate_z
-        .mul_add(cart_motion_5, end_effector_acceleration_24 - cart_acceleration_15);
+        .mul_add(cart_motion_5, end_effector_acceleration_30 - cart_acceleration_16);
     let end_effector_motion_8 = (-q[10])
         .mul_add(
             end_effector_motion_7,
@@ -4766,88 +4914,73 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_motion_7,
             (-q[9]).mul_add(end_effector_motion_6, end_effector_acceleration_12),
         );
-    let end_effector_motion_11 = (-end_effector_acceleration_28)
+    let end_effector_motion_11 = (-end_effector_acceleration_45)
+        .mul_add(
+            n(0.027499999999999997),
+            (-end_effector_acceleration_46)
+                .mul_add(
+                    n(0.0078),
+                    end_effector_acceleration_42
+                        .mul_add(n(0.19388), end_effector_force_2 - end_effector_force),
+                ),
+        );
+    let end_effector_motion_12 = (-end_effector_acceleration_47)
+        .mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_48
+                .mul_add(
+                    n(0.0078),
+                    end_effector_acceleration_43
+                        .mul_add(n(0.18225), end_effector_force_5 + end_effector_force_4),
+                ),
+        );
+    let end_effector_motion_13 = end_effector_acceleration_49
+        .mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_50
+                .mul_add(
+                    n(0.027499999999999997),
+                    end_effector_acceleration_44
+                        .mul_add(n(0.02713), end_effector_force_8 - end_effector_force_7),
+                ),
+        );
+    let end_effector_motion_14 = (-end_effector_acceleration_34)
         .mul_add(
             n(0.51),
-            (-end_effector_acceleration_29)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_acceleration_38)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_acceleration_37
-                                .mul_add(
-                                    n(0.0078),
-                                    end_effector_acceleration_36 * n(0.19388),
-                                ),
-                        ),
-                ),
+            (-end_effector_acceleration_35).mul_add(n(0.136), end_effector_motion_11),
         );
-    let end_effector_motion_12 = (-end_effector_acceleration_29)
+    let end_effector_motion_15 = (-end_effector_acceleration_35)
         .mul_add(
             n(0.085),
-            end_effector_acceleration_27
-                .mul_add(
-                    n(0.51),
-                    end_effector_acceleration_38
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_acceleration_37
-                                .mul_add(
-                                    n(0.18225),
-                                    end_effector_acceleration_36 * n(0.0078),
-                                ),
-                        ),
-                ),
+            end_effector_acceleration_33.mul_add(n(0.51), end_effector_motion_12),
         );
-    let end_effector_motion_13 = (-end_effector_acceleration_27)
+    let end_effector_motion_16 = end_effector_acceleration_33
         .mul_add(
             n(0.136),
-            (-end_effector_acceleration_28)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_acceleration_38)
-                        .mul_add(
-                            n(0.027130000000000015),
-                            (-end_effector_acceleration_37)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_acceleration_36 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
+            end_effector_acceleration_34.mul_add(n(0.085), end_effector_motion_13),
         );
-    let end_effector_motion_14 = end_effector_force_4 - end_effector_motion_11;
-    let end_effector_motion_15 = end_effector_force_5 + end_effector_motion_12;
-    let end_effector_motion_16 = end_effector_force_6 - end_effector_motion_13;
-    let end_effector_motion_17 = (-(end_effector_acceleration_16
-        + end_effector_acceleration_37))
+    let end_effector_motion_17 = (-end_effector_acceleration_49)
         .mul_add(
             n(0.51),
-            (end_effector_acceleration_15 - end_effector_acceleration_38)
-                .mul_add(n(0.136), end_effector_force_13),
+            end_effector_acceleration_47.mul_add(n(0.136), end_effector_force_13),
         );
-    let end_effector_motion_18 = (end_effector_acceleration_18
-        - end_effector_acceleration_36)
+    let end_effector_motion_18 = end_effector_acceleration_50
         .mul_add(
             n(0.51),
-            (end_effector_acceleration_15 + end_effector_acceleration_38)
-                .mul_add(n(0.085), end_effector_force_15),
+            end_effector_acceleration_45.mul_add(n(0.085), end_effector_force_15),
         );
-    let end_effector_motion_19 = (-(end_effector_acceleration_16
-        - end_effector_acceleration_37))
+    let end_effector_motion_19 = (-end_effector_acceleration_46)
         .mul_add(
             n(0.085),
-            (end_effector_acceleration_18 + end_effector_acceleration_36)
-                .mul_add(n(0.136), end_effector_force_17),
+            end_effector_acceleration_48.mul_add(n(0.136), end_effector_force_17),
         );
-    // end_effector: variation (110 additions, 114 multiplications)
+    // end_effector: variation (113 additions, 111 multiplications)
     let end_effector_variation = end_effector_angular_velocity + end_effector_rate_x;
     let end_effector_variation_2 = end_effector_angular_velocity_2 + end_effector_rate_y;
     let end_effector_variation_3 = end_effector_angular_velocity_3 + end_effector_rate_z;
-    let end_effector_variation_4 = end_effector_motion_3 * n(2.0);
-    let end_effector_variation_5 = end_effector_motion_4 * n(2.0);
-    let end_effector_variation_6 = end_effector_motion_5 * n(2.0);
+    let end_effector_variation_4 = end_effector_motion_3 + end_effector_motion_3;
+    let end_effector_variation_5 = end_effector_motion_4 + end_effector_motion_4;
+    let end_effector_variation_6 = end_effector_motion_5 + end_effector_motion_5;
     let end_effector_variation_7 = end_effector_angular_velocity_2 * end_effector_rate_y;
     let end_effector_variation_8 = end_effector_angular_velocity_3 * end_effector_rate_z;
     let end_effector_variation_9 = end_effector_angular_velocity_2
@@ -4885,22 +5018,22 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         .mul_add(end_effector_motion_3, end_effector_motion_9),
                 ),
         );
-    let end_effector_variation_21 = end_effector_joint_2
-        .mul_add(
-            end_effector_rate_x,
-            end_effector_angular_velocity
-                .mul_add(
-                    end_effector_rate_y,
-                    end_effector_acceleration_32 - end_effector_acceleration_35,
-                ),
-        );
-    let end_effector_variation_22 = (-end_effector_joint_3)
+    let end_effector_variation_21 = (-end_effector_joint_2)
         .mul_add(
             end_effector_rate_x,
             (-end_effector_angular_velocity)
                 .mul_add(
+                    end_effector_rate_y,
+                    end_effector_acceleration_38 + end_effector_acceleration_41,
+                ),
+        );
+    let end_effector_variation_22 = end_effector_joint_3
+        .mul_add(
+            end_effector_rate_x,
+            end_effector_angular_velocity
+                .mul_add(
                     end_effector_rate_z,
-                    end_effector_acceleration_31 - end_effector_acceleration_34,
+                    end_effector_acceleration_37 + end_effector_acceleration_40,
                 ),
         );
     let end_effector_variation_23 = end_effector_angular_velocity * end_effector_rate_x;
@@ -4934,22 +5067,22 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         .mul_add(end_effector_motion_4, end_effector_motion_8),
                 ),
         );
-    let end_effector_variation_32 = (-end_effector_joint)
-        .mul_add(
-            end_effector_rate_y,
-            (-end_effector_angular_velocity_2)
-                .mul_add(
-                    end_effector_rate_x,
-                    end_effector_acceleration_32 - end_effector_acceleration_35,
-                ),
-        );
-    let end_effector_variation_33 = end_effector_joint_3
+    let end_effector_variation_32 = end_effector_joint
         .mul_add(
             end_effector_rate_y,
             end_effector_angular_velocity_2
                 .mul_add(
+                    end_effector_rate_x,
+                    end_effector_acceleration_38 + end_effector_acceleration_41,
+                ),
+        );
+    let end_effector_variation_33 = (-end_effector_joint_3)
+        .mul_add(
+            end_effector_rate_y,
+            (-end_effector_angular_velocity_2)
+                .mul_add(
                     end_effector_rate_z,
-                    end_effector_acceleration_30 - end_effector_acceleration_33,
+                    end_effector_acceleration_36 + end_effector_acceleration_39,
                 ),
         );
     let end_effector_variation_34 = end_effector_variation_7 + end_effector_variation_23
@@ -4977,22 +5110,22 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_variation_37 = end_effector_variation_9 + end_effector_variation_24
         + end_effector_variation_11 + end_effector_variation_25
         + end_effector_variation_15 + end_effector_variation_27;
-    let end_effector_variation_38 = end_effector_joint
-        .mul_add(
-            end_effector_rate_z,
-            end_effector_angular_velocity_3
-                .mul_add(
-                    end_effector_rate_x,
-                    end_effector_acceleration_31 - end_effector_acceleration_34,
-                ),
-        );
-    let end_effector_variation_39 = (-end_effector_joint_2)
+    let end_effector_variation_38 = (-end_effector_joint)
         .mul_add(
             end_effector_rate_z,
             (-end_effector_angular_velocity_3)
                 .mul_add(
+                    end_effector_rate_x,
+                    end_effector_acceleration_37 + end_effector_acceleration_40,
+                ),
+        );
+    let end_effector_variation_39 = end_effector_joint_2
+        .mul_add(
+            end_effector_rate_z,
+            end_effector_angular_velocity_3
+                .mul_add(
                     end_effector_rate_y,
-                    end_effector_acceleration_30 - end_effector_acceleration_33,
+                    end_effector_acceleration_36 + end_effector_acceleration_39,
                 ),
         );
     let end_effector_variation_40 = (-q[8])
@@ -5046,43 +5179,36 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         .mul_add(
             n(0.05499999999999999),
             end_effector_motion_4
-                .mul_add(n(0.17), end_effector_rate_z * n(0.015499999999999958)),
+                .mul_add(n(0.17), end_effector_rate_z * n(0.015500000000000003)),
         );
     let end_effector_variation_68 = (-end_effector_motion_5)
         .mul_add(
             n(0.17),
             end_effector_rate_y
-                .mul_add(n(0.015499999999999958), end_effector_rate_x * n(0.0156)),
+                .mul_add(n(0.015500000000000003), end_effector_rate_x * n(0.0156)),
         );
     let end_effector_variation_69 = end_effector_motion_3
         .mul_add(
             n(0.272),
             end_effector_rate_z
-                .mul_add(
-                    n(0.03875999999999996),
-                    end_effector_rate_y * n(0.08460000000000001),
-                ),
+                .mul_add(n(0.03876), end_effector_rate_y * n(0.08460000000000001)),
         );
     let end_effector_variation_70 = end_effector_variation_60 + end_effector_variation_63
         + end_effector_variation_65 - end_effector_variation_61;
     let end_effector_variation_71 = (-end_effector_motion_5)
         .mul_add(
             n(0.272),
-            end_effector_rate_y
-                .mul_add(n(0.0156), end_effector_rate_x * n(0.03875999999999996)),
+            end_effector_rate_y.mul_add(n(0.0156), end_effector_rate_x * n(0.03876)),
         );
     let end_effector_variation_72 = end_effector_motion_3
         .mul_add(
             n(1.02),
             end_effector_rate_z
-                .mul_add(
-                    n(0.08460000000000001),
-                    end_effector_rate_y * n(0.3489999999999999),
-                ),
+                .mul_add(n(0.08460000000000001), end_effector_rate_y * n(0.349)),
         );
     let end_effector_variation_73 = (-end_effector_rate_x)
         .mul_add(
-            n(0.3489999999999999),
+            n(0.349),
             end_effector_motion_4
                 .mul_add(n(1.02), end_effector_rate_z * n(0.05499999999999999)),
         );
@@ -5100,46 +5226,43 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_3 = (-end_effector_variation_20)
         .mul_add(
             n(0.136),
-            (-end_effector_variation_22)
+            end_effector_variation_19
                 .mul_add(
-                    n(0.027499999999999997),
-                    (-end_effector_variation_21)
+                    n(0.51),
+                    end_effector_variation_22
                         .mul_add(
-                            n(0.0078),
-                            end_effector_variation_19
-                                .mul_add(n(0.51), end_effector_variation_17 * n(0.19388)),
+                            n(0.027499999999999997),
+                            end_effector_variation_21
+                                .mul_add(n(0.0078), end_effector_variation_17 * n(0.19388)),
                         ),
                 ),
         );
     let end_effector_slope_4 = (-end_effector_variation_20)
         .mul_add(
             n(0.085),
-            (-end_effector_variation_21)
+            (-end_effector_variation_22)
                 .mul_add(
-                    n(0.18225),
+                    n(0.042300000000000004),
                     end_effector_variation_18
                         .mul_add(
                             n(0.51),
-                            end_effector_variation_22
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_17 * n(0.0078),
-                                ),
+                            end_effector_variation_21
+                                .mul_add(n(0.18225), end_effector_variation_17 * n(0.0078)),
                         ),
                 ),
         );
     let end_effector_slope_5 = (-end_effector_variation_18)
         .mul_add(
             n(0.136),
-            (-end_effector_variation_22)
+            (-end_effector_variation_21)
                 .mul_add(
-                    n(0.027130000000000015),
+                    n(0.042300000000000004),
                     end_effector_variation_19
                         .mul_add(
                             n(0.085),
-                            end_effector_variation_21
+                            end_effector_variation_22
                                 .mul_add(
-                                    n(0.042300000000000004),
+                                    n(0.02713),
                                     end_effector_variation_17 * n(0.027499999999999997),
                                 ),
                         ),
@@ -5160,53 +5283,56 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_variation_74,
             end_effector_rate_z.mul_add(end_effector_variation_71, -end_effector_slope_5),
         );
-    let end_effector_slope_9 = (-end_effector_variation_21)
+    let end_effector_slope_9 = (-end_effector_variation_22)
         .mul_add(
-            n(0.51),
-            end_effector_variation_22
-                .mul_add(n(0.136), end_effector_slope - end_effector_slope_2),
+            n(0.136),
+            end_effector_variation_21
+                .mul_add(n(0.51), end_effector_slope - end_effector_slope_2),
         );
     let end_effector_slope_10 = end_effector_rate_x * end_effector_variation_75;
-    let end_effector_slope_11 = (-end_effector_variation_30)
+    let end_effector_slope_11 = (-end_effector_variation_31)
         .mul_add(
-            n(0.51),
-            end_effector_variation_31
+            n(0.136),
+            (-end_effector_variation_28)
                 .mul_add(
-                    n(0.136),
-                    end_effector_variation_33
+                    n(0.0078),
+                    end_effector_variation_30
                         .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_28
-                                .mul_add(n(0.0078), end_effector_variation_32 * n(0.19388)),
+                            n(0.51),
+                            end_effector_variation_33
+                                .mul_add(
+                                    n(0.027499999999999997),
+                                    end_effector_variation_32 * n(0.19388),
+                                ),
                         ),
                 ),
         );
-    let end_effector_slope_12 = (-end_effector_variation_33)
+    let end_effector_slope_12 = (-end_effector_variation_31)
         .mul_add(
-            n(0.042300000000000004),
-            end_effector_variation_31
+            n(0.085),
+            (-end_effector_variation_29)
                 .mul_add(
-                    n(0.085),
-                    end_effector_variation_29
+                    n(0.51),
+                    (-end_effector_variation_33)
                         .mul_add(
-                            n(0.51),
-                            end_effector_variation_28
+                            n(0.042300000000000004),
+                            (-end_effector_variation_28)
                                 .mul_add(n(0.18225), end_effector_variation_32 * n(0.0078)),
                         ),
                 ),
         );
-    let end_effector_slope_13 = (-end_effector_variation_29)
+    let end_effector_slope_13 = end_effector_variation_29
         .mul_add(
             n(0.136),
-            (-end_effector_variation_30)
+            end_effector_variation_30
                 .mul_add(
                     n(0.085),
-                    (-end_effector_variation_28)
+                    end_effector_variation_33
                         .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_33
+                            n(0.02713),
+                            end_effector_variation_28
                                 .mul_add(
-                                    n(0.027130000000000015),
+                                    n(0.042300000000000004),
                                     end_effector_variation_32 * n(0.027499999999999997),
                                 ),
                         ),
@@ -5215,67 +5341,64 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_14 = (-end_effector_rate_x)
         .mul_add(
             end_effector_variation_72,
-            end_effector_rate_z
-                .mul_add(end_effector_variation_66, -end_effector_slope_11),
+            end_effector_rate_z.mul_add(end_effector_variation_66, end_effector_slope_11),
         );
     let end_effector_slope_15 = (-end_effector_rate_x)
         .mul_add(
             end_effector_variation_73,
-            end_effector_rate_z
-                .mul_add(end_effector_variation_67, -end_effector_slope_12),
+            end_effector_rate_z.mul_add(end_effector_variation_67, end_effector_slope_12),
         );
     let end_effector_slope_16 = (-end_effector_rate_x)
         .mul_add(
             end_effector_variation_74,
-            end_effector_rate_z
-                .mul_add(end_effector_variation_68, -end_effector_slope_13),
+            end_effector_rate_z.mul_add(end_effector_variation_68, end_effector_slope_13),
         );
-    let end_effector_slope_17 = (-end_effector_variation_32)
+    let end_effector_slope_17 = end_effector_variation_32
         .mul_add(
             n(0.51),
-            (-end_effector_variation_33)
+            end_effector_variation_33
                 .mul_add(n(0.085), end_effector_slope - end_effector_slope_10),
         );
-    let end_effector_slope_18 = (-end_effector_variation_39)
+    let end_effector_slope_18 = (-end_effector_variation_36)
         .mul_add(
-            n(0.0078),
-            end_effector_variation_36
+            n(0.51),
+            (-end_effector_variation_37)
+                .mul_add(
+                    n(0.136),
+                    (-end_effector_variation_34)
+                        .mul_add(
+                            n(0.027499999999999997),
+                            (-end_effector_variation_39)
+                                .mul_add(n(0.0078), end_effector_variation_38 * n(0.19388)),
+                        ),
+                ),
+        );
+    let end_effector_slope_19 = (-end_effector_variation_37)
+        .mul_add(
+            n(0.085),
+            (-end_effector_variation_35)
                 .mul_add(
                     n(0.51),
-                    end_effector_variation_37
+                    (-end_effector_variation_39)
                         .mul_add(
-                            n(0.136),
+                            n(0.18225),
                             end_effector_variation_34
                                 .mul_add(
-                                    n(0.027499999999999997),
-                                    end_effector_variation_38 * n(0.19388),
+                                    n(0.042300000000000004),
+                                    end_effector_variation_38 * n(0.0078),
                                 ),
                         ),
                 ),
         );
-    let end_effector_slope_19 = (-end_effector_variation_34)
+    let end_effector_slope_20 = (-end_effector_variation_36)
         .mul_add(
-            n(0.042300000000000004),
-            (-end_effector_variation_39)
+            n(0.085),
+            (-end_effector_variation_34)
                 .mul_add(
-                    n(0.18225),
-                    end_effector_variation_37
+                    n(0.02713),
+                    end_effector_variation_35
                         .mul_add(
-                            n(0.085),
-                            end_effector_variation_35
-                                .mul_add(n(0.51), end_effector_variation_38 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_20 = (-end_effector_variation_35)
-        .mul_add(
-            n(0.136),
-            end_effector_variation_36
-                .mul_add(
-                    n(0.085),
-                    end_effector_variation_34
-                        .mul_add(
-                            n(0.027130000000000015),
+                            n(0.136),
                             end_effector_variation_39
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -5287,26 +5410,23 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_21 = end_effector_rate_x
         .mul_add(
             end_effector_variation_69,
-            end_effector_rate_y
-                .mul_add(end_effector_variation_66, -end_effector_slope_18),
+            end_effector_rate_y.mul_add(end_effector_variation_66, end_effector_slope_18),
         );
     let end_effector_slope_22 = end_effector_rate_x
         .mul_add(
             end_effector_variation_70,
-            end_effector_rate_y
-                .mul_add(end_effector_variation_67, -end_effector_slope_19),
+            end_effector_rate_y.mul_add(end_effector_variation_67, end_effector_slope_19),
         );
     let end_effector_slope_23 = end_effector_rate_x
         .mul_add(
             end_effector_variation_71,
-            end_effector_rate_y
-                .mul_add(end_effector_variation_68, -end_effector_slope_20),
+            end_effector_rate_y.mul_add(end_effector_variation_68, end_effector_slope_20),
         );
-    let end_effector_slope_24 = (-end_effector_variation_38)
+    let end_effector_slope_24 = (-end_effector_variation_39)
         .mul_add(
-            n(0.136),
-            end_effector_variation_39
-                .mul_add(n(0.085), end_effector_slope_2 + end_effector_slope_10),
+            n(0.085),
+            end_effector_variation_38
+                .mul_add(n(0.136), end_effector_slope_2 + end_effector_slope_10),
         );
     let end_effector_slope_25 = q[7] * end_effector_variation_66;
     let end_effector_slope_26 = q[8] * end_effector_variation_70;
@@ -5347,7 +5467,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     n(0.085),
                     (-end_effector_variation_42)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_variation_41)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -5461,7 +5581,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     n(0.085),
                     (-end_effector_variation_48)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_variation_47)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -5575,7 +5695,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     n(0.085),
                     (-end_effector_variation_54)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_variation_53)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -5701,15 +5821,15 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_65 = (-q[9])
         .mul_add(
             end_effector_slope_16,
-            q[8]
+            (-q[9])
                 .mul_add(
-                    end_effector_slope_15,
-                    q[7]
+                    end_effector_motion_14,
+                    q[8]
                         .mul_add(
-                            end_effector_slope_14,
-                            q[9]
+                            end_effector_slope_15,
+                            q[7]
                                 .mul_add(
-                                    end_effector_motion_14,
+                                    end_effector_slope_14,
                                     q[7] * end_effector_motion_16,
                                 ),
                         ),
@@ -5718,15 +5838,15 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_66 = (-q[12])
         .mul_add(
             end_effector_slope_16,
-            q[11]
+            (-q[12])
                 .mul_add(
-                    end_effector_slope_15,
-                    q[10]
+                    end_effector_motion_14,
+                    q[11]
                         .mul_add(
-                            end_effector_slope_14,
-                            q[12]
+                            end_effector_slope_15,
+                            q[10]
                                 .mul_add(
-                                    end_effector_motion_14,
+                                    end_effector_slope_14,
                                     q[10] * end_effector_motion_16,
                                 ),
                         ),
@@ -5736,61 +5856,61 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_68 = (-q[15])
         .mul_add(
             end_effector_slope_16,
-            q[13]
+            (-q[15])
                 .mul_add(
-                    end_effector_slope_14,
-                    q[15]
+                    end_effector_motion_14,
+                    q[13]
                         .mul_add(
-                            end_effector_motion_14,
+                            end_effector_slope_14,
                             q[13].mul_add(end_effector_motion_16, end_effector_slope_67),
                         ),
                 ),
         );
-    let end_effector_slope_69 = (-q[9])
+    let end_effector_slope_69 = (-q[8])
         .mul_add(
-            end_effector_slope_23,
-            q[8]
+            end_effector_slope_22,
+            (-q[7])
                 .mul_add(
-                    end_effector_slope_22,
-                    q[7]
+                    end_effector_slope_21,
+                    (-q[7])
                         .mul_add(
-                            end_effector_slope_21,
-                            q[7]
+                            end_effector_motion_15,
+                            q[9]
                                 .mul_add(
-                                    end_effector_motion_15,
+                                    end_effector_slope_23,
                                     q[8] * end_effector_motion_14,
                                 ),
                         ),
                 ),
         );
-    let end_effector_slope_70 = (-q[12])
+    let end_effector_slope_70 = (-q[11])
         .mul_add(
-            end_effector_slope_23,
-            q[11]
+            end_effector_slope_22,
+            (-q[10])
                 .mul_add(
-                    end_effector_slope_22,
-                    q[10]
+                    end_effector_slope_21,
+                    (-q[10])
                         .mul_add(
-                            end_effector_slope_21,
-                            q[10]
+                            end_effector_motion_15,
+                            q[12]
                                 .mul_add(
-                                    end_effector_motion_15,
+                                    end_effector_slope_23,
                                     q[11] * end_effector_motion_14,
                                 ),
                         ),
                 ),
         );
     let end_effector_slope_71 = q[15] * end_effector_slope_23;
-    let end_effector_slope_72 = q[14]
+    let end_effector_slope_72 = (-q[14])
         .mul_add(
             end_effector_slope_22,
-            q[13]
+            (-q[13])
                 .mul_add(
                     end_effector_slope_21,
-                    q[13]
+                    (-q[13])
                         .mul_add(
                             end_effector_motion_15,
-                            q[14].mul_add(end_effector_motion_14, -end_effector_slope_71),
+                            q[14].mul_add(end_effector_motion_14, end_effector_slope_71),
                         ),
                 ),
         );
@@ -5809,25 +5929,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_slope_57,
             q[14].mul_add(end_effector_slope_56, q[13] * end_effector_slope_55),
         );
-    let end_effector_slope_76 = (-end_effector_variation_22)
+    let end_effector_slope_76 = (-end_effector_rate_y)
         .mul_add(
-            n(0.085),
-            (-end_effector_rate_y)
+            end_effector_variation_75,
+            end_effector_variation_17
                 .mul_add(
-                    end_effector_variation_75,
-                    end_effector_variation_17.mul_add(n(0.51), end_effector_motion_19),
+                    n(0.51),
+                    end_effector_variation_22.mul_add(n(0.085), end_effector_motion_19),
                 ),
         );
-    let end_effector_slope_77 = (-end_effector_variation_21)
+    let end_effector_slope_77 = (-end_effector_rate_z)
         .mul_add(
-            n(0.085),
-            (-end_effector_rate_z)
+            end_effector_variation_75,
+            end_effector_variation_21
                 .mul_add(
-                    end_effector_variation_75,
+                    n(0.085),
                     end_effector_variation_17.mul_add(n(0.136), end_effector_motion_18),
                 ),
         );
-    let end_effector_slope_78 = (-end_effector_variation_33)
+    let end_effector_slope_78 = end_effector_variation_33
         .mul_add(
             n(0.136),
             end_effector_variation_28
@@ -5837,30 +5957,30 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         .mul_add(end_effector_variation_76, end_effector_motion_19),
                 ),
         );
-    let end_effector_slope_79 = (-end_effector_rate_z)
+    let end_effector_slope_79 = (-end_effector_variation_32)
         .mul_add(
-            end_effector_variation_76,
-            end_effector_variation_28
+            n(0.136),
+            (-end_effector_rate_z)
                 .mul_add(
-                    n(0.085),
-                    end_effector_variation_32.mul_add(n(0.136), end_effector_motion_17),
+                    end_effector_variation_76,
+                    end_effector_variation_28.mul_add(n(0.085), end_effector_motion_17),
                 ),
         );
-    let end_effector_slope_80 = (-end_effector_rate_x)
+    let end_effector_slope_80 = (-end_effector_variation_39)
         .mul_add(
-            end_effector_variation_77,
-            end_effector_variation_34
+            n(0.51),
+            (-end_effector_rate_x)
                 .mul_add(
-                    n(0.136),
-                    end_effector_variation_39.mul_add(n(0.51), end_effector_motion_18),
+                    end_effector_variation_77,
+                    end_effector_variation_34.mul_add(n(0.136), end_effector_motion_18),
                 ),
         );
-    let end_effector_slope_81 = (-end_effector_rate_y)
+    let end_effector_slope_81 = (-end_effector_variation_38)
         .mul_add(
-            end_effector_variation_77,
-            end_effector_variation_38
+            n(0.51),
+            (-end_effector_rate_y)
                 .mul_add(
-                    n(0.51),
+                    end_effector_variation_77,
                     end_effector_variation_34.mul_add(n(0.085), end_effector_motion_17),
                 ),
         );
@@ -5907,9 +6027,9 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             (-end_effector_slope_86)
                 .mul_add(
                     n(0.15),
-                    q[15]
+                    (-q[15])
                         .mul_add(
-                            end_effector_motion_14 - end_effector_slope_16,
+                            end_effector_motion_14 + end_effector_slope_16,
                             q[13]
                                 .mul_add(
                                     end_effector_motion_16 + end_effector_slope_14,
@@ -5934,12 +6054,12 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             (-end_effector_slope_89)
                 .mul_add(
                     n(0.15),
-                    (-q[14])
+                    (-q[13])
                         .mul_add(
-                            end_effector_motion_14 + end_effector_slope_22,
-                            (-q[13])
+                            end_effector_motion_15 + end_effector_slope_21,
+                            q[14]
                                 .mul_add(
-                                    end_effector_motion_15 + end_effector_slope_21,
+                                    end_effector_motion_14 - end_effector_slope_22,
                                     end_effector_slope_71,
                                 ),
                         ),
@@ -6050,25 +6170,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
             end_effector_slope_104,
         );
-    let end_effector_slope_106 = (-end_effector_composite_inertia_29)
-        .mul_add(cart_variation_5, end_effector_composite_inertia_28 * cart_variation_4);
-    let end_effector_slope_107 = end_effector_composite_inertia_29
+    let end_effector_slope_106 = (-end_effector_composite_inertia_32)
+        .mul_add(cart_variation_5, end_effector_composite_inertia_31 * cart_variation_4);
+    let end_effector_slope_107 = end_effector_composite_inertia_32
         .mul_add(
             plate_acceleration_2,
-            plate_acceleration * end_effector_composite_inertia_28,
+            plate_acceleration * end_effector_composite_inertia_31,
         );
     let end_effector_slope_108 = (-plate_acceleration)
         .mul_add(
-            end_effector_composite_inertia_29,
-            end_effector_composite_inertia_28 * plate_acceleration_2,
+            end_effector_composite_inertia_32,
+            end_effector_composite_inertia_31 * plate_acceleration_2,
         );
-    let end_effector_slope_109 = (-end_effector_composite_inertia_29)
+    let end_effector_slope_109 = (-end_effector_composite_inertia_32)
         .mul_add(
             cart_variation_2,
-            end_effector_composite_inertia_28
+            end_effector_composite_inertia_31
                 .mul_add(cart_variation_3, end_effector_slope_105),
         );
-    let end_effector_slope_110 = end_effector_composite_inertia_29 * cart_variation;
+    let end_effector_slope_110 = end_effector_composite_inertia_32 * cart_variation;
     let end_effector_slope_111 = (-q[6])
         .mul_add(
             q[2].mul_add(end_effector_slope_83, q[1] * end_effector_slope_82),
@@ -6139,7 +6259,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_123 = (-q[8])
         .mul_add(
             end_effector_motion_18,
-            (-cart_acceleration_13)
+            (-cart_acceleration_14)
                 .mul_add(
                     n(0.046),
                     q[9]
@@ -6148,7 +6268,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                             q[7]
                                 .mul_add(
                                     end_effector_motion_17,
-                                    cart_acceleration_14.mul_add(n(5.7), cart_force),
+                                    cart_acceleration_15.mul_add(n(5.7), cart_force),
                                 ),
                         ),
                 ),
@@ -6159,13 +6279,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             (-q[10])
                 .mul_add(
                     end_effector_motion_17,
-                    (-cart_acceleration_13)
+                    (-cart_acceleration_14)
                         .mul_add(
                             n(0.495),
                             q[11]
                                 .mul_add(
                                     end_effector_motion_18,
-                                    cart_acceleration_15.mul_add(n(5.7), -cart_force_2),
+                                    cart_acceleration_16.mul_add(n(5.7), -cart_force_2),
                                 ),
                         ),
                 ),
@@ -6225,42 +6345,42 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_7 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_106,
-            (-end_effector_composite_inertia_20)
+            (-end_effector_composite_inertia_23)
                 .mul_add(
                     cart_variation_5,
-                    end_effector_composite_inertia_19 * cart_variation_4,
+                    end_effector_composite_inertia_22 * cart_variation_4,
                 ),
         );
-    let end_effector_load_8 = (-end_effector_factor_15)
+    let end_effector_load_8 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_7,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(
                     end_effector_slope_106,
-                    (-end_effector_composite_inertia_9)
+                    (-end_effector_composite_inertia_11)
                         .mul_add(
                             cart_variation_5,
-                            end_effector_composite_inertia_8 * cart_variation_4,
+                            end_effector_composite_inertia_10 * cart_variation_4,
                         ),
                 ),
         );
-    let end_effector_load_9 = (-end_effector_factor_24)
+    let end_effector_load_9 = (-end_effector_factor_21)
         .mul_add(
             end_effector_load_8,
-            (-end_effector_factor_19)
+            (-end_effector_factor_17)
                 .mul_add(
                     end_effector_load_7,
-                    (-end_effector_factor_10)
+                    (-end_effector_factor_8)
                         .mul_add(end_effector_slope_106, cart_slope_2),
                 ),
         );
-    let end_effector_load_10 = end_effector_factor_29
+    let end_effector_load_10 = end_effector_factor_26
         .mul_add(
             end_effector_load_8,
-            end_effector_factor_21
+            end_effector_factor_19
                 .mul_add(
                     end_effector_load_7,
-                    end_effector_factor_13
+                    end_effector_factor_11
                         .mul_add(end_effector_slope_106, cart_slope + cart_slope_14),
                 ),
         );
@@ -6268,70 +6388,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_2 = cart_factor_2
         .mul_add(
             end_effector_load_9,
-            end_effector_factor_27
+            end_effector_factor_24
                 .mul_add(
                     end_effector_load_8,
-                    end_effector_factor_20
+                    end_effector_factor_18
                         .mul_add(
                             end_effector_load_7,
-                            end_effector_factor_12
+                            end_effector_factor_10
                                 .mul_add(end_effector_slope_106, cart_slope),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_2,
                 cart_factor_5.mul_add(end_effector_load_9, end_effector_load_10),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_19 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope, cart_load_2));
+    let cart_slope_19 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope, cart_load_2));
     let cart_slope_20 = cart_factor
-        * ((-end_effector_factor_26)
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_slope,
-                (-end_effector_factor_25).mul_add(cart_slope_19, end_effector_load_9),
+                end_effector_factor_22.mul_add(cart_slope_19, end_effector_load_9),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_125 = end_effector_factor_23
-        * (end_effector_factor_18
+    let end_effector_slope_125 = end_effector_factor_20
+        * ((-end_effector_factor_15)
             .mul_add(
-                plate_slope,
-                end_effector_factor_17
+                cart_slope_19,
+                end_effector_factor_16
                     .mul_add(
-                        cart_slope_19,
-                        end_effector_factor_16
+                        plate_slope,
+                        end_effector_factor_14
                             .mul_add(cart_slope_20, end_effector_load_8),
                     ),
             ));
-    let end_effector_response_3 = (-end_effector_factor_7)
+    let end_effector_response_3 = (-end_effector_factor_6)
         .mul_add(
             plate_slope,
-            (-end_effector_factor_6)
+            (-end_effector_factor_4)
                 .mul_add(
-                    cart_slope_19,
-                    (-end_effector_factor_5)
+                    cart_slope_20,
+                    end_effector_factor_5
                         .mul_add(
-                            cart_slope_20,
-                            end_effector_factor_4 * end_effector_slope_125,
+                            cart_slope_19,
+                            end_effector_factor_3 * end_effector_slope_125,
                         ),
                 ),
         );
-    let end_effector_slope_126 = end_effector_factor_14
+    let end_effector_slope_126 = end_effector_factor_12
         * (end_effector_load_7 - end_effector_response_3);
-    let end_effector_response_4 = (-end_effector_composite_inertia_30)
+    let end_effector_response_4 = (-end_effector_composite_inertia_31)
         .mul_add(
-            cart_slope_19,
-            (-end_effector_composite_inertia_28)
+            cart_slope_20,
+            end_effector_composite_inertia_33
                 .mul_add(
-                    cart_slope_20,
-                    end_effector_composite_inertia_7
+                    cart_slope_19,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_125,
-                            end_effector_composite_inertia_18 * end_effector_slope_126,
+                            end_effector_composite_inertia_21 * end_effector_slope_126,
                         ),
                 ),
         );
@@ -6339,42 +6459,42 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_11 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_107,
-            end_effector_composite_inertia_20
+            end_effector_composite_inertia_23
                 .mul_add(
                     plate_acceleration_2,
-                    plate_acceleration * end_effector_composite_inertia_19,
+                    plate_acceleration * end_effector_composite_inertia_22,
                 ),
         );
-    let end_effector_load_12 = (-end_effector_factor_15)
+    let end_effector_load_12 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_11,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(
                     end_effector_slope_107,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_11
                         .mul_add(
                             plate_acceleration_2,
-                            plate_acceleration * end_effector_composite_inertia_8,
+                            plate_acceleration * end_effector_composite_inertia_10,
                         ),
                 ),
         );
-    let end_effector_load_13 = (-end_effector_factor_24)
+    let end_effector_load_13 = (-end_effector_factor_21)
         .mul_add(
             end_effector_load_12,
-            (-end_effector_factor_19)
+            (-end_effector_factor_17)
                 .mul_add(
                     end_effector_load_11,
-                    (-end_effector_factor_10)
+                    (-end_effector_factor_8)
                         .mul_add(end_effector_slope_107, cart_slope_4),
                 ),
         );
-    let end_effector_load_14 = end_effector_factor_29
+    let end_effector_load_14 = end_effector_factor_26
         .mul_add(
             end_effector_load_12,
-            end_effector_factor_21
+            end_effector_factor_19
                 .mul_add(
                     end_effector_load_11,
-                    end_effector_factor_13
+                    end_effector_factor_11
                         .mul_add(
                             end_effector_slope_107,
                             end_effector_slope_124 - cart_slope_3 - cart_slope_15,
@@ -6385,70 +6505,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_3 = (-cart_factor_2)
         .mul_add(
             end_effector_load_13,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_12,
-                    (-end_effector_factor_20)
+                    (-end_effector_factor_18)
                         .mul_add(
                             end_effector_load_11,
-                            (-end_effector_factor_12)
+                            (-end_effector_factor_10)
                                 .mul_add(end_effector_slope_107, cart_slope_3),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_2 = plate_factor
-        * (cart_factor_7
+        * (cart_factor_8
             .mul_add(
                 cart_load_3,
                 cart_factor_5.mul_add(end_effector_load_13, end_effector_load_14),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_21 = cart_factor_6
-        * (cart_factor_4.mul_add(plate_slope_2, cart_load_3));
+    let cart_slope_21 = cart_factor_7
+        * ((-cart_factor_4).mul_add(plate_slope_2, cart_load_3));
     let cart_slope_22 = cart_factor
-        * ((-end_effector_factor_26)
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_slope_2,
-                end_effector_factor_25.mul_add(cart_slope_21, end_effector_load_13),
+                (-end_effector_factor_22).mul_add(cart_slope_21, end_effector_load_13),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_127 = end_effector_factor_23
-        * ((-end_effector_factor_17)
+    let end_effector_slope_127 = end_effector_factor_20
+        * (end_effector_factor_16
             .mul_add(
-                cart_slope_21,
-                end_effector_factor_18
+                plate_slope_2,
+                end_effector_factor_15
                     .mul_add(
-                        plate_slope_2,
-                        end_effector_factor_16
+                        cart_slope_21,
+                        end_effector_factor_14
                             .mul_add(cart_slope_22, end_effector_load_12),
                     ),
             ));
-    let end_effector_response_5 = (-end_effector_factor_7)
+    let end_effector_response_5 = (-end_effector_factor_6)
         .mul_add(
             plate_slope_2,
             (-end_effector_factor_5)
                 .mul_add(
-                    cart_slope_22,
-                    end_effector_factor_6
+                    cart_slope_21,
+                    (-end_effector_factor_4)
                         .mul_add(
-                            cart_slope_21,
-                            end_effector_factor_4 * end_effector_slope_127,
+                            cart_slope_22,
+                            end_effector_factor_3 * end_effector_slope_127,
                         ),
                 ),
         );
-    let end_effector_slope_128 = end_effector_factor_14
+    let end_effector_slope_128 = end_effector_factor_12
         * (end_effector_load_11 - end_effector_response_5);
-    let end_effector_response_6 = (-end_effector_composite_inertia_28)
+    let end_effector_response_6 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_slope_22,
-            end_effector_composite_inertia_30
+            cart_slope_21,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_slope_21,
-                    end_effector_composite_inertia_7
+                    cart_slope_22,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_127,
-                            end_effector_composite_inertia_18 * end_effector_slope_128,
+                            end_effector_composite_inertia_21 * end_effector_slope_128,
                         ),
                 ),
         );
@@ -6458,40 +6578,40 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_slope_108,
             (-plate_acceleration)
                 .mul_add(
-                    end_effector_composite_inertia_20,
-                    end_effector_composite_inertia_19 * plate_acceleration_2,
+                    end_effector_composite_inertia_23,
+                    end_effector_composite_inertia_22 * plate_acceleration_2,
                 ),
         );
-    let end_effector_load_16 = (-end_effector_factor_15)
+    let end_effector_load_16 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_15,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(
                     end_effector_slope_108,
                     (-plate_acceleration)
                         .mul_add(
-                            end_effector_composite_inertia_9,
-                            end_effector_composite_inertia_8 * plate_acceleration_2,
+                            end_effector_composite_inertia_11,
+                            end_effector_composite_inertia_10 * plate_acceleration_2,
                         ),
                 ),
         );
-    let end_effector_load_17 = (-end_effector_factor_24)
+    let end_effector_load_17 = (-end_effector_factor_21)
+        .mul_add(
+            end_effector_load_16,
+            (-end_effector_factor_17)
+                .mul_add(
+                    end_effector_load_15,
+                    (-end_effector_factor_8)
+                        .mul_add(end_effector_slope_108, cart_slope_5),
+                ),
+        );
+    let end_effector_load_18 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_16,
             (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load_15,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_108, cart_slope_5),
-                ),
-        );
-    let end_effector_load_18 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_16,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_15,
-                    (-end_effector_factor_13)
+                    (-end_effector_factor_11)
                         .mul_add(
                             end_effector_slope_108,
                             end_effector_slope_123 + cart_slope_16 - cart_slope_6,
@@ -6502,13 +6622,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_4 = cart_factor_2
         .mul_add(
             end_effector_load_17,
-            end_effector_factor_27
+            end_effector_factor_24
                 .mul_add(
                     end_effector_load_16,
-                    end_effector_factor_20
+                    end_effector_factor_18
                         .mul_add(
                             end_effector_load_15,
-                            end_effector_factor_12
+                            end_effector_factor_10
                                 .mul_add(end_effector_slope_108, cart_slope_6),
                         ),
                 ),
@@ -6518,83 +6638,83 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         * ((-cart_factor_5)
             .mul_add(
                 end_effector_load_17,
-                cart_factor_7.mul_add(cart_load_4, end_effector_load_18),
+                cart_factor_8.mul_add(cart_load_4, end_effector_load_18),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_23 = cart_factor_6
-        * (cart_factor_4.mul_add(plate_slope_3, cart_load_4));
+    let cart_slope_23 = cart_factor_7
+        * ((-cart_factor_4).mul_add(plate_slope_3, cart_load_4));
     let cart_slope_24 = cart_factor
-        * ((-end_effector_factor_25)
-            .mul_add(
-                cart_slope_23,
-                end_effector_factor_26.mul_add(plate_slope_3, end_effector_load_17),
-            ));
-    // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_129 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+        * (end_effector_factor_23
             .mul_add(
                 plate_slope_3,
-                end_effector_factor_17
+                end_effector_factor_22.mul_add(cart_slope_23, end_effector_load_17),
+            ));
+    // end_effector: response (12 additions, 15 multiplications)
+    let end_effector_slope_129 = end_effector_factor_20
+        * ((-end_effector_factor_16)
+            .mul_add(
+                plate_slope_3,
+                (-end_effector_factor_15)
                     .mul_add(
                         cart_slope_23,
-                        end_effector_factor_16
+                        end_effector_factor_14
                             .mul_add(cart_slope_24, end_effector_load_16),
                     ),
             ));
-    let end_effector_response_7 = (-end_effector_factor_6)
+    let end_effector_response_7 = (-end_effector_factor_4)
         .mul_add(
-            cart_slope_23,
-            (-end_effector_factor_5)
+            cart_slope_24,
+            end_effector_factor_6
                 .mul_add(
-                    cart_slope_24,
-                    end_effector_factor_7
+                    plate_slope_3,
+                    end_effector_factor_5
                         .mul_add(
-                            plate_slope_3,
-                            end_effector_factor_4 * end_effector_slope_129,
+                            cart_slope_23,
+                            end_effector_factor_3 * end_effector_slope_129,
                         ),
                 ),
         );
-    let end_effector_slope_130 = end_effector_factor_14
+    let end_effector_slope_130 = end_effector_factor_12
         * (end_effector_load_15 - end_effector_response_7);
-    let end_effector_response_8 = (-end_effector_composite_inertia_30)
+    let end_effector_response_8 = (-end_effector_composite_inertia_31)
         .mul_add(
-            cart_slope_23,
-            (-end_effector_composite_inertia_28)
+            cart_slope_24,
+            end_effector_composite_inertia_33
                 .mul_add(
-                    cart_slope_24,
-                    end_effector_composite_inertia_7
+                    cart_slope_23,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_129,
-                            end_effector_composite_inertia_18 * end_effector_slope_130,
+                            end_effector_composite_inertia_21 * end_effector_slope_130,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_19 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_64, end_effector_slope_62);
-    let end_effector_load_20 = (-end_effector_factor_15)
+    let end_effector_load_20 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_19,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(end_effector_slope_64, end_effector_slope_61),
         );
-    let end_effector_load_21 = end_effector_factor_24
+    let end_effector_load_21 = end_effector_factor_21
         .mul_add(
             end_effector_load_20,
-            end_effector_factor_19
+            end_effector_factor_17
                 .mul_add(
                     end_effector_load_19,
-                    end_effector_factor_10
+                    end_effector_factor_8
                         .mul_add(end_effector_slope_64, end_effector_slope_82),
                 ),
         );
-    let end_effector_load_22 = (-end_effector_factor_29)
+    let end_effector_load_22 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_20,
-            (-end_effector_factor_21)
+            (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load_19,
-                    (-end_effector_factor_13)
+                    (-end_effector_factor_11)
                         .mul_add(
                             end_effector_slope_64,
                             end_effector_slope_84 - end_effector_slope_111,
@@ -6602,13 +6722,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_5 = (-end_effector_factor_27)
+    let cart_load_5 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_20,
-            (-end_effector_factor_20)
+            (-end_effector_factor_18)
                 .mul_add(
                     end_effector_load_19,
-                    (-end_effector_factor_12)
+                    (-end_effector_factor_10)
                         .mul_add(
                             end_effector_slope_64,
                             cart_factor_2
@@ -6618,86 +6738,86 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         );
     // plate: response (1 multiplication)
     let plate_slope_4 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_5,
                 cart_factor_5.mul_add(end_effector_load_21, end_effector_load_22),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_25 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_4, cart_load_5));
+    let cart_slope_25 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_4, cart_load_5));
     let cart_slope_26 = cart_factor
-        * ((-end_effector_factor_26)
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_slope_4,
-                (-end_effector_factor_25).mul_add(cart_slope_25, end_effector_load_21),
+                end_effector_factor_22.mul_add(cart_slope_25, end_effector_load_21),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_131 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_slope_131 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_slope_4,
-                (-end_effector_factor_17)
+                (-end_effector_factor_14)
                     .mul_add(
-                        cart_slope_25,
-                        (-end_effector_factor_16)
-                            .mul_add(cart_slope_26, end_effector_load_20),
+                        cart_slope_26,
+                        end_effector_factor_15
+                            .mul_add(cart_slope_25, end_effector_load_20),
                     ),
             ));
-    let end_effector_response_9 = end_effector_factor_7
+    let end_effector_response_9 = (-end_effector_factor_5)
         .mul_add(
-            plate_slope_4,
+            cart_slope_25,
             end_effector_factor_6
                 .mul_add(
-                    cart_slope_25,
-                    end_effector_factor_5
+                    plate_slope_4,
+                    end_effector_factor_4
                         .mul_add(
                             cart_slope_26,
-                            end_effector_factor_4 * end_effector_slope_131,
+                            end_effector_factor_3 * end_effector_slope_131,
                         ),
                 ),
         );
-    let end_effector_slope_132 = end_effector_factor_14
+    let end_effector_slope_132 = end_effector_factor_12
         * (end_effector_load_19 - end_effector_response_9);
-    let end_effector_response_10 = end_effector_composite_inertia_30
+    let end_effector_response_10 = (-end_effector_composite_inertia_33)
         .mul_add(
             cart_slope_25,
-            end_effector_composite_inertia_28
+            end_effector_composite_inertia_31
                 .mul_add(
                     cart_slope_26,
-                    end_effector_composite_inertia_7
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_131,
-                            end_effector_composite_inertia_18 * end_effector_slope_132,
+                            end_effector_composite_inertia_21 * end_effector_slope_132,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_23 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_68, end_effector_slope_66);
-    let end_effector_load_24 = (-end_effector_factor_15)
+    let end_effector_load_24 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_23,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(end_effector_slope_68, end_effector_slope_65),
         );
-    let end_effector_load_25 = end_effector_factor_24
+    let end_effector_load_25 = end_effector_factor_21
         .mul_add(
             end_effector_load_24,
-            end_effector_factor_19
+            end_effector_factor_17
                 .mul_add(
                     end_effector_load_23,
-                    end_effector_factor_10
+                    end_effector_factor_8
                         .mul_add(end_effector_slope_68, end_effector_slope_85),
                 ),
         );
-    let end_effector_load_26 = (-end_effector_factor_29)
+    let end_effector_load_26 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_24,
-            (-end_effector_factor_21)
+            (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load_23,
-                    (-end_effector_factor_13)
+                    (-end_effector_factor_11)
                         .mul_add(
                             end_effector_slope_68,
                             end_effector_slope_87 - end_effector_slope_112,
@@ -6705,13 +6825,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_6 = (-end_effector_factor_27)
+    let cart_load_6 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_24,
-            (-end_effector_factor_20)
+            (-end_effector_factor_18)
                 .mul_add(
                     end_effector_load_23,
-                    (-end_effector_factor_12)
+                    (-end_effector_factor_10)
                         .mul_add(
                             end_effector_slope_68,
                             cart_factor_2
@@ -6721,86 +6841,86 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         );
     // plate: response (1 multiplication)
     let plate_slope_5 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_6,
                 cart_factor_5.mul_add(end_effector_load_25, end_effector_load_26),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_27 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_5, cart_load_6));
+    let cart_slope_27 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_5, cart_load_6));
     let cart_slope_28 = cart_factor
-        * ((-end_effector_factor_26)
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_slope_5,
-                (-end_effector_factor_25).mul_add(cart_slope_27, end_effector_load_25),
+                end_effector_factor_22.mul_add(cart_slope_27, end_effector_load_25),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_133 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_slope_133 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_slope_5,
-                (-end_effector_factor_17)
+                (-end_effector_factor_14)
                     .mul_add(
-                        cart_slope_27,
-                        (-end_effector_factor_16)
-                            .mul_add(cart_slope_28, end_effector_load_24),
+                        cart_slope_28,
+                        end_effector_factor_15
+                            .mul_add(cart_slope_27, end_effector_load_24),
                     ),
             ));
-    let end_effector_response_11 = end_effector_factor_7
+    let end_effector_response_11 = (-end_effector_factor_5)
         .mul_add(
-            plate_slope_5,
+            cart_slope_27,
             end_effector_factor_6
                 .mul_add(
-                    cart_slope_27,
-                    end_effector_factor_5
+                    plate_slope_5,
+                    end_effector_factor_4
                         .mul_add(
                             cart_slope_28,
-                            end_effector_factor_4 * end_effector_slope_133,
+                            end_effector_factor_3 * end_effector_slope_133,
                         ),
                 ),
         );
-    let end_effector_slope_134 = end_effector_factor_14
+    let end_effector_slope_134 = end_effector_factor_12
         * (end_effector_load_23 - end_effector_response_11);
-    let end_effector_response_12 = end_effector_composite_inertia_30
+    let end_effector_response_12 = (-end_effector_composite_inertia_33)
         .mul_add(
             cart_slope_27,
-            end_effector_composite_inertia_28
+            end_effector_composite_inertia_31
                 .mul_add(
                     cart_slope_28,
-                    end_effector_composite_inertia_7
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_133,
-                            end_effector_composite_inertia_18 * end_effector_slope_134,
+                            end_effector_composite_inertia_21 * end_effector_slope_134,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_27 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_72, end_effector_slope_70);
-    let end_effector_load_28 = (-end_effector_factor_15)
+    let end_effector_load_28 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_27,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(end_effector_slope_72, end_effector_slope_69),
         );
-    let end_effector_load_29 = (-end_effector_factor_24)
+    let end_effector_load_29 = end_effector_factor_21
+        .mul_add(
+            end_effector_load_28,
+            end_effector_factor_17
+                .mul_add(
+                    end_effector_load_27,
+                    end_effector_factor_8
+                        .mul_add(end_effector_slope_72, end_effector_slope_88),
+                ),
+        );
+    let end_effector_load_30 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_28,
             (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load_27,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_72, end_effector_slope_88),
-                ),
-        );
-    let end_effector_load_30 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_28,
-            end_effector_factor_21
-                .mul_add(
-                    end_effector_load_27,
-                    end_effector_factor_13
+                    (-end_effector_factor_11)
                         .mul_add(
                             end_effector_slope_72,
                             end_effector_slope_90 - end_effector_slope_113,
@@ -6808,102 +6928,102 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_7 = cart_factor_2
+    let cart_load_7 = (-end_effector_factor_24)
         .mul_add(
-            end_effector_load_29,
-            end_effector_factor_27
+            end_effector_load_28,
+            (-end_effector_factor_18)
                 .mul_add(
-                    end_effector_load_28,
-                    end_effector_factor_20
+                    end_effector_load_27,
+                    (-end_effector_factor_10)
                         .mul_add(
-                            end_effector_load_27,
-                            end_effector_factor_12
-                                .mul_add(end_effector_slope_72, end_effector_slope_90),
+                            end_effector_slope_72,
+                            cart_factor_2
+                                .mul_add(end_effector_load_29, end_effector_slope_90),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_6 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_7,
                 cart_factor_5.mul_add(end_effector_load_29, end_effector_load_30),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_29 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_6, cart_load_7));
+    let cart_slope_29 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_6, cart_load_7));
     let cart_slope_30 = cart_factor
-        * ((-end_effector_factor_26)
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_slope_6,
-                (-end_effector_factor_25).mul_add(cart_slope_29, end_effector_load_29),
+                end_effector_factor_22.mul_add(cart_slope_29, end_effector_load_29),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_135 = end_effector_factor_23
-        * (end_effector_factor_18
+    let end_effector_slope_135 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_slope_6,
-                end_effector_factor_17
+                (-end_effector_factor_14)
                     .mul_add(
-                        cart_slope_29,
-                        end_effector_factor_16
-                            .mul_add(cart_slope_30, end_effector_load_28),
+                        cart_slope_30,
+                        end_effector_factor_15
+                            .mul_add(cart_slope_29, end_effector_load_28),
                     ),
             ));
-    let end_effector_response_13 = (-end_effector_factor_7)
+    let end_effector_response_13 = (-end_effector_factor_5)
         .mul_add(
-            plate_slope_6,
-            (-end_effector_factor_6)
+            cart_slope_29,
+            end_effector_factor_6
                 .mul_add(
-                    cart_slope_29,
-                    (-end_effector_factor_5)
+                    plate_slope_6,
+                    end_effector_factor_4
                         .mul_add(
                             cart_slope_30,
-                            end_effector_factor_4 * end_effector_slope_135,
+                            end_effector_factor_3 * end_effector_slope_135,
                         ),
                 ),
         );
-    let end_effector_slope_136 = end_effector_factor_14
+    let end_effector_slope_136 = end_effector_factor_12
         * (end_effector_load_27 - end_effector_response_13);
-    let end_effector_response_14 = (-end_effector_composite_inertia_30)
+    let end_effector_response_14 = (-end_effector_composite_inertia_33)
         .mul_add(
             cart_slope_29,
-            (-end_effector_composite_inertia_28)
+            end_effector_composite_inertia_31
                 .mul_add(
                     cart_slope_30,
-                    end_effector_composite_inertia_7
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_135,
-                            end_effector_composite_inertia_18 * end_effector_slope_136,
+                            end_effector_composite_inertia_21 * end_effector_slope_136,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_31 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_105, end_effector_slope_103);
-    let end_effector_load_32 = (-end_effector_factor_15)
+    let end_effector_load_32 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_31,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(end_effector_slope_105, end_effector_slope_101),
         );
-    let end_effector_load_33 = end_effector_factor_24
+    let end_effector_load_33 = end_effector_factor_21
+        .mul_add(
+            end_effector_load_32,
+            end_effector_factor_17
+                .mul_add(
+                    end_effector_load_31,
+                    end_effector_factor_8
+                        .mul_add(end_effector_slope_105, end_effector_slope_122),
+                ),
+        );
+    let end_effector_load_34 = end_effector_factor_26
         .mul_add(
             end_effector_load_32,
             end_effector_factor_19
                 .mul_add(
                     end_effector_load_31,
-                    end_effector_factor_10
-                        .mul_add(end_effector_slope_105, end_effector_slope_122),
-                ),
-        );
-    let end_effector_load_34 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_32,
-            end_effector_factor_21
-                .mul_add(
-                    end_effector_load_31,
-                    end_effector_factor_13
+                    end_effector_factor_11
                         .mul_add(
                             end_effector_slope_105,
                             end_effector_slope_120 + cart_slope_18,
@@ -6914,70 +7034,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_8 = (-cart_factor_2)
         .mul_add(
             end_effector_load_33,
-            end_effector_factor_27
+            end_effector_factor_24
                 .mul_add(
                     end_effector_load_32,
-                    end_effector_factor_20
+                    end_effector_factor_18
                         .mul_add(
                             end_effector_load_31,
-                            end_effector_factor_12
+                            end_effector_factor_10
                                 .mul_add(end_effector_slope_105, end_effector_slope_120),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_7 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_8,
                 (-cart_factor_5).mul_add(end_effector_load_33, end_effector_load_34),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_31 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_7, cart_load_8));
+    let cart_slope_31 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_7, cart_load_8));
     let cart_slope_32 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_slope_7,
-                end_effector_factor_25.mul_add(cart_slope_31, end_effector_load_33),
+                cart_slope_31,
+                end_effector_factor_23.mul_add(plate_slope_7, end_effector_load_33),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_137 = end_effector_factor_23
-        * ((-end_effector_factor_16)
+    let end_effector_slope_137 = end_effector_factor_20
+        * ((-end_effector_factor_15)
             .mul_add(
-                cart_slope_32,
-                end_effector_factor_18
+                cart_slope_31,
+                (-end_effector_factor_14)
                     .mul_add(
-                        plate_slope_7,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_31, end_effector_load_32),
+                        cart_slope_32,
+                        end_effector_factor_16
+                            .mul_add(plate_slope_7, end_effector_load_32),
                     ),
             ));
-    let end_effector_response_15 = (-end_effector_factor_7)
+    let end_effector_response_15 = (-end_effector_factor_6)
         .mul_add(
             plate_slope_7,
-            (-end_effector_factor_6)
+            end_effector_factor_5
                 .mul_add(
                     cart_slope_31,
-                    end_effector_factor_5
+                    end_effector_factor_4
                         .mul_add(
                             cart_slope_32,
-                            end_effector_factor_4 * end_effector_slope_137,
+                            end_effector_factor_3 * end_effector_slope_137,
                         ),
                 ),
         );
-    let end_effector_slope_138 = end_effector_factor_14
+    let end_effector_slope_138 = end_effector_factor_12
         * (end_effector_load_31 - end_effector_response_15);
-    let end_effector_response_16 = (-end_effector_composite_inertia_30)
+    let end_effector_response_16 = end_effector_composite_inertia_33
         .mul_add(
             cart_slope_31,
-            end_effector_composite_inertia_28
+            end_effector_composite_inertia_31
                 .mul_add(
                     cart_slope_32,
-                    end_effector_composite_inertia_7
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_137,
-                            end_effector_composite_inertia_18 * end_effector_slope_138,
+                            end_effector_composite_inertia_21 * end_effector_slope_138,
                         ),
                 ),
         );
@@ -6985,44 +7105,44 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_35 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_109,
-            (-end_effector_composite_inertia_20)
+            (-end_effector_composite_inertia_23)
                 .mul_add(
                     cart_variation_2,
-                    end_effector_composite_inertia_19
+                    end_effector_composite_inertia_22
                         .mul_add(cart_variation_3, end_effector_slope_103),
                 ),
         );
-    let end_effector_load_36 = (-end_effector_factor_15)
+    let end_effector_load_36 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_35,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(
                     end_effector_slope_109,
-                    (-end_effector_composite_inertia_9)
+                    (-end_effector_composite_inertia_11)
                         .mul_add(
                             cart_variation_2,
-                            end_effector_composite_inertia_8
+                            end_effector_composite_inertia_10
                                 .mul_add(cart_variation_3, end_effector_slope_101),
                         ),
                 ),
         );
-    let end_effector_load_37 = (-end_effector_factor_24)
+    let end_effector_load_37 = (-end_effector_factor_21)
         .mul_add(
             end_effector_load_36,
-            (-end_effector_factor_19)
+            (-end_effector_factor_17)
                 .mul_add(
                     end_effector_load_35,
-                    (-end_effector_factor_10)
+                    (-end_effector_factor_8)
                         .mul_add(end_effector_slope_109, cart_slope_8),
                 ),
         );
-    let end_effector_load_38 = end_effector_factor_29
+    let end_effector_load_38 = end_effector_factor_26
         .mul_add(
             end_effector_load_36,
-            end_effector_factor_21
+            end_effector_factor_19
                 .mul_add(
                     end_effector_load_35,
-                    end_effector_factor_13
+                    end_effector_factor_11
                         .mul_add(end_effector_slope_109, cart_slope_7 - cart_slope_17),
                 ),
         );
@@ -7030,70 +7150,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_9 = cart_factor_2
         .mul_add(
             end_effector_load_37,
-            end_effector_factor_27
+            end_effector_factor_24
                 .mul_add(
                     end_effector_load_36,
-                    end_effector_factor_20
+                    end_effector_factor_18
                         .mul_add(
                             end_effector_load_35,
-                            end_effector_factor_12
+                            end_effector_factor_10
                                 .mul_add(end_effector_slope_109, cart_slope_7),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_8 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_9,
                 cart_factor_5.mul_add(end_effector_load_37, end_effector_load_38),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_33 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_8, cart_load_9));
+    let cart_slope_33 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_8, cart_load_9));
     let cart_slope_34 = cart_factor
-        * ((-end_effector_factor_26)
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_slope_8,
-                (-end_effector_factor_25).mul_add(cart_slope_33, end_effector_load_37),
+                end_effector_factor_22.mul_add(cart_slope_33, end_effector_load_37),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_139 = end_effector_factor_23
-        * (end_effector_factor_18
+    let end_effector_slope_139 = end_effector_factor_20
+        * ((-end_effector_factor_15)
             .mul_add(
-                plate_slope_8,
-                end_effector_factor_17
+                cart_slope_33,
+                end_effector_factor_16
                     .mul_add(
-                        cart_slope_33,
-                        end_effector_factor_16
+                        plate_slope_8,
+                        end_effector_factor_14
                             .mul_add(cart_slope_34, end_effector_load_36),
                     ),
             ));
-    let end_effector_response_17 = (-end_effector_factor_7)
+    let end_effector_response_17 = (-end_effector_factor_6)
         .mul_add(
             plate_slope_8,
-            (-end_effector_factor_6)
+            (-end_effector_factor_4)
                 .mul_add(
-                    cart_slope_33,
-                    (-end_effector_factor_5)
+                    cart_slope_34,
+                    end_effector_factor_5
                         .mul_add(
-                            cart_slope_34,
-                            end_effector_factor_4 * end_effector_slope_139,
+                            cart_slope_33,
+                            end_effector_factor_3 * end_effector_slope_139,
                         ),
                 ),
         );
-    let end_effector_slope_140 = end_effector_factor_14
+    let end_effector_slope_140 = end_effector_factor_12
         * (end_effector_load_35 - end_effector_response_17);
-    let end_effector_response_18 = (-end_effector_composite_inertia_30)
+    let end_effector_response_18 = (-end_effector_composite_inertia_31)
         .mul_add(
-            cart_slope_33,
-            (-end_effector_composite_inertia_28)
+            cart_slope_34,
+            end_effector_composite_inertia_33
                 .mul_add(
-                    cart_slope_34,
-                    end_effector_composite_inertia_7
+                    cart_slope_33,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_139,
-                            end_effector_composite_inertia_18 * end_effector_slope_140,
+                            end_effector_composite_inertia_21 * end_effector_slope_140,
                         ),
                 ),
         );
@@ -7101,9 +7221,9 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_39 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_110,
-            end_effector_composite_inertia_20 * cart_variation,
+            end_effector_composite_inertia_23 * cart_variation,
         );
-    let end_effector_load_40 = (-end_effector_factor_13)
+    let end_effector_load_40 = (-end_effector_factor_11)
         .mul_add(
             end_effector_slope_110,
             (-q[6])
@@ -7112,45 +7232,45 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[3].mul_add(q[5] * cart_slope_11, cart_slope_10),
                 ),
         );
-    let end_effector_load_41 = (-end_effector_factor_15)
+    let end_effector_load_41 = (-end_effector_factor_13)
         .mul_add(
             end_effector_load_39,
-            (-end_effector_factor_8)
+            (-end_effector_factor_7)
                 .mul_add(
                     end_effector_slope_110,
-                    end_effector_composite_inertia_9 * cart_variation,
+                    end_effector_composite_inertia_11 * cart_variation,
                 ),
         );
-    let end_effector_load_42 = end_effector_factor_24
+    let end_effector_load_42 = end_effector_factor_21
         .mul_add(
             end_effector_load_41,
-            end_effector_factor_19
+            end_effector_factor_17
                 .mul_add(
                     end_effector_load_39,
-                    end_effector_factor_10 * end_effector_slope_110,
+                    end_effector_factor_8 * end_effector_slope_110,
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_10 = (-end_effector_factor_27)
+    let cart_load_10 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_41,
-            (-end_effector_factor_20)
+            (-end_effector_factor_18)
                 .mul_add(
                     end_effector_load_39,
-                    (-end_effector_factor_12)
+                    (-end_effector_factor_10)
                         .mul_add(
                             end_effector_slope_110,
                             cart_factor_2.mul_add(end_effector_load_42, cart_slope_10),
                         ),
                 ),
         );
-    let cart_load_11 = (-cart_factor_7)
+    let cart_load_11 = (-cart_factor_8)
         .mul_add(
             cart_load_10,
-            (-end_effector_factor_29)
+            (-end_effector_factor_26)
                 .mul_add(
                     end_effector_load_41,
-                    (-end_effector_factor_21)
+                    (-end_effector_factor_19)
                         .mul_add(
                             end_effector_load_39,
                             cart_factor_5
@@ -7161,51 +7281,51 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     // plate: response (1 multiplication)
     let plate_slope_9 = plate_factor * cart_load_11;
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_35 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_9, cart_load_10));
+    let cart_slope_35 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_9, cart_load_10));
     let cart_slope_36 = cart_factor
-        * ((-end_effector_factor_26)
+        * ((-end_effector_factor_23)
             .mul_add(
                 plate_slope_9,
-                (-end_effector_factor_25).mul_add(cart_slope_35, end_effector_load_42),
+                end_effector_factor_22.mul_add(cart_slope_35, end_effector_load_42),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_141 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_slope_141 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_slope_9,
-                (-end_effector_factor_17)
+                (-end_effector_factor_14)
                     .mul_add(
-                        cart_slope_35,
-                        (-end_effector_factor_16)
-                            .mul_add(cart_slope_36, end_effector_load_41),
+                        cart_slope_36,
+                        end_effector_factor_15
+                            .mul_add(cart_slope_35, end_effector_load_41),
                     ),
             ));
-    let end_effector_response_19 = end_effector_factor_7
+    let end_effector_response_19 = (-end_effector_factor_5)
         .mul_add(
-            plate_slope_9,
+            cart_slope_35,
             end_effector_factor_6
                 .mul_add(
-                    cart_slope_35,
-                    end_effector_factor_5
+                    plate_slope_9,
+                    end_effector_factor_4
                         .mul_add(
                             cart_slope_36,
-                            end_effector_factor_4 * end_effector_slope_141,
+                            end_effector_factor_3 * end_effector_slope_141,
                         ),
                 ),
         );
-    let end_effector_slope_142 = end_effector_factor_14
+    let end_effector_slope_142 = end_effector_factor_12
         * (end_effector_load_39 - end_effector_response_19);
-    let end_effector_response_20 = end_effector_composite_inertia_30
+    let end_effector_response_20 = (-end_effector_composite_inertia_33)
         .mul_add(
             cart_slope_35,
-            end_effector_composite_inertia_28
+            end_effector_composite_inertia_31
                 .mul_add(
                     cart_slope_36,
-                    end_effector_composite_inertia_7
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_141,
-                            end_effector_composite_inertia_18 * end_effector_slope_142,
+                            end_effector_composite_inertia_21 * end_effector_slope_142,
                         ),
                 ),
         );
@@ -7219,7 +7339,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[11].mul_add(end_effector_slope_32, q[10] * end_effector_slope_31),
                 ),
         );
-    let end_effector_load_44 = (-end_effector_factor_8)
+    let end_effector_load_44 = (-end_effector_factor_7)
         .mul_add(
             end_effector_slope_73,
             (-q[9])
@@ -7228,25 +7348,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[8].mul_add(end_effector_slope_32, q[7] * end_effector_slope_31),
                 ),
         );
-    let end_effector_load_45 = (-end_effector_factor_15)
+    let end_effector_load_45 = (-end_effector_factor_13)
         .mul_add(end_effector_load_43, end_effector_load_44);
-    let end_effector_load_46 = (-end_effector_factor_24)
+    let end_effector_load_46 = (-end_effector_factor_21)
+        .mul_add(
+            end_effector_load_45,
+            (-end_effector_factor_17)
+                .mul_add(
+                    end_effector_load_43,
+                    (-end_effector_factor_8)
+                        .mul_add(end_effector_slope_73, end_effector_slope_91),
+                ),
+        );
+    let end_effector_load_47 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_45,
             (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load_43,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_73, end_effector_slope_91),
-                ),
-        );
-    let end_effector_load_47 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_45,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_43,
-                    (-end_effector_factor_13)
+                    (-end_effector_factor_11)
                         .mul_add(
                             end_effector_slope_73,
                             end_effector_slope_93 + end_effector_slope_114,
@@ -7257,70 +7377,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_12 = (-cart_factor_2)
         .mul_add(
             end_effector_load_46,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_45,
-                    (-end_effector_factor_20)
+                    (-end_effector_factor_18)
                         .mul_add(
                             end_effector_load_43,
-                            (-end_effector_factor_12)
+                            (-end_effector_factor_10)
                                 .mul_add(end_effector_slope_73, end_effector_slope_93),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_10 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_12,
                 (-cart_factor_5).mul_add(end_effector_load_46, end_effector_load_47),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_37 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_10, cart_load_12));
+    let cart_slope_37 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_10, cart_load_12));
     let cart_slope_38 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_slope_10,
-                end_effector_factor_25.mul_add(cart_slope_37, end_effector_load_46),
+                cart_slope_37,
+                end_effector_factor_23.mul_add(plate_slope_10, end_effector_load_46),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_143 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_slope_143 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_slope_10,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_slope_37,
-                        end_effector_factor_16
+                        end_effector_factor_14
                             .mul_add(cart_slope_38, end_effector_load_45),
                     ),
             ));
     let end_effector_response_21 = (-end_effector_factor_5)
         .mul_add(
-            cart_slope_38,
-            end_effector_factor_7
+            cart_slope_37,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_slope_10,
+                    cart_slope_38,
                     end_effector_factor_6
                         .mul_add(
-                            cart_slope_37,
-                            end_effector_factor_4 * end_effector_slope_143,
+                            plate_slope_10,
+                            end_effector_factor_3 * end_effector_slope_143,
                         ),
                 ),
         );
-    let end_effector_slope_144 = end_effector_factor_14
+    let end_effector_slope_144 = end_effector_factor_12
         * (end_effector_load_43 - end_effector_response_21);
-    let end_effector_response_22 = (-end_effector_composite_inertia_28)
+    let end_effector_response_22 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_slope_38,
-            end_effector_composite_inertia_30
+            cart_slope_37,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_slope_37,
-                    end_effector_composite_inertia_7
+                    cart_slope_38,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_143,
-                            end_effector_composite_inertia_18 * end_effector_slope_144,
+                            end_effector_composite_inertia_21 * end_effector_slope_144,
                         ),
                 ),
         );
@@ -7334,7 +7454,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[11].mul_add(end_effector_slope_44, q[10] * end_effector_slope_43),
                 ),
         );
-    let end_effector_load_49 = (-end_effector_factor_8)
+    let end_effector_load_49 = (-end_effector_factor_7)
         .mul_add(
             end_effector_slope_74,
             (-q[9])
@@ -7343,25 +7463,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[8].mul_add(end_effector_slope_44, q[7] * end_effector_slope_43),
                 ),
         );
-    let end_effector_load_50 = (-end_effector_factor_15)
+    let end_effector_load_50 = (-end_effector_factor_13)
         .mul_add(end_effector_load_48, end_effector_load_49);
-    let end_effector_load_51 = (-end_effector_factor_24)
+    let end_effector_load_51 = (-end_effector_factor_21)
+        .mul_add(
+            end_effector_load_50,
+            (-end_effector_factor_17)
+                .mul_add(
+                    end_effector_load_48,
+                    (-end_effector_factor_8)
+                        .mul_add(end_effector_slope_74, end_effector_slope_94),
+                ),
+        );
+    let end_effector_load_52 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_50,
             (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load_48,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_74, end_effector_slope_94),
-                ),
-        );
-    let end_effector_load_52 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_50,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_48,
-                    (-end_effector_factor_13)
+                    (-end_effector_factor_11)
                         .mul_add(
                             end_effector_slope_74,
                             end_effector_slope_96 + end_effector_slope_115,
@@ -7372,70 +7492,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_13 = (-cart_factor_2)
         .mul_add(
             end_effector_load_51,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_50,
-                    (-end_effector_factor_20)
+                    (-end_effector_factor_18)
                         .mul_add(
                             end_effector_load_48,
-                            (-end_effector_factor_12)
+                            (-end_effector_factor_10)
                                 .mul_add(end_effector_slope_74, end_effector_slope_96),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_11 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_13,
                 (-cart_factor_5).mul_add(end_effector_load_51, end_effector_load_52),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_39 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_11, cart_load_13));
+    let cart_slope_39 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_11, cart_load_13));
     let cart_slope_40 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_slope_11,
-                end_effector_factor_25.mul_add(cart_slope_39, end_effector_load_51),
+                cart_slope_39,
+                end_effector_factor_23.mul_add(plate_slope_11, end_effector_load_51),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_145 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_slope_145 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_slope_11,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_slope_39,
-                        end_effector_factor_16
+                        end_effector_factor_14
                             .mul_add(cart_slope_40, end_effector_load_50),
                     ),
             ));
     let end_effector_response_23 = (-end_effector_factor_5)
         .mul_add(
-            cart_slope_40,
-            end_effector_factor_7
+            cart_slope_39,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_slope_11,
+                    cart_slope_40,
                     end_effector_factor_6
                         .mul_add(
-                            cart_slope_39,
-                            end_effector_factor_4 * end_effector_slope_145,
+                            plate_slope_11,
+                            end_effector_factor_3 * end_effector_slope_145,
                         ),
                 ),
         );
-    let end_effector_slope_146 = end_effector_factor_14
+    let end_effector_slope_146 = end_effector_factor_12
         * (end_effector_load_48 - end_effector_response_23);
-    let end_effector_response_24 = (-end_effector_composite_inertia_28)
+    let end_effector_response_24 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_slope_40,
-            end_effector_composite_inertia_30
+            cart_slope_39,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_slope_39,
-                    end_effector_composite_inertia_7
+                    cart_slope_40,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_145,
-                            end_effector_composite_inertia_18 * end_effector_slope_146,
+                            end_effector_composite_inertia_21 * end_effector_slope_146,
                         ),
                 ),
         );
@@ -7449,7 +7569,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[11].mul_add(end_effector_slope_56, q[10] * end_effector_slope_55),
                 ),
         );
-    let end_effector_load_54 = (-end_effector_factor_8)
+    let end_effector_load_54 = (-end_effector_factor_7)
         .mul_add(
             end_effector_slope_75,
             (-q[9])
@@ -7458,25 +7578,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[8].mul_add(end_effector_slope_56, q[7] * end_effector_slope_55),
                 ),
         );
-    let end_effector_load_55 = (-end_effector_factor_15)
+    let end_effector_load_55 = (-end_effector_factor_13)
         .mul_add(end_effector_load_53, end_effector_load_54);
-    let end_effector_load_56 = (-end_effector_factor_24)
+    let end_effector_load_56 = (-end_effector_factor_21)
+        .mul_add(
+            end_effector_load_55,
+            (-end_effector_factor_17)
+                .mul_add(
+                    end_effector_load_53,
+                    (-end_effector_factor_8)
+                        .mul_add(end_effector_slope_75, end_effector_slope_97),
+                ),
+        );
+    let end_effector_load_57 = (-end_effector_factor_26)
         .mul_add(
             end_effector_load_55,
             (-end_effector_factor_19)
                 .mul_add(
                     end_effector_load_53,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_75, end_effector_slope_97),
-                ),
-        );
-    let end_effector_load_57 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_55,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_53,
-                    (-end_effector_factor_13)
+                    (-end_effector_factor_11)
                         .mul_add(
                             end_effector_slope_75,
                             end_effector_slope_99 + end_effector_slope_116,
@@ -7487,248 +7607,248 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_14 = (-cart_factor_2)
         .mul_add(
             end_effector_load_56,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_55,
-                    (-end_effector_factor_20)
+                    (-end_effector_factor_18)
                         .mul_add(
                             end_effector_load_53,
-                            (-end_effector_factor_12)
+                            (-end_effector_factor_10)
                                 .mul_add(end_effector_slope_75, end_effector_slope_99),
                         ),
                 ),
         );
     // plate: response (2 multiplications)
     let plate_slope_12 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_14,
                 (-cart_factor_5).mul_add(end_effector_load_56, end_effector_load_57),
             ));
-    let plate_response = cart_factor_7 * plate_factor;
+    let plate_response = cart_factor_8 * plate_factor;
     // cart: response (4 additions, 7 multiplications)
-    let cart_slope_41 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_12, cart_load_14));
+    let cart_slope_41 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_slope_12, cart_load_14));
     let cart_slope_42 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_slope_12,
-                end_effector_factor_25.mul_add(cart_slope_41, end_effector_load_56),
+                cart_slope_41,
+                end_effector_factor_23.mul_add(plate_slope_12, end_effector_load_56),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_147 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_slope_147 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_slope_12,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_slope_41,
-                        end_effector_factor_16
+                        end_effector_factor_14
                             .mul_add(cart_slope_42, end_effector_load_55),
                     ),
             ));
     let end_effector_response_25 = (-end_effector_factor_5)
         .mul_add(
-            cart_slope_42,
-            end_effector_factor_7
+            cart_slope_41,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_slope_12,
+                    cart_slope_42,
                     end_effector_factor_6
                         .mul_add(
-                            cart_slope_41,
-                            end_effector_factor_4 * end_effector_slope_147,
+                            plate_slope_12,
+                            end_effector_factor_3 * end_effector_slope_147,
                         ),
                 ),
         );
-    let end_effector_slope_148 = end_effector_factor_14
+    let end_effector_slope_148 = end_effector_factor_12
         * (end_effector_load_53 - end_effector_response_25);
-    let end_effector_response_26 = (-end_effector_composite_inertia_28)
+    let end_effector_response_26 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_slope_42,
-            end_effector_composite_inertia_30
+            cart_slope_41,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_slope_41,
-                    end_effector_composite_inertia_7
+                    cart_slope_42,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_slope_147,
-                            end_effector_composite_inertia_18 * end_effector_slope_148,
+                            end_effector_composite_inertia_21 * end_effector_slope_148,
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_response_2 = plate_factor
-        * ((-cart_factor_2).mul_add(cart_factor_7, cart_factor_5));
+        * ((-cart_factor_2).mul_add(cart_factor_8, cart_factor_5));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_2, cart_factor_2));
+    let cart_response = cart_factor_7
+        * (cart_factor_4.mul_add(plate_response_2, cart_factor_2));
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_15 = (-end_effector_factor_24)
-        .mul_add(cart_factor_2, end_effector_factor_27);
+    let cart_load_15 = (-end_effector_factor_21)
+        .mul_add(cart_factor_2, end_effector_factor_24);
     // plate: response (1 multiplication)
     let plate_response_3 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_15,
-                (-end_effector_factor_24).mul_add(cart_factor_5, end_effector_factor_29),
+                (-end_effector_factor_21).mul_add(cart_factor_5, end_effector_factor_26),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_2 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_3, cart_load_15));
+    let cart_response_2 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_response_3, cart_load_15));
     let cart_response_3 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_response_3,
-                end_effector_factor_25.mul_add(cart_response_2, end_effector_factor_24),
+                cart_response_2,
+                end_effector_factor_23.mul_add(plate_response_3, end_effector_factor_21),
             ));
     // end_effector: response (3 additions, 4 multiplications)
-    let end_effector_response_27 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_response_27 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_response_3,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_response_2,
-                        end_effector_factor_16.mul_add(cart_response_3, -n(1.0)),
+                        end_effector_factor_14.mul_add(cart_response_3, -n(1.0)),
                     ),
             ));
     // end_effector: load (3 additions, 3 multiplications)
-    let end_effector_load_58 = (-end_effector_factor_15)
-        .mul_add(end_effector_factor_24, end_effector_factor_19);
+    let end_effector_load_58 = (-end_effector_factor_13)
+        .mul_add(end_effector_factor_21, end_effector_factor_17);
     // cart: load (3 additions, 3 multiplications)
     let cart_load_16 = (-cart_factor_2)
         .mul_add(
             end_effector_load_58,
-            (-end_effector_factor_15)
-                .mul_add(end_effector_factor_27, end_effector_factor_20),
+            (-end_effector_factor_13)
+                .mul_add(end_effector_factor_24, end_effector_factor_18),
         );
     // plate: response (1 multiplication)
     let plate_response_4 = plate_factor
-        * ((-cart_factor_7)
+        * ((-cart_factor_8)
             .mul_add(
                 cart_load_16,
                 (-cart_factor_5)
                     .mul_add(
                         end_effector_load_58,
-                        (-end_effector_factor_15)
-                            .mul_add(end_effector_factor_29, end_effector_factor_21),
+                        (-end_effector_factor_13)
+                            .mul_add(end_effector_factor_26, end_effector_factor_19),
                     ),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_4 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_4, cart_load_16));
+    let cart_response_4 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_response_4, cart_load_16));
     let cart_response_5 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_response_4,
-                end_effector_factor_25.mul_add(cart_response_4, end_effector_load_58),
+                cart_response_4,
+                end_effector_factor_23.mul_add(plate_response_4, end_effector_load_58),
             ));
     // end_effector: response (7 additions, 9 multiplications)
-    let end_effector_response_28 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_response_28 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_response_4,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_response_4,
-                        end_effector_factor_16
-                            .mul_add(cart_response_5, end_effector_factor_15),
+                        end_effector_factor_14
+                            .mul_add(cart_response_5, end_effector_factor_13),
                     ),
             ));
     let end_effector_response_29 = (-end_effector_factor_5)
         .mul_add(
-            cart_response_5,
-            end_effector_factor_7
+            cart_response_4,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_response_4,
+                    cart_response_5,
                     end_effector_factor_6
                         .mul_add(
-                            cart_response_4,
-                            end_effector_factor_4 * end_effector_response_28,
+                            plate_response_4,
+                            end_effector_factor_3 * end_effector_response_28,
                         ),
                 ),
         );
     // end_effector: load (7 additions, 7 multiplications)
     let end_effector_load_59 = (-end_effector_factor_2)
-        .mul_add(end_effector_factor_15, end_effector_factor_8);
-    let end_effector_load_60 = (-end_effector_factor_24)
+        .mul_add(end_effector_factor_13, end_effector_factor_7);
+    let end_effector_load_60 = (-end_effector_factor_21)
         .mul_add(
             end_effector_load_59,
             (-end_effector_factor_2)
-                .mul_add(end_effector_factor_19, end_effector_factor_10),
+                .mul_add(end_effector_factor_17, end_effector_factor_8),
         );
     // cart: load (3 additions, 3 multiplications)
     let cart_load_17 = (-cart_factor_2)
         .mul_add(
             end_effector_load_60,
-            (-end_effector_factor_27)
+            (-end_effector_factor_24)
                 .mul_add(
                     end_effector_load_59,
                     (-end_effector_factor_2)
-                        .mul_add(end_effector_factor_20, end_effector_factor_12),
+                        .mul_add(end_effector_factor_18, end_effector_factor_10),
                 ),
         );
-    let cart_load_18 = (-cart_factor_7)
+    let cart_load_18 = (-cart_factor_8)
         .mul_add(
             cart_load_17,
             (-cart_factor_5)
                 .mul_add(
                     end_effector_load_60,
-                    (-end_effector_factor_29)
+                    (-end_effector_factor_26)
                         .mul_add(
                             end_effector_load_59,
                             (-end_effector_factor_2)
-                                .mul_add(end_effector_factor_21, end_effector_factor_13),
+                                .mul_add(end_effector_factor_19, end_effector_factor_11),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_response_5 = plate_factor * cart_load_18;
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_6 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_5, cart_load_17));
+    let cart_response_6 = cart_factor_7
+        * (cart_factor_4.mul_add(plate_response_5, cart_load_17));
     let cart_response_7 = cart_factor
-        * (end_effector_factor_26
+        * ((-end_effector_factor_22)
             .mul_add(
-                plate_response_5,
-                end_effector_factor_25.mul_add(cart_response_6, end_effector_load_60),
+                cart_response_6,
+                end_effector_factor_23.mul_add(plate_response_5, end_effector_load_60),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_response_30 = end_effector_factor_23
-        * ((-end_effector_factor_18)
+    let end_effector_response_30 = end_effector_factor_20
+        * ((-end_effector_factor_16)
             .mul_add(
                 plate_response_5,
-                (-end_effector_factor_17)
+                end_effector_factor_15
                     .mul_add(
                         cart_response_6,
-                        end_effector_factor_16
+                        end_effector_factor_14
                             .mul_add(cart_response_7, end_effector_load_59),
                     ),
             ));
     let end_effector_response_31 = (-end_effector_factor_5)
         .mul_add(
-            cart_response_7,
-            end_effector_factor_7
+            cart_response_6,
+            (-end_effector_factor_4)
                 .mul_add(
-                    plate_response_5,
+                    cart_response_7,
                     end_effector_factor_6
                         .mul_add(
-                            cart_response_6,
-                            end_effector_factor_4 * end_effector_response_30,
+                            plate_response_5,
+                            end_effector_factor_3 * end_effector_response_30,
                         ),
                 ),
         );
-    let end_effector_response_32 = end_effector_factor_14
+    let end_effector_response_32 = end_effector_factor_12
         * (end_effector_factor_2 - end_effector_response_31);
-    let end_effector_response_33 = (-end_effector_composite_inertia_28)
+    let end_effector_response_33 = (-end_effector_composite_inertia_33)
         .mul_add(
-            cart_response_7,
-            end_effector_composite_inertia_30
+            cart_response_6,
+            (-end_effector_composite_inertia_31)
                 .mul_add(
-                    cart_response_6,
-                    end_effector_composite_inertia_7
+                    cart_response_7,
+                    end_effector_composite_inertia_9
                         .mul_add(
                             end_effector_response_30,
-                            end_effector_composite_inertia_18 * end_effector_response_32,
+                            end_effector_composite_inertia_21 * end_effector_response_32,
                         ),
                 ),
         );
@@ -7758,26 +7878,26 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         ],
         [
             n(0.0),
-            cart_slope_19,
-            cart_slope_21,
-            cart_slope_23,
-            -cart_slope_25,
-            -cart_slope_27,
-            -cart_slope_29,
-            -cart_slope_31,
-            -cart_slope_33,
-            -cart_slope_35,
-            cart_slope_37,
-            cart_slope_39,
-            cart_slope_41,
+            -cart_slope_19,
+            -cart_slope_21,
+            -cart_slope_23,
+            cart_slope_25,
+            cart_slope_27,
+            cart_slope_29,
+            cart_slope_31,
+            cart_slope_33,
+            cart_slope_35,
+            -cart_slope_37,
+            -cart_slope_39,
+            -cart_slope_41,
             -plate_response,
-            cart_factor_6 * (cart_factor_4.mul_add(plate_response, n(1.0))),
-            -cart_response,
+            cart_factor_7 * (cart_factor_4.mul_add(plate_response, -n(1.0))),
+            cart_response,
             n(0.0),
-            -cart_response_2,
-            -cart_response_4,
-            -cart_response_6,
-            -cart_acceleration_7,
+            cart_response_2,
+            cart_response_4,
+            cart_response_6,
+            cart_acceleration_8,
         ],
         [
             n(0.0),
@@ -7794,18 +7914,18 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             -cart_slope_40,
             -cart_slope_42,
             -plate_response_2,
-            -cart_response,
-            cart_factor
-                * (end_effector_factor_26
+            cart_response,
+            -(cart_factor
+                * ((-end_effector_factor_23)
                     .mul_add(
                         plate_response_2,
-                        end_effector_factor_25.mul_add(cart_response, -n(1.0)),
-                    )),
+                        end_effector_factor_22.mul_add(cart_response, n(1.0)),
+                    ))),
             n(0.0),
             cart_response_3,
             cart_response_5,
             cart_response_7,
-            -cart_acceleration_8,
+            -cart_acceleration_9,
         ],
         [
             n(0.0),
@@ -7814,7 +7934,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             -end_effector_slope_129,
             -end_effector_slope_131,
             -end_effector_slope_133,
-            end_effector_slope_135,
+            -end_effector_slope_135,
             end_effector_slope_137,
             end_effector_slope_139,
             -end_effector_slope_141,
@@ -7822,13 +7942,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_slope_145,
             end_effector_slope_147,
             -plate_response_3,
-            -cart_response_2,
+            cart_response_2,
             cart_response_3,
             n(0.0),
             -end_effector_response_27,
             -end_effector_response_28,
             -end_effector_response_30,
-            end_effector_acceleration_20,
+            -end_effector_acceleration_26,
         ],
         [
             n(0.0),
@@ -7837,7 +7957,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             -end_effector_slope_130,
             -end_effector_slope_132,
             -end_effector_slope_134,
-            end_effector_slope_136,
+            -end_effector_slope_136,
             end_effector_slope_138,
             end_effector_slope_140,
             -end_effector_slope_142,
@@ -7845,105 +7965,105 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_slope_146,
             end_effector_slope_148,
             -plate_response_4,
-            -cart_response_4,
+            cart_response_4,
             cart_response_5,
             n(0.0),
             -end_effector_response_28,
-            end_effector_factor_14 * (end_effector_response_29 + n(1.0)),
+            end_effector_factor_12 * (end_effector_response_29 + n(1.0)),
             -end_effector_response_32,
-            end_effector_acceleration_21,
+            -end_effector_acceleration_27,
         ],
         [
             n(0.0),
             -(end_effector_factor
-                * (end_effector_composite_inertia_32
+                * (end_effector_composite_inertia_35
                     .mul_add(
                         plate_slope,
                         end_effector_slope_106 - end_effector_response_4,
                     ))),
             end_effector_factor
-                * (end_effector_composite_inertia_32
+                * (end_effector_composite_inertia_35
                     .mul_add(
                         plate_slope_2,
                         end_effector_slope_107 - end_effector_response_6,
                     )),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_3,
                         end_effector_slope_108 - end_effector_response_8,
                     ))),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_4,
                         end_effector_slope_64 - end_effector_response_10,
                     ))),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_5,
                         end_effector_slope_68 - end_effector_response_12,
                     ))),
-            end_effector_factor
-                * (end_effector_composite_inertia_32
+            -(end_effector_factor
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_6,
                         end_effector_slope_72 - end_effector_response_14,
-                    )),
+                    ))),
             end_effector_factor
-                * (end_effector_composite_inertia_32
+                * (end_effector_composite_inertia_35
                     .mul_add(
                         plate_slope_7,
                         end_effector_slope_105 - end_effector_response_16,
                     )),
             end_effector_factor
-                * (end_effector_composite_inertia_32
+                * (end_effector_composite_inertia_35
                     .mul_add(
                         plate_slope_8,
                         end_effector_slope_109 - end_effector_response_18,
                     )),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_9,
                         end_effector_slope_110 - end_effector_response_20,
                     ))),
             end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_10,
                         end_effector_slope_73 - end_effector_response_22,
                     )),
             end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_11,
                         end_effector_slope_74 - end_effector_response_24,
                     )),
             end_effector_factor
-                * ((-end_effector_composite_inertia_32)
+                * ((-end_effector_composite_inertia_35)
                     .mul_add(
                         plate_slope_12,
                         end_effector_slope_75 - end_effector_response_26,
                     )),
             -plate_response_5,
-            -cart_response_6,
+            cart_response_6,
             cart_response_7,
             n(0.0),
             -end_effector_response_30,
             -end_effector_response_32,
             end_effector_factor
-                * (end_effector_composite_inertia_32
+                * (end_effector_composite_inertia_35
                     .mul_add(plate_response_5, end_effector_response_33 + n(1.0))),
-            end_effector_acceleration_22,
+            -end_effector_acceleration_28,
         ],
     ]
 }
 
 /// For each speed ∂τ̄/∂ϕ and ∂τ̄/∂v̄ of inverse dynamics in local coordinates ϕ about Q; ∂τ̄/∂v̄̇ is M̄.
 ///
-/// Operations: 635 additions, 779 multiplications.
+/// Operations: 637 additions, 765 multiplications.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn inverse_dynamics_derivatives<T: Scalar>(
@@ -7956,19 +8076,24 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let plate_acceleration = v[0] * v[0];
     // cart: angular velocity (1 addition)
     let cart_rate_z = v[0] + v[1];
-    // cart: acceleration (8 additions, 12 multiplications)
-    let cart_acceleration = q[6] * a[0];
-    let cart_acceleration_2 = q[3].mul_add(plate_acceleration, cart_acceleration);
-    let cart_acceleration_3 = q[3] * a[0];
-    let cart_acceleration_4 = (-q[6]).mul_add(plate_acceleration, cart_acceleration_3);
-    let cart_acceleration_5 = a[0] + a[1];
-    let cart_acceleration_6 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_7 = (-q[1])
-        .mul_add(cart_acceleration_2, q[4].mul_add(cart_acceleration_4, a[2]));
-    let cart_acceleration_8 = (-q[2])
+    // cart: acceleration (9 additions, 11 multiplications)
+    let cart_acceleration = v[0] * v[2];
+    let cart_acceleration_2 = q[6] * a[0];
+    let cart_acceleration_3 = q[3].mul_add(plate_acceleration, cart_acceleration_2);
+    let cart_acceleration_4 = q[3] * a[0];
+    let cart_acceleration_5 = (-q[6]).mul_add(plate_acceleration, cart_acceleration_4);
+    let cart_acceleration_6 = a[0] + a[1];
+    let cart_acceleration_7 = cart_rate_z * cart_rate_z;
+    let cart_acceleration_8 = (-q[1])
+        .mul_add(cart_acceleration_3, q[4].mul_add(cart_acceleration_5, a[2]));
+    let cart_acceleration_9 = (-q[2])
         .mul_add(
-            cart_acceleration_2,
-            q[5].mul_add(cart_acceleration_4, v[1].mul_add(v[2], (v[0] * v[2]) * n(2.0))),
+            cart_acceleration_3,
+            q[5]
+                .mul_add(
+                    cart_acceleration_5,
+                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
+                ),
         );
     // cart: motion (11 additions, 18 multiplications)
     let cart_motion = v[0] * q[6];
@@ -7976,19 +8101,19 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let cart_motion_3 = (-q[4]).mul_add(cart_motion_2, q[1] * cart_motion);
     let cart_motion_4 = (-q[5]).mul_add(cart_motion_2, q[2] * cart_motion);
     let cart_motion_5 = v[2] - cart_motion_3;
-    // cart: variation (4 additions, 3 multiplications)
+    // cart: variation (5 additions, 2 multiplications)
     let cart_variation = v[0] + cart_rate_z;
     let cart_variation_2 = cart_motion_3 - cart_motion_5;
-    let cart_variation_3 = cart_motion_4 * n(2.0);
+    let cart_variation_3 = cart_motion_4 + cart_motion_4;
     let cart_variation_4 = (-q[5])
         .mul_add(
-            cart_acceleration_3,
-            v[0].mul_add(cart_motion_3, q[2] * cart_acceleration),
+            cart_acceleration_4,
+            v[0].mul_add(cart_motion_3, q[2] * cart_acceleration_2),
         );
     let cart_variation_5 = (-v[0])
         .mul_add(
             cart_motion_4,
-            (-q[4]).mul_add(cart_acceleration_3, q[1] * cart_acceleration),
+            (-q[4]).mul_add(cart_acceleration_4, q[1] * cart_acceleration_2),
         );
     // end_effector: joint (6 additions, 9 multiplications)
     let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
@@ -8002,12 +8127,12 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_rate_y = end_effector_joint_2 + end_effector_angular_velocity_2;
     let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // end_effector: acceleration (34 additions, 37 multiplications)
-    let end_effector_acceleration = cart_acceleration_5 * n(0.02);
-    let end_effector_acceleration_2 = cart_acceleration_5 * n(0.15);
-    let end_effector_acceleration_3 = (-cart_acceleration_6)
-        .mul_add(n(0.15), cart_acceleration_7 + end_effector_acceleration);
-    let end_effector_acceleration_4 = cart_acceleration_6
-        .mul_add(n(0.02), cart_acceleration_8 + end_effector_acceleration_2);
+    let end_effector_acceleration = cart_acceleration_6 * n(0.02);
+    let end_effector_acceleration_2 = cart_acceleration_6 * n(0.15);
+    let end_effector_acceleration_3 = (-cart_acceleration_7)
+        .mul_add(n(0.15), cart_acceleration_8 + end_effector_acceleration);
+    let end_effector_acceleration_4 = cart_acceleration_7
+        .mul_add(n(0.02), cart_acceleration_9 + end_effector_acceleration_2);
     let end_effector_acceleration_5 = q[13] * n(9.81);
     let end_effector_acceleration_6 = q[10]
         .mul_add(
@@ -8032,9 +8157,9 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
         .mul_add(a[5], q[11].mul_add(a[4], q[8] * a[3]));
     let end_effector_acceleration_13 = q[15]
         .mul_add(a[5], q[12].mul_add(a[4], q[9] * a[3]));
-    let end_effector_acceleration_14 = q[13] * cart_acceleration_5;
-    let end_effector_acceleration_15 = q[14] * cart_acceleration_5;
-    let end_effector_acceleration_16 = q[15] * cart_acceleration_5;
+    let end_effector_acceleration_14 = q[13] * cart_acceleration_6;
+    let end_effector_acceleration_15 = q[14] * cart_acceleration_6;
+    let end_effector_acceleration_16 = q[15] * cart_acceleration_6;
     let end_effector_acceleration_17 = (-end_effector_joint_2)
         .mul_add(
             end_effector_angular_velocity_3,
@@ -8068,7 +8193,19 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_acceleration_23 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_24 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_25 = end_effector_rate_z * end_effector_rate_z;
-    // end_effector: motion (43 additions, 59 multiplications)
+    let end_effector_acceleration_26 = end_effector_acceleration_19
+        + end_effector_acceleration_21;
+    let end_effector_acceleration_27 = end_effector_acceleration_18
+        - end_effector_acceleration_22;
+    let end_effector_acceleration_28 = end_effector_acceleration_19
+        - end_effector_acceleration_21;
+    let end_effector_acceleration_29 = end_effector_acceleration_17
+        + end_effector_acceleration_24;
+    let end_effector_acceleration_30 = end_effector_acceleration_18
+        + end_effector_acceleration_22;
+    let end_effector_acceleration_31 = end_effector_acceleration_17
+        - end_effector_acceleration_24;
+    // end_effector: motion (40 additions, 50 multiplications)
     let end_effector_motion = cart_rate_z.mul_add(n(0.02), cart_motion_5);
     let end_effector_motion_2 = (-cart_rate_z).mul_add(n(0.15), cart_motion_4);
     let end_effector_motion_3 = (-q[10])
@@ -8078,9 +8215,9 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_motion_5 = (-q[12])
         .mul_add(end_effector_motion_2, q[9] * end_effector_motion);
     let end_effector_motion_6 = (-cart_rate_z)
-        .mul_add(cart_motion_4, end_effector_acceleration + cart_acceleration_7);
+        .mul_add(cart_motion_4, end_effector_acceleration + cart_acceleration_8);
     let end_effector_motion_7 = (-cart_rate_z)
-        .mul_add(cart_motion_5, end_effector_acceleration_2 + cart_acceleration_8);
+        .mul_add(cart_motion_5, end_effector_acceleration_2 + cart_acceleration_9);
     let end_effector_motion_8 = q[10]
         .mul_add(
             end_effector_motion_7,
@@ -8096,23 +8233,38 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_motion_7,
             q[9].mul_add(end_effector_motion_6, end_effector_acceleration_9),
         );
-    let end_effector_motion_11 = (-end_effector_rate_z)
+    let end_effector_motion_11 = (-end_effector_acceleration_24)
         .mul_add(
-            n(0.027499999999999997),
-            end_effector_rate_y.mul_add(n(0.0078), end_effector_rate_x * n(0.19388)),
-        );
-    let end_effector_motion_12 = end_effector_rate_z
-        .mul_add(
-            n(0.042300000000000004),
-            end_effector_rate_y.mul_add(n(0.18225), end_effector_rate_x * n(0.0078)),
-        );
-    let end_effector_motion_13 = (-end_effector_rate_z)
-        .mul_add(
-            n(0.027130000000000015),
-            (-end_effector_rate_y)
+            n(0.15511999999999998),
+            (end_effector_acceleration_23 - end_effector_acceleration_25)
                 .mul_add(
                     n(0.042300000000000004),
-                    end_effector_rate_x * n(0.027499999999999997),
+                    end_effector_acceleration_27
+                        .mul_add(n(0.0078), end_effector_acceleration_17 * n(0.19388)),
+                ),
+        );
+    let end_effector_motion_12 = (end_effector_acceleration_20
+        - end_effector_acceleration_25)
+        .mul_add(
+            n(0.027499999999999997),
+            end_effector_acceleration_28
+                .mul_add(
+                    n(0.042300000000000004),
+                    end_effector_acceleration_22
+                        .mul_add(
+                            n(0.16674999999999998),
+                            end_effector_acceleration_18 * n(0.18225),
+                        ),
+                ),
+        );
+    let end_effector_motion_13 = (-end_effector_acceleration_31)
+        .mul_add(
+            n(0.027499999999999997),
+            (-end_effector_acceleration_21)
+                .mul_add(
+                    n(0.01163),
+                    (end_effector_acceleration_20 - end_effector_acceleration_23)
+                        .mul_add(n(0.0078), end_effector_acceleration_19 * n(0.02713)),
                 ),
         );
     let end_effector_motion_14 = (-end_effector_acceleration_8)
@@ -8121,15 +8273,8 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             (-end_effector_acceleration_10)
                 .mul_add(
                     n(0.136),
-                    (-end_effector_acceleration_19)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_acceleration_18
-                                .mul_add(
-                                    n(0.0078),
-                                    end_effector_acceleration_17 * n(0.19388),
-                                ),
-                        ),
+                    (-end_effector_acceleration_26)
+                        .mul_add(n(0.027499999999999997), end_effector_motion_11),
                 ),
         );
     let end_effector_motion_15 = (-end_effector_acceleration_10)
@@ -8138,89 +8283,50 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_acceleration_6
                 .mul_add(
                     n(0.51),
-                    end_effector_acceleration_19
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_acceleration_18
-                                .mul_add(
-                                    n(0.18225),
-                                    end_effector_acceleration_17 * n(0.0078),
-                                ),
-                        ),
+                    end_effector_acceleration_29
+                        .mul_add(n(0.0078), end_effector_motion_12),
                 ),
         );
-    let end_effector_motion_16 = (-end_effector_acceleration_6)
+    let end_effector_motion_16 = end_effector_acceleration_6
         .mul_add(
             n(0.136),
-            (-end_effector_acceleration_8)
+            end_effector_acceleration_8
                 .mul_add(
                     n(0.085),
-                    (-end_effector_acceleration_19)
-                        .mul_add(
-                            n(0.027130000000000015),
-                            (-end_effector_acceleration_18)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_acceleration_17 * n(0.027499999999999997),
-                                ),
-                        ),
+                    end_effector_acceleration_30
+                        .mul_add(n(0.042300000000000004), end_effector_motion_13),
                 ),
         );
-    let end_effector_motion_17 = end_effector_rate_z
-        .mul_add(
-            end_effector_motion_12,
-            end_effector_rate_y.mul_add(end_effector_motion_13, -end_effector_motion_14),
-        );
-    let end_effector_motion_18 = end_effector_rate_x
-        .mul_add(
-            end_effector_motion_13,
-            end_effector_rate_z.mul_add(end_effector_motion_11, end_effector_motion_15),
-        );
-    let end_effector_motion_19 = (-end_effector_rate_y)
-        .mul_add(
-            end_effector_motion_11,
-            end_effector_rate_x.mul_add(end_effector_motion_12, -end_effector_motion_16),
-        );
-    let end_effector_motion_20 = (-(end_effector_acceleration_18
-        + end_effector_acceleration_22))
+    let end_effector_motion_17 = (-end_effector_acceleration_30)
         .mul_add(
             n(0.51),
-            (-(end_effector_acceleration_19 - end_effector_acceleration_21))
+            (-end_effector_acceleration_28)
                 .mul_add(
                     n(0.136),
                     (end_effector_acceleration_23 + end_effector_acceleration_25)
                         * n(0.085),
                 ),
         );
-    let end_effector_motion_21 = (-(end_effector_acceleration_17
-        - end_effector_acceleration_24))
+    let end_effector_motion_18 = (-end_effector_acceleration_31)
         .mul_add(
             n(0.51),
             (end_effector_acceleration_20 + end_effector_acceleration_25)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_19 + end_effector_acceleration_21)
-                        * n(0.085),
-                ),
+                .mul_add(n(0.136), end_effector_acceleration_26 * n(0.085)),
         );
-    let end_effector_motion_22 = (end_effector_acceleration_20
+    let end_effector_motion_19 = (end_effector_acceleration_20
         + end_effector_acceleration_23)
         .mul_add(
             n(0.51),
-            (end_effector_acceleration_17 + end_effector_acceleration_24)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_18 - end_effector_acceleration_22)
-                        * n(0.085),
-                ),
+            end_effector_acceleration_29
+                .mul_add(n(0.136), end_effector_acceleration_27 * n(0.085)),
         );
-    // end_effector: variation (110 additions, 114 multiplications)
+    // end_effector: variation (113 additions, 111 multiplications)
     let end_effector_variation = end_effector_angular_velocity + end_effector_rate_x;
     let end_effector_variation_2 = end_effector_angular_velocity_2 + end_effector_rate_y;
     let end_effector_variation_3 = end_effector_angular_velocity_3 + end_effector_rate_z;
-    let end_effector_variation_4 = end_effector_motion_3 * n(2.0);
-    let end_effector_variation_5 = end_effector_motion_4 * n(2.0);
-    let end_effector_variation_6 = end_effector_motion_5 * n(2.0);
+    let end_effector_variation_4 = end_effector_motion_3 + end_effector_motion_3;
+    let end_effector_variation_5 = end_effector_motion_4 + end_effector_motion_4;
+    let end_effector_variation_6 = end_effector_motion_5 + end_effector_motion_5;
     let end_effector_variation_7 = end_effector_angular_velocity_2 * end_effector_rate_y;
     let end_effector_variation_8 = end_effector_angular_velocity_3 * end_effector_rate_z;
     let end_effector_variation_9 = end_effector_angular_velocity_2
@@ -8419,43 +8525,36 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
         .mul_add(
             n(0.05499999999999999),
             end_effector_motion_4
-                .mul_add(n(0.17), end_effector_rate_z * n(0.015499999999999958)),
+                .mul_add(n(0.17), end_effector_rate_z * n(0.015500000000000003)),
         );
     let end_effector_variation_68 = (-end_effector_motion_5)
         .mul_add(
             n(0.17),
             end_effector_rate_y
-                .mul_add(n(0.015499999999999958), end_effector_rate_x * n(0.0156)),
+                .mul_add(n(0.015500000000000003), end_effector_rate_x * n(0.0156)),
         );
     let end_effector_variation_69 = end_effector_motion_3
         .mul_add(
             n(0.272),
             end_effector_rate_z
-                .mul_add(
-                    n(0.03875999999999996),
-                    end_effector_rate_y * n(0.08460000000000001),
-                ),
+                .mul_add(n(0.03876), end_effector_rate_y * n(0.08460000000000001)),
         );
     let end_effector_variation_70 = end_effector_variation_60 + end_effector_variation_63
         + end_effector_variation_65 - end_effector_variation_61;
     let end_effector_variation_71 = (-end_effector_motion_5)
         .mul_add(
             n(0.272),
-            end_effector_rate_y
-                .mul_add(n(0.0156), end_effector_rate_x * n(0.03875999999999996)),
+            end_effector_rate_y.mul_add(n(0.0156), end_effector_rate_x * n(0.03876)),
         );
     let end_effector_variation_72 = end_effector_motion_3
         .mul_add(
             n(1.02),
             end_effector_rate_z
-                .mul_add(
-                    n(0.08460000000000001),
-                    end_effector_rate_y * n(0.3489999999999999),
-                ),
+                .mul_add(n(0.08460000000000001), end_effector_rate_y * n(0.349)),
         );
     let end_effector_variation_73 = (-end_effector_rate_x)
         .mul_add(
-            n(0.3489999999999999),
+            n(0.349),
             end_effector_motion_4
                 .mul_add(n(1.02), end_effector_rate_z * n(0.05499999999999999)),
         );
@@ -8506,7 +8605,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             n(0.136),
             (-end_effector_variation_22)
                 .mul_add(
-                    n(0.027130000000000015),
+                    n(0.02713),
                     end_effector_variation_19
                         .mul_add(
                             n(0.085),
@@ -8579,7 +8678,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                             n(0.042300000000000004),
                             end_effector_variation_33
                                 .mul_add(
-                                    n(0.027130000000000015),
+                                    n(0.02713),
                                     end_effector_variation_32 * n(0.027499999999999997),
                                 ),
                         ),
@@ -8648,7 +8747,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                     n(0.085),
                     end_effector_variation_34
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             end_effector_variation_39
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -8720,7 +8819,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                     n(0.085),
                     (-end_effector_variation_42)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_variation_41)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -8834,7 +8933,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                     n(0.085),
                     (-end_effector_variation_48)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_variation_47)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -8948,7 +9047,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                     n(0.085),
                     (-end_effector_variation_54)
                         .mul_add(
-                            n(0.027130000000000015),
+                            n(0.02713),
                             (-end_effector_variation_53)
                                 .mul_add(
                                     n(0.042300000000000004),
@@ -9028,14 +9127,14 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_slope_8,
             (-q[8])
                 .mul_add(
-                    end_effector_motion_19,
+                    end_effector_motion_16,
                     q[8]
                         .mul_add(
                             end_effector_slope_7,
                             q[7]
                                 .mul_add(
                                     end_effector_slope_6,
-                                    q[9] * end_effector_motion_18,
+                                    q[9] * end_effector_motion_15,
                                 ),
                         ),
                 ),
@@ -9045,14 +9144,14 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_slope_8,
             (-q[11])
                 .mul_add(
-                    end_effector_motion_19,
+                    end_effector_motion_16,
                     q[11]
                         .mul_add(
                             end_effector_slope_7,
                             q[10]
                                 .mul_add(
                                     end_effector_slope_6,
-                                    q[12] * end_effector_motion_18,
+                                    q[12] * end_effector_motion_15,
                                 ),
                         ),
                 ),
@@ -9063,27 +9162,27 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_slope_8,
             (-q[14])
                 .mul_add(
-                    end_effector_motion_19,
+                    end_effector_motion_16,
                     q[14]
                         .mul_add(
                             end_effector_slope_7,
-                            q[15].mul_add(end_effector_motion_18, end_effector_slope_63),
+                            q[15].mul_add(end_effector_motion_15, end_effector_slope_63),
                         ),
                 ),
         );
     let end_effector_slope_65 = (-q[9])
         .mul_add(
             end_effector_slope_16,
-            q[8]
+            (-q[9])
                 .mul_add(
-                    end_effector_slope_15,
-                    q[7]
+                    end_effector_motion_14,
+                    q[8]
                         .mul_add(
-                            end_effector_slope_14,
-                            q[9]
+                            end_effector_slope_15,
+                            q[7]
                                 .mul_add(
-                                    end_effector_motion_17,
-                                    q[7] * end_effector_motion_19,
+                                    end_effector_slope_14,
+                                    q[7] * end_effector_motion_16,
                                 ),
                         ),
                 ),
@@ -9091,16 +9190,16 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_66 = (-q[12])
         .mul_add(
             end_effector_slope_16,
-            q[11]
+            (-q[12])
                 .mul_add(
-                    end_effector_slope_15,
-                    q[10]
+                    end_effector_motion_14,
+                    q[11]
                         .mul_add(
-                            end_effector_slope_14,
-                            q[12]
+                            end_effector_slope_15,
+                            q[10]
                                 .mul_add(
-                                    end_effector_motion_17,
-                                    q[10] * end_effector_motion_19,
+                                    end_effector_slope_14,
+                                    q[10] * end_effector_motion_16,
                                 ),
                         ),
                 ),
@@ -9109,61 +9208,61 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_68 = (-q[15])
         .mul_add(
             end_effector_slope_16,
-            q[13]
+            (-q[15])
                 .mul_add(
-                    end_effector_slope_14,
-                    q[15]
+                    end_effector_motion_14,
+                    q[13]
                         .mul_add(
-                            end_effector_motion_17,
-                            q[13].mul_add(end_effector_motion_19, end_effector_slope_67),
+                            end_effector_slope_14,
+                            q[13].mul_add(end_effector_motion_16, end_effector_slope_67),
                         ),
                 ),
         );
-    let end_effector_slope_69 = (-q[9])
+    let end_effector_slope_69 = (-q[8])
         .mul_add(
-            end_effector_slope_23,
-            q[8]
+            end_effector_slope_22,
+            (-q[7])
                 .mul_add(
-                    end_effector_slope_22,
-                    q[7]
+                    end_effector_slope_21,
+                    (-q[7])
                         .mul_add(
-                            end_effector_slope_21,
-                            q[7]
+                            end_effector_motion_15,
+                            q[9]
                                 .mul_add(
-                                    end_effector_motion_18,
-                                    q[8] * end_effector_motion_17,
+                                    end_effector_slope_23,
+                                    q[8] * end_effector_motion_14,
                                 ),
                         ),
                 ),
         );
-    let end_effector_slope_70 = (-q[12])
+    let end_effector_slope_70 = (-q[11])
         .mul_add(
-            end_effector_slope_23,
-            q[11]
+            end_effector_slope_22,
+            (-q[10])
                 .mul_add(
-                    end_effector_slope_22,
-                    q[10]
+                    end_effector_slope_21,
+                    (-q[10])
                         .mul_add(
-                            end_effector_slope_21,
-                            q[10]
+                            end_effector_motion_15,
+                            q[12]
                                 .mul_add(
-                                    end_effector_motion_18,
-                                    q[11] * end_effector_motion_17,
+                                    end_effector_slope_23,
+                                    q[11] * end_effector_motion_14,
                                 ),
                         ),
                 ),
         );
     let end_effector_slope_71 = q[15] * end_effector_slope_23;
-    let end_effector_slope_72 = q[14]
+    let end_effector_slope_72 = (-q[14])
         .mul_add(
             end_effector_slope_22,
-            q[13]
+            (-q[13])
                 .mul_add(
                     end_effector_slope_21,
-                    q[13]
+                    (-q[13])
                         .mul_add(
-                            end_effector_motion_18,
-                            q[14].mul_add(end_effector_motion_17, -end_effector_slope_71),
+                            end_effector_motion_15,
+                            q[14].mul_add(end_effector_motion_14, end_effector_slope_71),
                         ),
                 ),
         );
@@ -9188,7 +9287,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             (-end_effector_rate_y)
                 .mul_add(
                     end_effector_variation_75,
-                    end_effector_variation_17.mul_add(n(0.51), end_effector_motion_22),
+                    end_effector_variation_17.mul_add(n(0.51), end_effector_motion_19),
                 ),
         );
     let end_effector_slope_77 = (-end_effector_variation_21)
@@ -9197,7 +9296,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             (-end_effector_rate_z)
                 .mul_add(
                     end_effector_variation_75,
-                    end_effector_variation_17.mul_add(n(0.136), end_effector_motion_21),
+                    end_effector_variation_17.mul_add(n(0.136), end_effector_motion_18),
                 ),
         );
     let end_effector_slope_78 = (-end_effector_variation_33)
@@ -9207,7 +9306,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                 .mul_add(
                     n(0.51),
                     end_effector_rate_x
-                        .mul_add(end_effector_variation_76, end_effector_motion_22),
+                        .mul_add(end_effector_variation_76, end_effector_motion_19),
                 ),
         );
     let end_effector_slope_79 = (-end_effector_rate_z)
@@ -9216,7 +9315,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_variation_28
                 .mul_add(
                     n(0.085),
-                    end_effector_variation_32.mul_add(n(0.136), end_effector_motion_20),
+                    end_effector_variation_32.mul_add(n(0.136), end_effector_motion_17),
                 ),
         );
     let end_effector_slope_80 = (-end_effector_rate_x)
@@ -9225,7 +9324,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_variation_34
                 .mul_add(
                     n(0.136),
-                    end_effector_variation_39.mul_add(n(0.51), end_effector_motion_21),
+                    end_effector_variation_39.mul_add(n(0.51), end_effector_motion_18),
                 ),
         );
     let end_effector_slope_81 = (-end_effector_rate_y)
@@ -9234,7 +9333,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_variation_38
                 .mul_add(
                     n(0.51),
-                    end_effector_variation_34.mul_add(n(0.085), end_effector_motion_20),
+                    end_effector_variation_34.mul_add(n(0.085), end_effector_motion_17),
                 ),
         );
     let end_effector_slope_82 = q[9].mul_add(n(0.136), q[8] * n(0.51));
@@ -9264,10 +9363,10 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                     n(0.15),
                     (-q[14])
                         .mul_add(
-                            end_effector_motion_19 - end_effector_slope_7,
+                            end_effector_motion_16 - end_effector_slope_7,
                             q[15]
                                 .mul_add(
-                                    end_effector_motion_18 - end_effector_slope_8,
+                                    end_effector_motion_15 - end_effector_slope_8,
                                     end_effector_slope_63,
                                 ),
                         ),
@@ -9289,12 +9388,12 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             (-end_effector_slope_95)
                 .mul_add(
                     n(0.15),
-                    q[15]
+                    (-q[15])
                         .mul_add(
-                            end_effector_motion_17 - end_effector_slope_16,
+                            end_effector_motion_14 + end_effector_slope_16,
                             q[13]
                                 .mul_add(
-                                    end_effector_motion_19 + end_effector_slope_14,
+                                    end_effector_motion_16 + end_effector_slope_14,
                                     end_effector_slope_67,
                                 ),
                         ),
@@ -9316,12 +9415,12 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             (-end_effector_slope_98)
                 .mul_add(
                     n(0.15),
-                    (-q[14])
+                    (-q[13])
                         .mul_add(
-                            end_effector_motion_17 + end_effector_slope_22,
-                            (-q[13])
+                            end_effector_motion_15 + end_effector_slope_21,
+                            q[14]
                                 .mul_add(
-                                    end_effector_motion_18 + end_effector_slope_21,
+                                    end_effector_motion_14 - end_effector_slope_22,
                                     end_effector_slope_71,
                                 ),
                         ),
@@ -9544,20 +9643,20 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
         .mul_add(n(0.99), end_effector_variation_58 - end_effector_slope_128);
     let end_effector_slope_135 = (-q[9])
         .mul_add(
-            end_effector_motion_22,
+            end_effector_motion_19,
             (-q[7])
                 .mul_add(
-                    end_effector_motion_20,
-                    (-cart_acceleration_5)
+                    end_effector_motion_17,
+                    (-cart_acceleration_6)
                         .mul_add(
                             n(0.046),
-                            (-cart_acceleration_6)
+                            (-cart_acceleration_7)
                                 .mul_add(
                                     n(0.495),
                                     q[8]
                                         .mul_add(
-                                            end_effector_motion_21,
-                                            cart_acceleration_7 * n(5.7),
+                                            end_effector_motion_18,
+                                            cart_acceleration_8 * n(5.7),
                                         ),
                                 ),
                         ),
@@ -9565,18 +9664,18 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
         );
     let end_effector_slope_136 = (-q[12])
         .mul_add(
-            end_effector_motion_22,
+            end_effector_motion_19,
             (-q[10])
                 .mul_add(
-                    end_effector_motion_20,
-                    (-cart_acceleration_6)
+                    end_effector_motion_17,
+                    (-cart_acceleration_7)
                         .mul_add(
                             n(0.046),
                             q[11]
                                 .mul_add(
-                                    end_effector_motion_21,
-                                    cart_acceleration_5
-                                        .mul_add(n(0.495), cart_acceleration_8 * n(5.7)),
+                                    end_effector_motion_18,
+                                    cart_acceleration_6
+                                        .mul_add(n(0.495), cart_acceleration_9 * n(5.7)),
                                 ),
                         ),
                 ),
@@ -9692,7 +9791,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                 .mul_add(end_effector_slope_110, -(a[0] * end_effector_slope_109)),
             end_effector_slope_61,
             end_effector_slope_65,
-            -end_effector_slope_69,
+            end_effector_slope_69,
             -end_effector_slope_112,
             (-cart_variation_3)
                 .mul_add(
@@ -9730,7 +9829,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                 .mul_add(end_effector_slope_114, -(a[0] * end_effector_slope_113)),
             end_effector_slope_62,
             end_effector_slope_66,
-            -end_effector_slope_70,
+            end_effector_slope_70,
             -end_effector_slope_116,
             (-cart_variation_3)
                 .mul_add(
@@ -9771,7 +9870,7 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
                 .mul_add(end_effector_slope_118, -(a[0] * end_effector_slope_117)),
             end_effector_slope_64,
             end_effector_slope_68,
-            -end_effector_slope_72,
+            end_effector_slope_72,
             -end_effector_slope_120,
             (-cart_variation_3)
                 .mul_add(

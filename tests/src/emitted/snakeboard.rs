@@ -113,7 +113,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 9], v: &[T; 6], tau: &[T; 6]) -> [T; 
     // board: effort (6 additions)
     let board_effort = (-back_constraint_3)
         .mul_add(
-            n(0.24200000000000002),
+            n(0.24200000000000005),
             (tau[5] - back_constraint_3)
                 .mul_add(n(0.003), (tau[4] - back_constraint_3) * n(0.003)),
         );
@@ -208,7 +208,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
             n(0.003),
             board_composite_inertia_5
                 .mul_add(
-                    n(0.24200000000000002),
+                    n(0.24200000000000005),
                     front_momentum_2
                         .mul_add(n(0.003), (p[3] + board_composite_inertia_5) * n(0.05)),
                 ),
@@ -356,7 +356,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 9], p: &[T; 6]) -> [T; 1] {
                 .mul_add(
                     board_composite_inertia_4 * n(7.800000000000001),
                     board_composite_inertia_5
-                        * (board_composite_inertia_5 * n(0.24200000000000002)),
+                        * (board_composite_inertia_5 * n(0.24200000000000005)),
                 ),
         );
     // rotor: momentum (1 addition, 1 multiplication)

@@ -177,6 +177,7 @@ impl Tree<'_> {
                     .collect()
             })
             .collect();
+        let given = efforts.clone();
         let mut efforts = efforts;
         for (j, column) in columns.iter().enumerate() {
             efforts[j] -= column.dot(wrench);
@@ -184,7 +185,10 @@ impl Tree<'_> {
         let mut pivots = vec![];
         for j in 0..columns.len() {
             let inverse = (Sym::Number(1.0) / matrix[j][j]).named("inverse_inertia");
-            let scaled = momenta[j].times(inverse);
+            let mut scaled = momenta[j].times(inverse);
+            if let Some(entry) = self.feels(index, j) {
+                *scaled.entry_mut(entry) = Sym::Number(1.0);
+            }
             let later: Vec<Sym> = matrix[j][j + 1..]
                 .iter()
                 .map(|&entry| entry * inverse)
@@ -212,7 +216,21 @@ impl Tree<'_> {
                 later,
             });
         }
+        // Along a freedom nothing is left but the effort at it.
+        for (j, given) in given.into_iter().enumerate() {
+            if let Some(entry) = self.feels(index, j) {
+                *wrench.entry_mut(entry) = given;
+            }
+        }
         pivots
+    }
+
+    /// The entry of wrenches that is the effort of a joint's speed, where there is one and nothing but what the joint carries has inertia.
+    fn feels(&self, index: usize, j: usize) -> Option<usize> {
+        match self.has_armature(index) {
+            true => None,
+            false => self.bodies[index].columns[j].unit_entry(),
+        }
     }
 
     fn outward(
@@ -247,9 +265,20 @@ impl Tree<'_> {
                     .zip(&rates[place + 1..places.end])
                     .map(|(&factor, &rate)| factor * rate)
                     .sum();
-                let rate = *share - base.dot(scaled) - taken;
-                rates[place] = rate.named(start.sought);
-                acceleration = acceleration.plus(&body.columns[j].times(rate));
+                let column = &body.columns[j];
+                let Some(entry) = self.feels(index, j) else {
+                    let rate = *share - base.dot(scaled) - taken;
+                    rates[place] = rate.named(start.sought);
+                    acceleration = acceleration.plus(&column.times(rate));
+                    continue;
+                };
+                // Its factor of the base is 1: the rate is what the whole differs by from the base.
+                let mut others = base.clone();
+                let along = std::mem::replace(others.entry_mut(entry), Sym::zero());
+                let whole = *share - others.dot(scaled) - taken;
+                rates[place] = (whole - along).named(start.sought);
+                let sum = acceleration.entry_mut(entry);
+                *sum = *sum - along + whole;
             }
             accelerations.push(acceleration.settled());
         }

@@ -8,6 +8,8 @@ use num_traits::Zero;
 /// `α~ + ω~ω~`: the acceleration of a point of the body from that of its origin.
 pub struct Spin {
     matrix: Mat3,
+    /// `ω ωᵀ`.
+    squares: Mat3,
     omega: Vec3,
     alpha: Vec3,
 }
@@ -27,6 +29,7 @@ impl Spin {
         });
         Self {
             matrix,
+            squares,
             omega: *omega,
             alpha: *alpha,
         }
@@ -47,10 +50,36 @@ impl Spin {
 
     /// What it takes to move a body so, with its origin accelerated by `a`.
     pub fn wrench(&self, inertia: &Rigid, a: &Vec3) -> Wrench {
-        let gyroscopic = cross(&self.omega, &apply(&inertia.second, &self.omega));
         Wrench {
-            moment: apply(&inertia.second, &self.alpha) + cross(&inertia.first, a) + gyroscopic,
+            moment: self.moment(inertia) + cross(&inertia.first, a),
             force: a * inertia.mass + self.at(&inertia.first),
+        }
+    }
+
+    /// `I α + ω × I ω = ∫ r × U r dm` with `U = α~ + ω~ω~`, which its second moments J make in fewer products: two for a square, three for
+    /// another.
+    fn moment(&self, inertia: &Rigid) -> Vec3 {
+        let (u, second) = (&self.matrix, &inertia.second);
+        Vec3::from_fn(|i, _| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let squares = self.squares[(k, k)] - self.squares[(j, j)];
+            self.moment_of_squares(inertia, i)
+                + u[(k, i)] * second[(i, j)]
+                + squares * second[(j, k)]
+                - u[(j, i)] * second[(i, k)]
+        })
+    }
+
+    /// `U_kj J_jj − U_jk J_kk`. Where neither second moment vanishes their sum is what is known well, a moment of inertia.
+    fn moment_of_squares(&self, inertia: &Rigid, i: usize) -> Sym {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (first, second) = (inertia.second[(j, j)], inertia.second[(k, k)]);
+        let products = self.squares[(j, k)];
+        let is_whole = !self.alpha[i].is_zero() && !products.is_zero();
+        match (first.is_zero(), second.is_zero()) {
+            (false, true) if is_whole => self.matrix[(k, j)] * first,
+            (true, false) if is_whole => -self.matrix[(j, k)] * second,
+            _ => self.alpha[i] * (first + second) + products * (first - second),
         }
     }
 }

@@ -181,15 +181,10 @@ fn add_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
         if a.negative != b.negative {
             return Sym::Number(0.0);
         }
-        let two = graph.node(Operation::Constant(2_f64.to_bits()));
-        return multiply_nodes(
-            graph,
-            a,
-            Value {
-                node: two,
-                negative: false,
-            },
-        );
+        return Sym::Node(Value {
+            node: doubled(graph, a.node),
+            negative: a.negative,
+        });
     }
     let (first, second) = match precedes(graph, a.node, b.node) {
         true => (a, b),
@@ -206,6 +201,17 @@ fn add_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
     })
 }
 
+/// Twice a node: a sum, which costs less than a product where products set the pace, unless it is multiplied by a number already.
+fn doubled(graph: &mut Graph, node: u32) -> u32 {
+    if let Operation::Product(of, factor) = graph.nodes[node as usize].operation
+        && let Some(factor) = constant(graph, factor)
+    {
+        let twice = graph.node(Operation::Constant((2.0 * factor).to_bits()));
+        return graph.node(Operation::Product(of, twice));
+    }
+    graph.node(Operation::Sum(node, node))
+}
+
 fn multiply(a: Sym, b: Sym) -> Sym {
     match (a, b) {
         (Sym::Number(a), Sym::Number(b)) => Sym::Number(a * b),
@@ -215,6 +221,9 @@ fn multiply(a: Sym, b: Sym) -> Sym {
         }
         (Sym::Number(number), other) | (other, Sym::Number(number)) if number == 1.0 => other,
         (Sym::Number(number), other) | (other, Sym::Number(number)) if number == -1.0 => -other,
+        (Sym::Number(number), other) | (other, Sym::Number(number)) if number == 2.0 => {
+            other + other
+        }
         _ => CURRENT.with_borrow_mut(|graph| {
             let (a, b) = (value(graph, a), value(graph, b));
             multiply_nodes(graph, a, b)
@@ -242,16 +251,22 @@ fn multiply_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
     })
 }
 
-/// A node and the number that it is multiplied by, where `first` is such a product already and `second` a number: one product instead of two.
-fn scaled(graph: &Graph, first: u32, second: u32) -> Option<(u32, f64)> {
-    let number = |node: u32| match graph.nodes[node as usize].operation {
+/// The number that a node is.
+fn constant(graph: &Graph, node: u32) -> Option<f64> {
+    match graph.nodes[node as usize].operation {
         Operation::Constant(bits) => Some(f64::from_bits(bits)),
         _ => None,
+    }
+}
+
+/// A node and the number that it is multiplied by, where `first` is such a product already and `second` a number: one product instead of two.
+fn scaled(graph: &Graph, first: u32, second: u32) -> Option<(u32, f64)> {
+    let (node, factor) = match graph.nodes[first as usize].operation {
+        Operation::Product(node, factor) => (node, constant(graph, factor)?),
+        Operation::Sum(node, same) if node == same => (node, 2.0),
+        _ => return None,
     };
-    let Operation::Product(node, factor) = graph.nodes[first as usize].operation else {
-        return None;
-    };
-    let factor = number(second)? * number(factor)?;
+    let factor = constant(graph, second)? * factor;
     // Beyond the range of doubles the two factors are not one.
     factor.is_normal().then_some((node, factor))
 }

@@ -12,8 +12,9 @@ use hamel::spatial::Pose;
 use nalgebra::{Matrix3, Vector3};
 use num_traits::ToPrimitive;
 
-/// The order in which parameters are made 0: those that cost most first.
-const ORDER: [usize; 10] = [0, 3, 1, 2, 7, 8, 9, 5, 4, 6];
+/// The order in which parameters are made 0: those that cost most first; of second moments squares first, whose elements are large wherever
+/// an axis points.
+const ORDER: [usize; 10] = [0, 3, 1, 2, 6, 5, 4, 9, 8, 7];
 /// Elements of a basis below this are rounding of the turn that was made with it.
 const ROUNDING: f64 = 1e-14;
 
@@ -41,7 +42,7 @@ pub fn rootward(model: &Model, placed: &Placed<'_>, mut links: Vec<Link>) -> Vec
 fn basis(body: &Body, to_link: &Pose<f64>) -> Vec<[f64; 10]> {
     let element = |element: &[crate::expr::Rational; 10]| {
         let parameters = std::array::from_fn(|i| element[i].to_f64().unwrap_or(0.0));
-        let moved = Inertia::from_parameters(&parameters)
+        let moved = Inertia::from_moments_of_inertia(&parameters)
             .seen_from(to_link)
             .parameters();
         moved.map(|entry| if entry.abs() <= ROUNDING { 0.0 } else { entry })

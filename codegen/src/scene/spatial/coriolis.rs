@@ -14,7 +14,7 @@ pub struct Coriolis {
 }
 
 impl Coriolis {
-    /// Of one body: `K = ω~ (2I − tr(I) 1) + 2 (h·v) 1 − 2 v hᵀ` with the first moment h.
+    /// Of one body: `K = −2 ω~ J + 2 (h·v) 1 − 2 v hᵀ` with the first moment h and the second moments J.
     pub fn of(rigid: &Rigid, twist: &Twist) -> Self {
         let Rigid {
             mass,
@@ -22,7 +22,7 @@ impl Coriolis {
             second,
         } = rigid;
         let first = first + first;
-        let spread = second + second - Mat3::from_diagonal_element(second.trace());
+        let spread = -(second + second);
         let columns = [0, 1, 2].map(|j| cross(&twist.angular, &spread.column(j).into_owned()));
         Self {
             turn: Mat3::from_columns(&columns) + arm(&first, &twist.linear),

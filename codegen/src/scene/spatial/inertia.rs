@@ -11,7 +11,8 @@ pub struct Rigid {
     pub mass: Sym,
     /// Mass times position of its centre.
     pub first: Vec3,
-    /// Moments and products of inertia.
+    /// Second moments `J = ∫ r rᵀ dm`: of all forms of the ten parameters the one that takes the fewest operations to shift and to turn
+    /// with.
     pub second: Mat3,
 }
 
@@ -37,25 +38,37 @@ impl Rigid {
                 _ => Self {
                     mass: inertia.mass,
                     first: step.to_parent(&inertia.first),
-                    second: step.turned(&inertia.second, true),
+                    second: inertia.turned(step),
                 },
             })
     }
 
-    /// About a point from which the present one stands at `by`: `I + 2 (p·k) 1 − p kᵀ − k pᵀ` with `k = h + m p / 2`.
+    /// The second moments in the parent's axes. Behind any rotation by way of moments of inertia: half of the products are those of momenta.
+    fn turned(&self, step: &Step) -> Mat3 {
+        let Step::Rotate(_) = step else {
+            return step.turned(&self.second, true);
+        };
+        let moments = step.turned(&self.moments(), true);
+        let trace = self.second.trace();
+        symmetric(|i, j| match i == j {
+            true => trace - moments[(i, j)],
+            false => -moments[(i, j)],
+        })
+    }
+
+    /// About a point from which the present one stands at `by`: `J + p kᵀ + k pᵀ` with `k = h + m p / 2`.
     fn shifted(&self, by: &Vec3) -> Self {
         let half = Sym::from(0.5);
         let k = self.first + by * (self.mass * half);
         let twice = by + by;
-        let along: Vec3 = Vec3::from_fn(|i, _| twice[i] * k[i]);
         Self {
             mass: self.mass,
             first: self.first + by * self.mass,
             second: symmetric(|i, j| {
                 let own = self.second[(i, j)];
                 match i == j {
-                    true => own + (along[(i + 1) % 3] + along[(i + 2) % 3]),
-                    false => own - (by[i] * k[j] + k[i] * by[j]),
+                    true => own + twice[i] * k[i],
+                    false => own + (by[i] * k[j] + k[i] * by[j]),
                 }
             }),
         }
@@ -71,10 +84,19 @@ impl Rigid {
         }
     }
 
+    /// Moments and products of inertia, `I = tr(second) 1 − second`.
+    pub fn moments(&self) -> Mat3 {
+        let second = &self.second;
+        symmetric(|i, j| match i == j {
+            true => second[((i + 1) % 3, (i + 1) % 3)] + second[((i + 2) % 3, (i + 2) % 3)],
+            false => -second[(i, j)],
+        })
+    }
+
     /// The momentum of a twist.
     pub fn of(&self, twist: &Twist) -> Wrench {
         Wrench {
-            moment: apply(&self.second, &twist.angular) + cross(&self.first, &twist.linear),
+            moment: apply(&self.moments(), &twist.angular) + cross(&self.first, &twist.linear),
             force: twist.linear * self.mass + cross(&twist.angular, &self.first),
         }
     }
@@ -106,7 +128,7 @@ impl Articulated {
     pub fn rigid(inertia: &Rigid) -> Self {
         let zero = Sym::zero();
         Self {
-            angular: inertia.second,
+            angular: inertia.moments(),
             coupling: tilde(&inertia.first),
             linear: symmetric(|i, j| if i == j { inertia.mass } else { zero }),
         }
@@ -178,14 +200,25 @@ impl Articulated {
             })
     }
 
-    /// `B′ = B + p~ M`, `A′ = A − B p~ + p~ B′ᵀ`.
+    /// `B′ = B + p~ M`, `A′ = A − B p~ + p~ B′ᵀ`, with what an entry of p~ multiplies added up first.
     fn shifted(&self, by: &Vec3) -> Self {
-        let cross = tilde(by);
-        let coupling = self.coupling + product(&cross, &self.linear);
-        let left = product(&self.coupling, &cross);
-        let right = product(&cross, &coupling.transpose());
+        let (p, before) = (tilde(by), &self.coupling);
+        let coupling = before + product(&p, &self.linear);
+        let diagonal = |i: usize| -> Sym {
+            let others = (0..3).filter(|&k| k != i);
+            let terms = others.map(|k| p[(i, k)] * (coupling[(i, k)] + before[(i, k)]));
+            terms.sum()
+        };
+        let beside = |i: usize, j: usize| {
+            let k = 3 - i - j;
+            p[(i, j)] * (coupling[(j, j)] - before[(i, i)])
+                + (p[(i, k)] * coupling[(j, k)] - before[(i, k)] * p[(k, j)])
+        };
         Self {
-            angular: symmetric(|i, j| self.angular[(i, j)] + (right[(i, j)] - left[(i, j)])),
+            angular: symmetric(|i, j| {
+                let more = if i == j { diagonal(i) } else { beside(i, j) };
+                self.angular[(i, j)] + more
+            }),
             coupling,
             linear: self.linear,
         }

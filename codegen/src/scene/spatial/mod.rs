@@ -53,6 +53,14 @@ impl Wrench {
         }
     }
 
+    /// Entry 0 to 5: moments first.
+    pub fn entry_mut(&mut self, entry: usize) -> &mut Sym {
+        match entry < 3 {
+            true => &mut self.moment[entry],
+            false => &mut self.force[entry - 3],
+        }
+    }
+
     /// The wrench `factor` times as large.
     #[must_use]
     pub fn times(&self, factor: Sym) -> Self {
@@ -96,6 +104,14 @@ impl Twist {
         Self {
             angular: self.angular.map(Sym::settled),
             linear: self.linear.map(Sym::settled),
+        }
+    }
+
+    /// Entry 0 to 5: rotations first.
+    pub fn entry_mut(&mut self, entry: usize) -> &mut Sym {
+        match entry < 3 {
+            true => &mut self.angular[entry],
+            false => &mut self.linear[entry - 3],
         }
     }
 

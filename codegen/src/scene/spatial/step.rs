@@ -141,7 +141,11 @@ impl Step {
             return self.conjugated(m, is_symmetric);
         }
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-        let w = sin * (m[(b, b)] - m[(c, c)]) + cos * (m[(b, c)] + m[(c, b)]);
+        let beside = match is_symmetric {
+            true => (cos + cos) * m[(b, c)],
+            false => cos * (m[(b, c)] + m[(c, b)]),
+        };
+        let w = sin * (m[(b, b)] - m[(c, c)]) + beside;
         let mut turned = *m;
         let (cw, sw) = (cos * w, sin * w);
         turned[(b, b)] = m[(b, b)] - sw;
