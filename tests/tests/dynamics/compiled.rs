@@ -433,9 +433,10 @@ fn what_a_scene_does_not_have_costs_nothing() {
 #[test]
 fn operations_stay_few() {
     let counts = [
-        ("panda7", 1212, 648),
-        ("anymal", 3187, 1531),
-        ("g1", 8681, 3685),
+        ("panda7", 1154, 593),
+        ("anymal", 3019, 1391),
+        ("g1", 8303, 3366),
+        ("ball8", 5120, 1794),
     ];
     for (name, forward, inverse) in counts {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/robots/{name}.json"));

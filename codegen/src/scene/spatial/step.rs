@@ -71,6 +71,14 @@ impl Step {
         }
     }
 
+    /// Whether it is a constant turn: a rotation beside it takes it up, once, where each vector and matrix would be turned by both.
+    fn is_known_turn(&self) -> bool {
+        match self {
+            Self::Turn { cos, sin, .. } => cos.number().is_some() && sin.number().is_some(),
+            _ => false,
+        }
+    }
+
     fn matrix(&self) -> Mat3 {
         match self {
             Self::Shift(_) => Mat3::identity(),
@@ -201,6 +209,17 @@ fn push(steps: &mut Vec<Step>, step: Step) {
             },
         ) if *axis == same => {
             (*cos, *sin) = (*cos * c - *sin * s, *sin * c + *cos * s);
+        }
+        (Some(turn), Step::Rotate(matrix)) if turn.is_known_turn() => {
+            let mut known = turn.matrix();
+            steps.pop();
+            while let Some(turn) = steps.pop_if(|step| step.is_known_turn()) {
+                known = product(&turn.matrix(), &known);
+            }
+            push(steps, Step::Rotate(product(&known, &matrix)));
+        }
+        (Some(Step::Rotate(matrix)), turn) if turn.is_known_turn() => {
+            *matrix = product(matrix, &turn.matrix());
         }
         (_, step) => steps.push(step),
     }
