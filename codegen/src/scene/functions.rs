@@ -272,7 +272,7 @@ fn worth_factorising(model: &Model) -> bool {
 const LOOPED: usize = 10_000;
 
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
-/// of 31 000 operations (32 ball joints) already took it more than 100 s.
+/// of 31 000 operations already took it more than 100 s.
 pub const LONGEST: usize = 100_000;
 
 /// A function that would be too long.

@@ -436,7 +436,7 @@ fn operations_stay_few() {
         ("panda7", 1154, 593),
         ("anymal", 3019, 1391),
         ("g1", 8303, 3366),
-        ("ball8", 5120, 1794),
+        ("ball8", 3775, 1794),
     ];
     for (name, forward, inverse) in counts {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/robots/{name}.json"));

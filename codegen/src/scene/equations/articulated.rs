@@ -198,6 +198,9 @@ impl Tree<'_> {
                 let less = factor * efforts[j];
                 efforts[k] -= less;
                 momenta[k] = momenta[k].plus(&momenta[j].times(-factor));
+                if let Some(entry) = self.feels(index, j) {
+                    *momenta[k].entry_mut(entry) = Sym::zero();
+                }
                 let row: Vec<Sym> = matrix[j][k..].iter().map(|&entry| factor * entry).collect();
                 for (entry, less) in matrix[k][k..].iter_mut().zip(row) {
                     *entry -= less;
