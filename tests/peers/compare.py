@@ -45,6 +45,10 @@ robots = [r['name'] for r in index]
 if a.robots:
     robots = [r for r in robots if r in a.robots.split(',')]
 nvs = {r['name']: r['nv'] for r in index}
+LANES = [f'{al}_{lanes}' for al in ('aba', 'rnea') for lanes in ('x4', 'x8', 'x8_rows')]
+# algorithms whose results are compared, with what they are compared as
+CHECKED = dict.fromkeys(('aba', 'aba_world', 'forward', 'fd_crba_chol'), 'aba') | {'rnea': 'rnea'}
+CHECKED |= {al: al.split('_')[0] for al in LANES}
 ALGOS = [
     'fk',
     'fk_v',
@@ -61,12 +65,7 @@ ALGOS = [
     'rnea_deriv',
     'aba_deriv',
     'step',
-    'aba_x4',
-    'aba_x8',
-    'aba_x8_rows',
-    'rnea_x4',
-    'rnea_x8',
-    'rnea_x8_rows',
+    *LANES,
 ]
 if a.algos:
     ALGOS = [x for x in ALGOS if x in a.algos.split(',')]
@@ -156,19 +155,7 @@ for rob in robots:
             exact = None
     if 'pinocchio' in byname:
         for p in procs:
-            for al, ref in (
-                ('aba', 'aba'),
-                ('aba_world', 'aba'),
-                ('forward', 'aba'),
-                ('fd_crba_chol', 'aba'),
-                ('aba_x4', 'aba'),
-                ('aba_x8', 'aba'),
-                ('aba_x8_rows', 'aba'),
-                ('rnea', 'rnea'),
-                ('rnea_x4', 'rnea'),
-                ('rnea_x8', 'rnea'),
-                ('rnea_x8_rows', 'rnea'),
-            ):
+            for al, ref in CHECKED.items():
                 if al not in have[p.name] or (
                     p.name == 'pinocchio' and (al == 'rnea' or (al == 'aba' and not exact))
                 ):
@@ -229,9 +216,9 @@ for rob in robots:
         base = d.get('pinocchio')
         if al in ('forward', 'step'):
             base = res.get((rob, 'aba'), {}).get('pinocchio')
-        lanes = al.endswith(('_x4', '_x8', '_x8_rows'))
+        lanes = al in LANES
         if lanes:
-            base = res.get((rob, al.split('_')[0]), {}).get('pinocchio')
+            base = res.get((rob, CHECKED[al]), {}).get('pinocchio')
         row = []
         for n in names:
             x = d.get(n)
@@ -254,18 +241,7 @@ for rob in robots:
     for n in names:
         c = ', '.join(
             f'{al} {checks[(rob, n, al)]:.1e}'
-            for al in (
-                'aba',
-                'aba_world',
-                'fd_crba_chol',
-                'aba_x4',
-                'aba_x8',
-                'aba_x8_rows',
-                'rnea',
-                'rnea_x4',
-                'rnea_x8',
-                'rnea_x8_rows',
-            )
+            for al in CHECKED
             if (rob, n, al) in checks
         )
         row.append(c or '-')
