@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// Names of the ten parameters of an inertia.
 const PARAMETERS: [&str; 10] = [
-    "m", "mc_x", "mc_y", "mc_z", "∫x²", "∫y²", "∫z²", "∫xy", "∫xz", "∫yz",
+    "m", "mc_x", "mc_y", "mc_z", "∫x²dm", "∫y²dm", "∫z²dm", "∫xydm", "∫xzdm", "∫yzdm",
 ];
 
 /// The account, as text.

@@ -41,12 +41,14 @@ impl Entry for Lanes {
     }
 
     fn one_by_one(function: OneState, row: Quantities<'_, Self>, all: bool) {
-        let mut results = vec![0.0; row.results.len()];
+        let mut results = vec![];
         for state in 0..LANES {
             let is_done = row.results.iter().all(|number| number.0[state].is_finite());
             if is_done && !all {
                 continue;
             }
+            // Where there is nothing to be done nothing is allocated.
+            results.resize(row.results.len(), 0.0);
             let [q, v, u] = [row.q, row.v, row.u].map(|row| of_state(row, state));
             function(&q, &v, &u, &mut results);
             for (lanes, &result) in row.results.iter_mut().zip(&results) {

@@ -1,11 +1,12 @@
 //! How long generation is felt: the library's build script as built, one spec in a crate with cargo's default profile, how the
-//! time grows with the number of joints, and the way from an edited spec to compiled kernels.
+//! time grows with the number of joints, the way from an edited spec to compiled kernels, and that from scenes to compiled equations.
 //!
 //! `cargo bench --package hamel-tests --bench generation`. Each figure is the wall-clock time of the build script's own
-//! process (of cargo, for the edit), minimum and median over its runs; compiling the generator is not part of it. `HAMEL_BENCH_SCRATCH` names another
+//! process (of cargo, for the edit and for modules), minimum and median over its runs; compiling the generator is not part of it. `HAMEL_BENCH_SCRATCH` names another
 //! folder for the builds than `target/generation-bench`.
 
 mod edit;
+mod modules;
 mod scaling;
 
 use std::error::Error;
@@ -26,7 +27,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let script = library(&root, &scratch)?;
     downstream(&root, &scratch)?;
     scaling::scaling(&script, &scratch)?;
-    edit::edit(&root, &scratch)
+    edit::edit(&root, &scratch)?;
+    modules::modules(&root, &scratch)
 }
 
 /// The build script of the library, built as `cargo build` builds it.

@@ -57,7 +57,7 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
 
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
-/// Operations: 287 additions, 368 multiplications, 6 divisions, 4 function calls.
+/// Operations: 296 additions, 395 multiplications, 6 divisions, 4 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T; 6] {
@@ -193,7 +193,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             (-lower_joint_17).mul_add(lower_force_5, lower_joint_11 * lower_force_4),
         )))
         .mul_add(n(0.6), lower_effort_2);
-    // lower: composite inertia (36 additions, 63 multiplications)
+    // lower: composite inertia (45 additions, 90 multiplications)
     let lower_composite_inertia = lower_joint_11 * n(0.0825);
     let lower_composite_inertia_2 = lower_joint_16 * n(0.165);
     let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
@@ -314,12 +314,66 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                         ),
                 ),
         );
+    let lower_composite_inertia_25 = lower_joint_11 * n(0.005);
+    let lower_composite_inertia_26 = lower_joint_12 * n(0.01);
+    let lower_composite_inertia_27 = lower_joint_16 * n(0.01);
+    let lower_composite_inertia_28 = lower_joint_19 * n(0.005);
+    let lower_composite_inertia_29 = lower_joint_22 * n(0.155);
+    let lower_composite_inertia_30 = lower_joint_24 * n(0.155);
+    let lower_composite_inertia_31 = lower_joint_27
+        .mul_add(
+            lower_joint_27 * n(0.0775),
+            lower_joint_21
+                .mul_add(
+                    lower_joint_20 * n(0.01),
+                    lower_joint_15 * (lower_joint_14 * n(0.01)),
+                ),
+        );
+    let lower_composite_inertia_32 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_29,
+            (-lower_joint_21)
+                .mul_add(
+                    lower_composite_inertia_27,
+                    lower_joint_22
+                        .mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
+                ),
+        );
+    let lower_composite_inertia_33 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_30,
+            lower_joint_24
+                .mul_add(
+                    n(0.3),
+                    lower_joint_21
+                        .mul_add(
+                            lower_composite_inertia_28,
+                            lower_joint_15 * lower_composite_inertia_26,
+                        ),
+                ),
+        );
     // upper: composite inertia (7 additions)
-    let upper_composite_inertia = lower_composite_inertia_6 - n(0.0875) - n(0.035);
-    let upper_composite_inertia_2 = lower_composite_inertia_14 - n(0.0875)
-        - n(0.005000000000000003);
-    let upper_composite_inertia_3 = lower_joint_27
-        .mul_add(n(0.3), lower_composite_inertia_22 - n(0.0875) - n(0.585));
+    let upper_composite_inertia = lower_joint_23
+        .mul_add(
+            lower_composite_inertia_29,
+            lower_joint_17
+                .mul_add(
+                    lower_composite_inertia_27,
+                    lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035)),
+                ),
+        );
+    let upper_composite_inertia_2 = lower_joint_25
+        .mul_add(
+            lower_composite_inertia_30,
+            lower_joint_19
+                .mul_add(
+                    lower_composite_inertia_28,
+                    lower_joint_13
+                        .mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
+                ),
+        );
+    let upper_composite_inertia_3 = (-lower_joint_27)
+        .mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
@@ -606,91 +660,100 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_12 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_13 = n(1.0)
+    let lower_factor_12 = (-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_27,
+            lower_composite_inertia_23
+                .mul_add(
+                    lower_factor_11,
+                    lower_joint_25
+                        .mul_add(
+                            lower_composite_inertia_29,
+                            lower_joint_13 * lower_composite_inertia_25,
+                        ),
+                ),
+        );
+    let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
+    let lower_factor_14 = n(1.0)
         / ((-lower_composite_inertia_15)
             .mul_add(lower_factor_2, lower_composite_inertia_14));
-    let lower_factor_14 = lower_factor_3 * lower_factor_13;
-    let lower_factor_15 = (-lower_factor_4)
+    let lower_factor_15 = lower_factor_3 * lower_factor_14;
+    let lower_factor_16 = (-lower_factor_4)
         .mul_add(
-            lower_factor_14,
+            lower_factor_15,
             (-lower_composite_inertia_22)
                 .mul_add(lower_factor_7, lower_composite_inertia_8),
         );
-    let lower_factor_16 = (-lower_factor_5).mul_add(lower_factor_14, lower_factor_8);
-    let lower_factor_17 = (-lower_factor_6).mul_add(lower_factor_14, lower_factor_9);
-    let lower_factor_18 = lower_factor_4 * lower_factor_13;
-    let lower_factor_19 = (-lower_factor_6)
-        .mul_add(
-            lower_factor_18,
-            (-lower_composite_inertia_23)
-                .mul_add(
-                    lower_factor_10,
-                    (-lower_joint_22)
-                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
-                ),
-        );
-    let lower_factor_20 = lower_factor_5 * lower_factor_13;
-    let lower_factor_21 = lower_factor_6 * lower_factor_13;
+    let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_8);
+    let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_9);
+    let lower_factor_19 = lower_factor_4 * lower_factor_14;
+    let lower_factor_20 = lower_factor_5 * lower_factor_14;
+    let lower_factor_21 = lower_factor_6 * lower_factor_14;
     let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
             .mul_add(
-                lower_factor_14,
+                lower_factor_15,
                 (-lower_composite_inertia_8)
                     .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
-    let lower_factor_23 = lower_factor_15 * lower_factor_22;
-    let lower_factor_24 = lower_factor_15
+    let lower_factor_23 = lower_factor_16 * lower_factor_22;
+    let lower_factor_24 = (-lower_factor_16)
         .mul_add(
             lower_factor_23,
-            lower_factor_4
+            (-lower_factor_4)
                 .mul_add(
-                    lower_factor_18,
-                    lower_composite_inertia_22
+                    lower_factor_19,
+                    (-lower_composite_inertia_22)
                         .mul_add(
                             lower_factor_10,
                             upper_composite_inertia + upper_composite_inertia_2,
                         ),
                 ),
         );
-    let lower_factor_25 = (-lower_factor_16)
+    let lower_factor_25 = lower_factor_17
         .mul_add(
             lower_factor_23,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_18,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_10,
-                            (-lower_joint_24).mul_add(n(0.3), lower_composite_inertia_15),
-                        ),
-                ),
-        );
-    let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
-    let lower_factor_27 = lower_factor_16 * lower_factor_22;
-    let lower_factor_28 = lower_factor_16
-        .mul_add(
-            lower_factor_27,
             lower_factor_5
                 .mul_add(
-                    lower_factor_20,
+                    lower_factor_19,
                     lower_composite_inertia_24
+                        .mul_add(lower_factor_10, lower_composite_inertia_33),
+                ),
+        );
+    let lower_factor_26 = lower_factor_18
+        .mul_add(
+            lower_factor_23,
+            lower_factor_6
+                .mul_add(
+                    lower_factor_19,
+                    lower_composite_inertia_23
+                        .mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
+                ),
+        );
+    let lower_factor_27 = lower_factor_17 * lower_factor_22;
+    let lower_factor_28 = (-lower_factor_17)
+        .mul_add(
+            lower_factor_27,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_20,
+                    (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_11,
                             upper_composite_inertia + upper_composite_inertia_3,
                         ),
                 ),
         );
-    let lower_factor_29 = lower_factor_17 * lower_factor_22;
-    let lower_factor_30 = lower_factor_17
+    let lower_factor_29 = lower_factor_18 * lower_factor_22;
+    let lower_factor_30 = (-lower_factor_18)
         .mul_add(
             lower_factor_29,
-            lower_factor_6
+            (-lower_factor_6)
                 .mul_add(
                     lower_factor_21,
-                    lower_composite_inertia_23
+                    (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_12,
+                            lower_factor_13,
                             upper_composite_inertia_2 + upper_composite_inertia_3,
                         ),
                 ),
@@ -707,7 +770,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     upper_force - lower_effort_5 - upper_spring_17 - tau[1],
                 ),
         );
-    let lower_load_3 = (-lower_factor_14)
+    let lower_load_3 = (-lower_factor_15)
         .mul_add(
             lower_load,
             (-lower_effort_9).mul_add(lower_factor_7, lower_effort + lower_effort_6),
@@ -715,7 +778,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_load_4 = (-lower_factor_23)
         .mul_add(
             lower_load_3,
-            (-lower_factor_18)
+            (-lower_factor_19)
                 .mul_add(
                     lower_load,
                     (-lower_effort_9).mul_add(lower_factor_10, upper_effort_2),
@@ -724,18 +787,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = (-lower_factor_17)
+    let upper_factor_3 = lower_factor_26
         .mul_add(
-            lower_factor_27,
-            (-lower_factor_6)
+            upper_factor_2,
+            lower_factor_18
                 .mul_add(
-                    lower_factor_20,
-                    (-lower_composite_inertia_23)
-                        .mul_add(
-                            lower_factor_11,
-                            lower_factor_26
-                                .mul_add(upper_factor_2, lower_composite_inertia_7),
-                        ),
+                    lower_factor_27,
+                    lower_factor_6.mul_add(lower_factor_20, lower_factor_12),
                 ),
         );
     let upper_factor_4 = lower_factor_26 * upper_factor;
@@ -758,7 +816,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                     lower_factor_21
                         .mul_add(
                             lower_load,
-                            lower_effort_9.mul_add(lower_factor_12, upper_effort),
+                            lower_effort_9.mul_add(lower_factor_13, upper_effort),
                         ),
                 ),
         );
@@ -779,35 +837,35 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
             ));
     // lower: response (12 additions, 15 multiplications)
     let lower_acceleration_8 = lower_factor_22
-        * ((-lower_factor_17)
+        * ((-lower_factor_16)
             .mul_add(
-                upper_acceleration_5,
-                (-lower_factor_16)
+                upper_acceleration_7,
+                lower_factor_18
                     .mul_add(
-                        upper_acceleration_6,
-                        lower_factor_15.mul_add(upper_acceleration_7, lower_load_3),
+                        upper_acceleration_5,
+                        lower_factor_17.mul_add(upper_acceleration_6, lower_load_3),
                     ),
             ));
-    let lower_response = (-lower_factor_4)
+    let lower_response = (-lower_factor_6)
         .mul_add(
-            upper_acceleration_7,
-            lower_factor_6
+            upper_acceleration_5,
+            (-lower_factor_5)
                 .mul_add(
-                    upper_acceleration_5,
-                    lower_factor_5
+                    upper_acceleration_6,
+                    lower_factor_4
                         .mul_add(
-                            upper_acceleration_6,
+                            upper_acceleration_7,
                             lower_factor_3 * lower_acceleration_8,
                         ),
                 ),
         );
-    let lower_acceleration_9 = lower_factor_13 * (lower_load - lower_response);
-    let lower_response_2 = (-lower_composite_inertia_22)
+    let lower_acceleration_9 = lower_factor_14 * (lower_load - lower_response);
+    let lower_response_2 = (-lower_composite_inertia_24)
         .mul_add(
-            upper_acceleration_7,
-            lower_composite_inertia_24
+            upper_acceleration_6,
+            lower_composite_inertia_22
                 .mul_add(
-                    upper_acceleration_6,
+                    upper_acceleration_7,
                     lower_composite_inertia_8
                         .mul_add(
                             lower_acceleration_8,
@@ -816,20 +874,20 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
                 ),
         );
     [
-        -upper_acceleration_5,
-        upper_acceleration_6,
-        upper_acceleration_7,
+        upper_acceleration_5,
+        -upper_acceleration_6,
+        -upper_acceleration_7,
         -lower_acceleration_8,
         lower_acceleration_9,
         -(lower_factor
-            * ((-lower_composite_inertia_23)
+            * (lower_composite_inertia_23
                 .mul_add(upper_acceleration_5, lower_effort_9 - lower_response_2))),
     ]
 }
 
 /// v̄ and p̄̇ from Q, p̄ and τ, (27), (35).
 ///
-/// Operations: 319 additions, 405 multiplications, 6 divisions, 4 function calls.
+/// Operations: 328 additions, 432 multiplications, 6 divisions, 4 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 6]; 2] {
@@ -862,7 +920,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_joint_25 = lower_joint_24 + lower_joint_24;
     let lower_joint_26 = lower_joint + lower_joint_7;
     let lower_joint_27 = lower_joint_26 + lower_joint_26 - n(1.0);
-    // lower: composite inertia (36 additions, 63 multiplications)
+    // lower: composite inertia (45 additions, 90 multiplications)
     let lower_composite_inertia = lower_joint_11 * n(0.0825);
     let lower_composite_inertia_2 = lower_joint_16 * n(0.165);
     let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
@@ -983,12 +1041,66 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                         ),
                 ),
         );
+    let lower_composite_inertia_25 = lower_joint_11 * n(0.005);
+    let lower_composite_inertia_26 = lower_joint_12 * n(0.01);
+    let lower_composite_inertia_27 = lower_joint_16 * n(0.01);
+    let lower_composite_inertia_28 = lower_joint_19 * n(0.005);
+    let lower_composite_inertia_29 = lower_joint_22 * n(0.155);
+    let lower_composite_inertia_30 = lower_joint_24 * n(0.155);
+    let lower_composite_inertia_31 = lower_joint_27
+        .mul_add(
+            lower_joint_27 * n(0.0775),
+            lower_joint_21
+                .mul_add(
+                    lower_joint_20 * n(0.01),
+                    lower_joint_15 * (lower_joint_14 * n(0.01)),
+                ),
+        );
+    let lower_composite_inertia_32 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_29,
+            (-lower_joint_21)
+                .mul_add(
+                    lower_composite_inertia_27,
+                    lower_joint_22
+                        .mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
+                ),
+        );
+    let lower_composite_inertia_33 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_30,
+            lower_joint_24
+                .mul_add(
+                    n(0.3),
+                    lower_joint_21
+                        .mul_add(
+                            lower_composite_inertia_28,
+                            lower_joint_15 * lower_composite_inertia_26,
+                        ),
+                ),
+        );
     // upper: composite inertia (7 additions)
-    let upper_composite_inertia = lower_composite_inertia_6 - n(0.0875) - n(0.035);
-    let upper_composite_inertia_2 = lower_composite_inertia_14 - n(0.0875)
-        - n(0.005000000000000003);
-    let upper_composite_inertia_3 = lower_joint_27
-        .mul_add(n(0.3), lower_composite_inertia_22 - n(0.0875) - n(0.585));
+    let upper_composite_inertia = lower_joint_23
+        .mul_add(
+            lower_composite_inertia_29,
+            lower_joint_17
+                .mul_add(
+                    lower_composite_inertia_27,
+                    lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035)),
+                ),
+        );
+    let upper_composite_inertia_2 = lower_joint_25
+        .mul_add(
+            lower_composite_inertia_30,
+            lower_joint_19
+                .mul_add(
+                    lower_composite_inertia_28,
+                    lower_joint_13
+                        .mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
+                ),
+        );
+    let upper_composite_inertia_3 = (-lower_joint_27)
+        .mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
     // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
@@ -1031,91 +1143,100 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_12 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_13 = n(1.0)
+    let lower_factor_12 = (-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_27,
+            lower_composite_inertia_23
+                .mul_add(
+                    lower_factor_11,
+                    lower_joint_25
+                        .mul_add(
+                            lower_composite_inertia_29,
+                            lower_joint_13 * lower_composite_inertia_25,
+                        ),
+                ),
+        );
+    let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
+    let lower_factor_14 = n(1.0)
         / ((-lower_composite_inertia_15)
             .mul_add(lower_factor_2, lower_composite_inertia_14));
-    let lower_factor_14 = lower_factor_3 * lower_factor_13;
-    let lower_factor_15 = (-lower_factor_4)
+    let lower_factor_15 = lower_factor_3 * lower_factor_14;
+    let lower_factor_16 = (-lower_factor_4)
         .mul_add(
-            lower_factor_14,
+            lower_factor_15,
             (-lower_composite_inertia_22)
                 .mul_add(lower_factor_7, lower_composite_inertia_8),
         );
-    let lower_factor_16 = (-lower_factor_5).mul_add(lower_factor_14, lower_factor_8);
-    let lower_factor_17 = (-lower_factor_6).mul_add(lower_factor_14, lower_factor_9);
-    let lower_factor_18 = lower_factor_4 * lower_factor_13;
-    let lower_factor_19 = (-lower_factor_6)
-        .mul_add(
-            lower_factor_18,
-            (-lower_composite_inertia_23)
-                .mul_add(
-                    lower_factor_10,
-                    (-lower_joint_22)
-                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
-                ),
-        );
-    let lower_factor_20 = lower_factor_5 * lower_factor_13;
-    let lower_factor_21 = lower_factor_6 * lower_factor_13;
+    let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_8);
+    let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_9);
+    let lower_factor_19 = lower_factor_4 * lower_factor_14;
+    let lower_factor_20 = lower_factor_5 * lower_factor_14;
+    let lower_factor_21 = lower_factor_6 * lower_factor_14;
     let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
             .mul_add(
-                lower_factor_14,
+                lower_factor_15,
                 (-lower_composite_inertia_8)
                     .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
-    let lower_factor_23 = lower_factor_15 * lower_factor_22;
-    let lower_factor_24 = lower_factor_15
+    let lower_factor_23 = lower_factor_16 * lower_factor_22;
+    let lower_factor_24 = (-lower_factor_16)
         .mul_add(
             lower_factor_23,
-            lower_factor_4
+            (-lower_factor_4)
                 .mul_add(
-                    lower_factor_18,
-                    lower_composite_inertia_22
+                    lower_factor_19,
+                    (-lower_composite_inertia_22)
                         .mul_add(
                             lower_factor_10,
                             upper_composite_inertia + upper_composite_inertia_2,
                         ),
                 ),
         );
-    let lower_factor_25 = (-lower_factor_16)
+    let lower_factor_25 = lower_factor_17
         .mul_add(
             lower_factor_23,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_18,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_10,
-                            (-lower_joint_24).mul_add(n(0.3), lower_composite_inertia_15),
-                        ),
-                ),
-        );
-    let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
-    let lower_factor_27 = lower_factor_16 * lower_factor_22;
-    let lower_factor_28 = lower_factor_16
-        .mul_add(
-            lower_factor_27,
             lower_factor_5
                 .mul_add(
-                    lower_factor_20,
+                    lower_factor_19,
                     lower_composite_inertia_24
+                        .mul_add(lower_factor_10, lower_composite_inertia_33),
+                ),
+        );
+    let lower_factor_26 = lower_factor_18
+        .mul_add(
+            lower_factor_23,
+            lower_factor_6
+                .mul_add(
+                    lower_factor_19,
+                    lower_composite_inertia_23
+                        .mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
+                ),
+        );
+    let lower_factor_27 = lower_factor_17 * lower_factor_22;
+    let lower_factor_28 = (-lower_factor_17)
+        .mul_add(
+            lower_factor_27,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_20,
+                    (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_11,
                             upper_composite_inertia + upper_composite_inertia_3,
                         ),
                 ),
         );
-    let lower_factor_29 = lower_factor_17 * lower_factor_22;
-    let lower_factor_30 = lower_factor_17
+    let lower_factor_29 = lower_factor_18 * lower_factor_22;
+    let lower_factor_30 = (-lower_factor_18)
         .mul_add(
             lower_factor_29,
-            lower_factor_6
+            (-lower_factor_6)
                 .mul_add(
                     lower_factor_21,
-                    lower_composite_inertia_23
+                    (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_12,
+                            lower_factor_13,
                             upper_composite_inertia_2 + upper_composite_inertia_3,
                         ),
                 ),
@@ -1123,27 +1244,22 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     // lower: load (12 additions, 12 multiplications)
     let lower_load = p[5].mul_add(lower_factor_2, p[4]);
     let lower_load_2 = (-p[5])
-        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
+        .mul_add(lower_factor_7, lower_factor_15.mul_add(lower_load, p[3]));
     let lower_load_3 = (-lower_factor_23)
         .mul_add(
             lower_load_2,
-            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
+            (-p[5]).mul_add(lower_factor_10, lower_factor_19.mul_add(lower_load, p[2])),
         );
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = (-lower_factor_17)
+    let upper_factor_3 = lower_factor_26
         .mul_add(
-            lower_factor_27,
-            (-lower_factor_6)
+            upper_factor_2,
+            lower_factor_18
                 .mul_add(
-                    lower_factor_20,
-                    (-lower_composite_inertia_23)
-                        .mul_add(
-                            lower_factor_11,
-                            lower_factor_26
-                                .mul_add(upper_factor_2, lower_composite_inertia_7),
-                        ),
+                    lower_factor_27,
+                    lower_factor_6.mul_add(lower_factor_20, lower_factor_12),
                 ),
         );
     let upper_factor_4 = lower_factor_26 * upper_factor;
@@ -1166,7 +1282,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
             lower_load_2,
             (-p[5])
                 .mul_add(
-                    lower_factor_12,
+                    lower_factor_13,
                     upper_factor_4
                         .mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0])),
                 ),
@@ -1189,40 +1305,40 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let upper_weight_3 = q[8] * n(9.81);
     // lower: response (12 additions, 15 multiplications)
     let lower_speed = lower_factor_22
-        * ((-lower_factor_16)
+        * ((-lower_factor_18)
             .mul_add(
-                upper_speed_2,
-                lower_factor_17
+                upper_speed,
+                (-lower_factor_16)
                     .mul_add(
-                        upper_speed,
-                        lower_factor_15.mul_add(upper_speed_3, lower_load_2),
+                        upper_speed_3,
+                        lower_factor_17.mul_add(upper_speed_2, lower_load_2),
                     ),
             ));
-    let lower_response = (-lower_factor_6)
-        .mul_add(
-            upper_speed,
-            (-lower_factor_4)
-                .mul_add(
-                    upper_speed_3,
-                    lower_factor_5.mul_add(upper_speed_2, lower_factor_3 * lower_speed),
-                ),
-        );
-    let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
-    let lower_response_2 = (-lower_composite_inertia_24)
+    let lower_response = (-lower_factor_5)
         .mul_add(
             upper_speed_2,
+            lower_factor_6
+                .mul_add(
+                    upper_speed,
+                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
+                ),
+        );
+    let lower_speed_2 = lower_factor_14 * (lower_load + lower_response);
+    let lower_response_2 = (-lower_composite_inertia_22)
+        .mul_add(
+            upper_speed_3,
             (-lower_composite_inertia_8)
                 .mul_add(
                     lower_speed,
-                    lower_composite_inertia_22
+                    lower_composite_inertia_24
                         .mul_add(
-                            upper_speed_3,
+                            upper_speed_2,
                             lower_composite_inertia_15 * lower_speed_2,
                         ),
                 ),
         );
     let lower_speed_3 = lower_factor
-        * (lower_composite_inertia_23.mul_add(upper_speed, p[5] + lower_response_2));
+        * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_response_2));
     // lower: momentum (14 additions, 24 multiplications)
     let lower_momentum = upper_speed_2 * n(0.6);
     let lower_momentum_2 = upper_speed * n(0.6);
@@ -1232,64 +1348,64 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         .mul_add(lower_momentum_2, lower_joint_17 * lower_momentum);
     let lower_momentum_5 = lower_joint_25
         .mul_add(lower_momentum_2, lower_joint_23 * lower_momentum);
-    let lower_momentum_6 = (-lower_joint_15)
+    let lower_momentum_6 = (-lower_joint_13)
         .mul_add(
-            upper_speed_3,
-            (-lower_joint_11)
+            upper_speed_2,
+            (-lower_joint_13)
                 .mul_add(
-                    upper_speed,
-                    (-lower_joint_13)
+                    lower_speed_2,
+                    lower_joint_15
                         .mul_add(
-                            lower_speed_2,
-                            lower_joint_13
+                            upper_speed_3,
+                            lower_joint_11
                                 .mul_add(
-                                    upper_speed_2,
+                                    upper_speed,
                                     lower_joint_15
                                         .mul_add(lower_speed_3, lower_joint_11 * lower_speed),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_7 = (-lower_joint_19)
+    let lower_momentum_7 = (-lower_joint_21)
         .mul_add(
-            upper_speed_2,
-            (-lower_joint_17)
+            upper_speed_3,
+            (-lower_joint_21)
                 .mul_add(
-                    upper_speed,
-                    (-lower_joint_21)
+                    lower_speed_3,
+                    lower_joint_19
                         .mul_add(
-                            lower_speed_3,
-                            lower_joint_21
+                            upper_speed_2,
+                            lower_joint_17
                                 .mul_add(
-                                    upper_speed_3,
+                                    upper_speed,
                                     lower_joint_19
                                         .mul_add(lower_speed_2, lower_joint_17 * lower_speed),
                                 ),
                         ),
                 ),
         );
-    let lower_momentum_8 = (-lower_joint_23)
+    let lower_momentum_8 = (-lower_joint_27)
         .mul_add(
-            upper_speed,
-            (-lower_joint_27)
+            upper_speed_3,
+            (-lower_joint_25)
                 .mul_add(
-                    lower_speed_3,
-                    (-lower_joint_25)
+                    upper_speed_2,
+                    (-lower_joint_27)
                         .mul_add(
-                            lower_speed_2,
-                            lower_joint_27
+                            lower_speed_3,
+                            (-lower_joint_25)
                                 .mul_add(
-                                    upper_speed_3,
-                                    lower_joint_25
-                                        .mul_add(upper_speed_2, lower_joint_23 * lower_speed),
+                                    lower_speed_2,
+                                    lower_joint_23
+                                        .mul_add(upper_speed, lower_joint_23 * lower_speed),
                                 ),
                         ),
                 ),
         );
     let lower_momentum_9 = lower_momentum_8 * n(0.01);
-    let lower_momentum_10 = lower_momentum_4
+    let lower_momentum_10 = (-lower_momentum_4)
         .mul_add(n(0.25), lower_momentum_6 * n(0.0825));
-    let lower_momentum_11 = (-lower_momentum_3)
+    let lower_momentum_11 = lower_momentum_3
         .mul_add(n(0.25), lower_momentum_7 * n(0.0825));
     let lower_momentum_12 = lower_momentum_7 * n(0.25);
     let lower_momentum_13 = lower_momentum_6 * n(0.25);
@@ -1439,31 +1555,31 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ),
         );
     // lower: momentum rate (58 additions, 61 multiplications)
-    let lower_momentum_rate = (-lower_momentum_7)
+    let lower_momentum_rate = (-lower_momentum_4)
         .mul_add(
-            lower_momentum_10,
-            lower_momentum_4
+            lower_momentum_12,
+            (-lower_momentum_3)
                 .mul_add(
-                    lower_momentum_12,
-                    lower_momentum_3
-                        .mul_add(lower_momentum_13, lower_momentum_6 * lower_momentum_11),
+                    lower_momentum_13,
+                    (-lower_momentum_7)
+                        .mul_add(lower_momentum_10, lower_momentum_6 * lower_momentum_11),
                 ),
         );
-    let lower_momentum_rate_2 = (-lower_momentum_5)
+    let lower_momentum_rate_2 = (-lower_momentum_8)
         .mul_add(
-            lower_momentum_13,
-            (-lower_momentum_8)
+            lower_momentum_11,
+            lower_momentum_5
                 .mul_add(
-                    lower_momentum_11,
+                    lower_momentum_13,
                     lower_momentum_7.mul_add(lower_momentum_9, lower_weight),
                 ),
         );
-    let lower_momentum_rate_3 = (-lower_momentum_8)
+    let lower_momentum_rate_3 = (-lower_momentum_5)
         .mul_add(
-            lower_momentum_10,
-            lower_momentum_5
+            lower_momentum_12,
+            (-lower_momentum_8)
                 .mul_add(
-                    lower_momentum_12,
+                    lower_momentum_10,
                     lower_momentum_6.mul_add(lower_momentum_9, lower_weight_2),
                 ),
         );
@@ -1569,17 +1685,17 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
                 ),
         );
     let lower_momentum_rate_18 = upper_speed_3
-        .mul_add(n(0.06), upper_speed.mul_add(n(0.59), -lower_momentum_rate_16));
-    let lower_momentum_rate_19 = upper_speed_2.mul_add(n(0.62), lower_momentum_rate_17);
-    let lower_momentum_rate_20 = (-lower_joint_15)
+        .mul_add(n(0.06), upper_speed.mul_add(n(0.59), lower_momentum_rate_16));
+    let lower_momentum_rate_19 = upper_speed_2.mul_add(n(0.62), -lower_momentum_rate_17);
+    let lower_momentum_rate_20 = (-lower_joint_27)
         .mul_add(
-            lower_momentum_10,
-            lower_joint_27
+            lower_momentum_9,
+            (-lower_joint_21)
                 .mul_add(
-                    lower_momentum_9,
-                    lower_joint_21
+                    lower_momentum_11,
+                    lower_joint_15
                         .mul_add(
-                            lower_momentum_11,
+                            lower_momentum_10,
                             upper_speed_3
                                 .mul_add(n(0.04000000000000001), upper_speed * n(0.06)),
                         ),
@@ -1721,9 +1837,9 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         );
     [
         [
-            -upper_speed,
-            -upper_speed_2,
-            -upper_speed_3,
+            upper_speed,
+            upper_speed_2,
+            upper_speed_3,
             lower_speed,
             lower_speed_2,
             lower_speed_3,
@@ -1745,7 +1861,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
 
 /// H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.
 ///
-/// Operations: 163 additions, 213 multiplications, 6 divisions, 2 function calls.
+/// Operations: 172 additions, 240 multiplications, 6 divisions, 2 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
@@ -1778,7 +1894,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_joint_25 = lower_joint_24 + lower_joint_24;
     let lower_joint_26 = lower_joint + lower_joint_7;
     let lower_joint_27 = lower_joint_26 + lower_joint_26 - n(1.0);
-    // lower: composite inertia (36 additions, 66 multiplications)
+    // lower: composite inertia (45 additions, 93 multiplications)
     let lower_composite_inertia = lower_joint_11 * n(0.0825);
     let lower_composite_inertia_2 = lower_joint_16 * n(0.165);
     let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
@@ -1899,12 +2015,66 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                         ),
                 ),
         );
+    let lower_composite_inertia_25 = lower_joint_11 * n(0.005);
+    let lower_composite_inertia_26 = lower_joint_12 * n(0.01);
+    let lower_composite_inertia_27 = lower_joint_16 * n(0.01);
+    let lower_composite_inertia_28 = lower_joint_19 * n(0.005);
+    let lower_composite_inertia_29 = lower_joint_22 * n(0.155);
+    let lower_composite_inertia_30 = lower_joint_24 * n(0.155);
+    let lower_composite_inertia_31 = lower_joint_27
+        .mul_add(
+            lower_joint_27 * n(0.0775),
+            lower_joint_21
+                .mul_add(
+                    lower_joint_20 * n(0.01),
+                    lower_joint_15 * (lower_joint_14 * n(0.01)),
+                ),
+        );
+    let lower_composite_inertia_32 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_29,
+            (-lower_joint_21)
+                .mul_add(
+                    lower_composite_inertia_27,
+                    lower_joint_22
+                        .mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
+                ),
+        );
+    let lower_composite_inertia_33 = (-lower_joint_27)
+        .mul_add(
+            lower_composite_inertia_30,
+            lower_joint_24
+                .mul_add(
+                    n(0.3),
+                    lower_joint_21
+                        .mul_add(
+                            lower_composite_inertia_28,
+                            lower_joint_15 * lower_composite_inertia_26,
+                        ),
+                ),
+        );
     // upper: composite inertia (9 additions)
-    let upper_composite_inertia = lower_composite_inertia_6 - n(0.0875) - n(0.035);
-    let upper_composite_inertia_2 = lower_composite_inertia_14 - n(0.0875)
-        - n(0.005000000000000003);
-    let upper_composite_inertia_3 = lower_joint_27
-        .mul_add(n(0.3), lower_composite_inertia_22 - n(0.0875) - n(0.585));
+    let upper_composite_inertia = lower_joint_23
+        .mul_add(
+            lower_composite_inertia_29,
+            lower_joint_17
+                .mul_add(
+                    lower_composite_inertia_27,
+                    lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035)),
+                ),
+        );
+    let upper_composite_inertia_2 = lower_joint_25
+        .mul_add(
+            lower_composite_inertia_30,
+            lower_joint_19
+                .mul_add(
+                    lower_composite_inertia_28,
+                    lower_joint_13
+                        .mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
+                ),
+        );
+    let upper_composite_inertia_3 = (-lower_joint_27)
+        .mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
     // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
@@ -1947,91 +2117,100 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_12 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_13 = n(1.0)
+    let lower_factor_12 = (-lower_joint_19)
+        .mul_add(
+            lower_composite_inertia_27,
+            lower_composite_inertia_23
+                .mul_add(
+                    lower_factor_11,
+                    lower_joint_25
+                        .mul_add(
+                            lower_composite_inertia_29,
+                            lower_joint_13 * lower_composite_inertia_25,
+                        ),
+                ),
+        );
+    let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
+    let lower_factor_14 = n(1.0)
         / ((-lower_composite_inertia_15)
             .mul_add(lower_factor_2, lower_composite_inertia_14));
-    let lower_factor_14 = lower_factor_3 * lower_factor_13;
-    let lower_factor_15 = (-lower_factor_4)
+    let lower_factor_15 = lower_factor_3 * lower_factor_14;
+    let lower_factor_16 = (-lower_factor_4)
         .mul_add(
-            lower_factor_14,
+            lower_factor_15,
             (-lower_composite_inertia_22)
                 .mul_add(lower_factor_7, lower_composite_inertia_8),
         );
-    let lower_factor_16 = (-lower_factor_5).mul_add(lower_factor_14, lower_factor_8);
-    let lower_factor_17 = (-lower_factor_6).mul_add(lower_factor_14, lower_factor_9);
-    let lower_factor_18 = lower_factor_4 * lower_factor_13;
-    let lower_factor_19 = (-lower_factor_6)
-        .mul_add(
-            lower_factor_18,
-            (-lower_composite_inertia_23)
-                .mul_add(
-                    lower_factor_10,
-                    (-lower_joint_22)
-                        .mul_add(n(0.3), lower_composite_inertia_8 + n(0.06)),
-                ),
-        );
-    let lower_factor_20 = lower_factor_5 * lower_factor_13;
-    let lower_factor_21 = lower_factor_6 * lower_factor_13;
+    let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_8);
+    let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_9);
+    let lower_factor_19 = lower_factor_4 * lower_factor_14;
+    let lower_factor_20 = lower_factor_5 * lower_factor_14;
+    let lower_factor_21 = lower_factor_6 * lower_factor_14;
     let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
             .mul_add(
-                lower_factor_14,
+                lower_factor_15,
                 (-lower_composite_inertia_8)
                     .mul_add(lower_factor_7, lower_composite_inertia_6),
             ));
-    let lower_factor_23 = lower_factor_15 * lower_factor_22;
-    let lower_factor_24 = lower_factor_15
+    let lower_factor_23 = lower_factor_16 * lower_factor_22;
+    let lower_factor_24 = (-lower_factor_16)
         .mul_add(
             lower_factor_23,
-            lower_factor_4
+            (-lower_factor_4)
                 .mul_add(
-                    lower_factor_18,
-                    lower_composite_inertia_22
+                    lower_factor_19,
+                    (-lower_composite_inertia_22)
                         .mul_add(
                             lower_factor_10,
                             upper_composite_inertia + upper_composite_inertia_2,
                         ),
                 ),
         );
-    let lower_factor_25 = (-lower_factor_16)
+    let lower_factor_25 = lower_factor_17
         .mul_add(
             lower_factor_23,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_18,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_10,
-                            (-lower_joint_24).mul_add(n(0.3), lower_composite_inertia_15),
-                        ),
-                ),
-        );
-    let lower_factor_26 = (-lower_factor_17).mul_add(lower_factor_23, lower_factor_19);
-    let lower_factor_27 = lower_factor_16 * lower_factor_22;
-    let lower_factor_28 = lower_factor_16
-        .mul_add(
-            lower_factor_27,
             lower_factor_5
                 .mul_add(
-                    lower_factor_20,
+                    lower_factor_19,
                     lower_composite_inertia_24
+                        .mul_add(lower_factor_10, lower_composite_inertia_33),
+                ),
+        );
+    let lower_factor_26 = lower_factor_18
+        .mul_add(
+            lower_factor_23,
+            lower_factor_6
+                .mul_add(
+                    lower_factor_19,
+                    lower_composite_inertia_23
+                        .mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
+                ),
+        );
+    let lower_factor_27 = lower_factor_17 * lower_factor_22;
+    let lower_factor_28 = (-lower_factor_17)
+        .mul_add(
+            lower_factor_27,
+            (-lower_factor_5)
+                .mul_add(
+                    lower_factor_20,
+                    (-lower_composite_inertia_24)
                         .mul_add(
                             lower_factor_11,
                             upper_composite_inertia + upper_composite_inertia_3,
                         ),
                 ),
         );
-    let lower_factor_29 = lower_factor_17 * lower_factor_22;
-    let lower_factor_30 = lower_factor_17
+    let lower_factor_29 = lower_factor_18 * lower_factor_22;
+    let lower_factor_30 = (-lower_factor_18)
         .mul_add(
             lower_factor_29,
-            lower_factor_6
+            (-lower_factor_6)
                 .mul_add(
                     lower_factor_21,
-                    lower_composite_inertia_23
+                    (-lower_composite_inertia_23)
                         .mul_add(
-                            lower_factor_12,
+                            lower_factor_13,
                             upper_composite_inertia_2 + upper_composite_inertia_3,
                         ),
                 ),
@@ -2039,27 +2218,22 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     // lower: load (12 additions, 12 multiplications)
     let lower_load = p[5].mul_add(lower_factor_2, p[4]);
     let lower_load_2 = (-p[5])
-        .mul_add(lower_factor_7, lower_factor_14.mul_add(lower_load, p[3]));
+        .mul_add(lower_factor_7, lower_factor_15.mul_add(lower_load, p[3]));
     let lower_load_3 = (-lower_factor_23)
         .mul_add(
             lower_load_2,
-            (-p[5]).mul_add(lower_factor_10, lower_factor_18.mul_add(lower_load, p[2])),
+            (-p[5]).mul_add(lower_factor_10, lower_factor_19.mul_add(lower_load, p[2])),
         );
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = (-lower_factor_17)
+    let upper_factor_3 = lower_factor_26
         .mul_add(
-            lower_factor_27,
-            (-lower_factor_6)
+            upper_factor_2,
+            lower_factor_18
                 .mul_add(
-                    lower_factor_20,
-                    (-lower_composite_inertia_23)
-                        .mul_add(
-                            lower_factor_11,
-                            lower_factor_26
-                                .mul_add(upper_factor_2, lower_composite_inertia_7),
-                        ),
+                    lower_factor_27,
+                    lower_factor_6.mul_add(lower_factor_20, lower_factor_12),
                 ),
         );
     let upper_factor_4 = lower_factor_26 * upper_factor;
@@ -2082,7 +2256,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
             lower_load_2,
             (-p[5])
                 .mul_add(
-                    lower_factor_12,
+                    lower_factor_13,
                     upper_factor_4
                         .mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0])),
                 ),
@@ -2160,49 +2334,49 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         );
     // lower: response (17 additions, 22 multiplications)
     let lower_speed = lower_factor_22
-        * ((-lower_factor_16)
+        * ((-lower_factor_18)
             .mul_add(
-                upper_speed_2,
-                lower_factor_17
+                upper_speed,
+                (-lower_factor_16)
                     .mul_add(
-                        upper_speed,
-                        lower_factor_15.mul_add(upper_speed_3, lower_load_2),
+                        upper_speed_3,
+                        lower_factor_17.mul_add(upper_speed_2, lower_load_2),
                     ),
             ));
-    let lower_response = (-lower_factor_6)
-        .mul_add(
-            upper_speed,
-            (-lower_factor_4)
-                .mul_add(
-                    upper_speed_3,
-                    lower_factor_5.mul_add(upper_speed_2, lower_factor_3 * lower_speed),
-                ),
-        );
-    let lower_speed_2 = lower_factor_13 * (lower_load + lower_response);
-    let lower_response_2 = (-lower_composite_inertia_24)
+    let lower_response = (-lower_factor_5)
         .mul_add(
             upper_speed_2,
+            lower_factor_6
+                .mul_add(
+                    upper_speed,
+                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
+                ),
+        );
+    let lower_speed_2 = lower_factor_14 * (lower_load + lower_response);
+    let lower_response_2 = (-lower_composite_inertia_22)
+        .mul_add(
+            upper_speed_3,
             (-lower_composite_inertia_8)
                 .mul_add(
                     lower_speed,
-                    lower_composite_inertia_22
+                    lower_composite_inertia_24
                         .mul_add(
-                            upper_speed_3,
+                            upper_speed_2,
                             lower_composite_inertia_15 * lower_speed_2,
                         ),
                 ),
         );
-    let lower_response_3 = (-p[3])
+    let lower_response_3 = p[3]
         .mul_add(
             lower_speed,
             p[2].mul_add(upper_speed_3, p[1].mul_add(upper_speed_2, p[0] * upper_speed)),
         );
-    let lower_response_4 = (-p[5])
+    let lower_response_4 = p[5]
         .mul_add(
             lower_factor
-                * (lower_composite_inertia_23
+                * ((-lower_composite_inertia_23)
                     .mul_add(upper_speed, p[5] + lower_response_2)),
-            (-p[4]).mul_add(lower_speed_2, lower_response_3),
+            p[4].mul_add(lower_speed_2, lower_response_3),
         );
     // lower: spring (3 additions, 7 multiplications, 1 function call)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
@@ -2225,14 +2399,14 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
                     q[6] * (lower_joint_22.mul_add(n(0.5), -n(0.2))),
                 ),
         );
-    let upper_first_moment_2 = (-lower_spring_2)
+    let upper_first_moment_2 = (-upper_first_moment)
         .mul_add(
-            n(0.5),
-            (-upper_spring_2)
+            n(9.81),
+            lower_spring_2
                 .mul_add(
                     n(0.5),
-                    upper_first_moment.mul_add(n(9.81), lower_response_4 * n(0.5)),
+                    upper_spring_2.mul_add(n(0.5), lower_response_4 * n(0.5)),
                 ),
         );
-    [-upper_first_moment_2]
+    [upper_first_moment_2]
 }

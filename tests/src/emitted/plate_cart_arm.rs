@@ -130,7 +130,7 @@ impl ::hamel::compiled::OfState<16, 6, 6> for InverseDynamics {
 
 /// Accelerations v̄̇ from Q, v̄ and τ, (24), (34).
 ///
-/// Operations: 272 additions, 339 multiplications, 6 divisions.
+/// Operations: 277 additions, 350 multiplications, 6 divisions.
 #[inline(always)]
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
@@ -325,156 +325,147 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             end_effector_force_8,
             q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7),
         );
-    // end_effector: composite inertia (83 additions, 119 multiplications)
-    let end_effector_composite_inertia = (-q[9])
-        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
-    let end_effector_composite_inertia_2 = q[9]
-        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
-    let end_effector_composite_inertia_3 = (-q[9])
+    // end_effector: composite inertia (93 additions, 130 multiplications)
+    let end_effector_composite_inertia = q[8] * n(0.0078);
+    let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
+    let end_effector_composite_inertia_3 = q[7]
         .mul_add(
-            n(0.02713),
-            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
+            n(0.19388),
+            end_effector_composite_inertia - end_effector_composite_inertia_2,
         );
-    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
-    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
-    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[9])
+    let end_effector_composite_inertia_4 = q[7] * n(0.0078);
+    let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
+    let end_effector_composite_inertia_6 = q[8]
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[7] * end_effector_composite_inertia,
-                ),
+            n(0.18225),
+            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
         );
-    let end_effector_composite_inertia_8 = (-q[12])
+    let end_effector_composite_inertia_7 = (-q[8])
+        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9])
+        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
+    let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
+    let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
+    let end_effector_composite_inertia_12 = (-q[15])
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[10] * end_effector_composite_inertia,
-                ),
-        );
-    let end_effector_composite_inertia_9 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_3,
+            end_effector_composite_inertia_8,
             q[14]
                 .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[13] * end_effector_composite_inertia,
+                    end_effector_composite_inertia_6,
+                    q[13] * end_effector_composite_inertia_3,
                 ),
         );
-    let end_effector_composite_inertia_10 = (-q[9])
+    let end_effector_composite_inertia_13 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_6,
+            end_effector_composite_inertia_11,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[7] * end_effector_composite_inertia_4,
+                    end_effector_composite_inertia_10,
+                    q[7] * end_effector_composite_inertia_9,
                 ),
-        );
-    let end_effector_composite_inertia_11 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_6,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[10] * end_effector_composite_inertia_4,
-                ),
-        );
-    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_11
-                .mul_add(n(0.15), end_effector_composite_inertia_9),
-        );
-    let end_effector_composite_inertia_13 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_11,
-                    q[1] * end_effector_composite_inertia_10,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_11,
-                        q[4] * end_effector_composite_inertia_10,
-                    )),
         );
     let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_15 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
-    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.02713),
-            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
-        );
-    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_20 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_16,
+            end_effector_composite_inertia_11,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[10] * end_effector_composite_inertia_14,
+                    end_effector_composite_inertia_10,
+                    q[10] * end_effector_composite_inertia_9,
                 ),
         );
-    let end_effector_composite_inertia_21 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_16,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[13] * end_effector_composite_inertia_14,
-                ),
-        );
-    let end_effector_composite_inertia_22 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[7] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_23 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[10] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
+    let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_23
-                .mul_add(n(0.15), end_effector_composite_inertia_21),
+            end_effector_composite_inertia_14
+                .mul_add(n(0.15), end_effector_composite_inertia_12),
         );
-    let end_effector_composite_inertia_25 = (-q[6])
+    let end_effector_composite_inertia_16 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_23,
-                    q[1] * end_effector_composite_inertia_22,
+                    end_effector_composite_inertia_14,
+                    q[1] * end_effector_composite_inertia_13,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_23,
-                        q[4] * end_effector_composite_inertia_22,
+                        end_effector_composite_inertia_14,
+                        q[4] * end_effector_composite_inertia_13,
                     )),
         );
-    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_29 = q[14]
+    let end_effector_composite_inertia_17 = q[11] * n(0.0078);
+    let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
+    let end_effector_composite_inertia_19 = q[10]
+        .mul_add(
+            n(0.19388),
+            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
+        );
+    let end_effector_composite_inertia_20 = q[10] * n(0.0078);
+    let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
+    let end_effector_composite_inertia_22 = q[11]
+        .mul_add(
+            n(0.18225),
+            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
+        );
+    let end_effector_composite_inertia_23 = (-q[11])
+        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12])
+        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+    let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
+    let end_effector_composite_inertia_28 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_24,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_22,
+                    q[13] * end_effector_composite_inertia_19,
+                ),
+        );
+    let end_effector_composite_inertia_29 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[7] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_30 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[10] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_30
+                .mul_add(n(0.15), end_effector_composite_inertia_28),
+        );
+    let end_effector_composite_inertia_32 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_30,
+                    q[1] * end_effector_composite_inertia_29,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_30,
+                        q[4] * end_effector_composite_inertia_29,
+                    )),
+        );
+    let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_36 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -488,7 +479,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_30 = (-q[15])
+    let end_effector_composite_inertia_37 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
@@ -499,55 +490,109 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_29,
+            end_effector_composite_inertia_36,
         );
-    let end_effector_composite_inertia_31 = (-q[9])
+    let end_effector_composite_inertia_38 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[7] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[7] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_32 = (-q[12])
+    let end_effector_composite_inertia_39 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[10] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[10] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
+    let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_32
-                .mul_add(n(0.15), end_effector_composite_inertia_30),
+            end_effector_composite_inertia_39
+                .mul_add(n(0.15), end_effector_composite_inertia_37),
         );
-    let end_effector_composite_inertia_34 = (-q[6])
+    let end_effector_composite_inertia_41 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_32,
-                    q[1] * end_effector_composite_inertia_31,
+                    end_effector_composite_inertia_39,
+                    q[1] * end_effector_composite_inertia_38,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_32,
-                        q[4] * end_effector_composite_inertia_31,
+                        end_effector_composite_inertia_39,
+                        q[4] * end_effector_composite_inertia_38,
                     )),
         );
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
-        + end_effector_composite_inertia_34;
-    let end_effector_composite_inertia_36 = (-q[8])
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
+        + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_37 = (-q[11])
+    let end_effector_composite_inertia_44 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_38 = (-((-q[14])
-        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
-        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
+    let end_effector_composite_inertia_45 = q[7]
+        .mul_add(
+            n(0.007750000000000002),
+            end_effector_composite_inertia_2 - end_effector_composite_inertia,
+        );
+    let end_effector_composite_inertia_46 = (-q[8])
+        .mul_add(
+            n(0.01938),
+            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
+        );
+    let end_effector_composite_inertia_47 = q[9]
+        .mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11])
+        .mul_add(
+            (-q[11])
+                .mul_add(
+                    n(0.01938),
+                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
+                ),
+            q[10]
+                * (q[10]
+                    .mul_add(
+                        n(0.007750000000000002),
+                        end_effector_composite_inertia_18
+                            - end_effector_composite_inertia_17,
+                    )),
+        );
+    let end_effector_composite_inertia_49 = (-q[8])
+        .mul_add(
+            end_effector_composite_inertia_46,
+            end_effector_composite_inertia_43
+                .mul_add(
+                    n(0.3),
+                    q[9]
+                        .mul_add(
+                            end_effector_composite_inertia_47,
+                            q[7] * end_effector_composite_inertia_45,
+                        ),
+                ),
+        );
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
+        .mul_add(
+            n(0.02),
+            (-q[11])
+                .mul_add(
+                    end_effector_composite_inertia_46,
+                    end_effector_composite_inertia_44
+                        .mul_add(
+                            n(0.15),
+                            q[12]
+                                .mul_add(
+                                    end_effector_composite_inertia_47,
+                                    q[10] * end_effector_composite_inertia_45,
+                                ),
+                        ),
+                ),
+        );
     // cart: effort (7 additions, 6 multiplications)
     let cart_effort = (-end_effector_effort_2)
         .mul_add(
@@ -571,166 +616,187 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
             (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
             q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
-    // cart: composite inertia (31 additions, 30 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
-        .mul_add(
-            n(0.3),
-            end_effector_composite_inertia_7 - n(0.20162999999999998)
-                - n(0.12764999999999999),
-        );
-    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
-        .mul_add(
-            n(0.15),
-            end_effector_composite_inertia_36
-                .mul_add(
-                    n(0.02),
-                    end_effector_composite_inertia_8 + n(0.002300000000000001),
-                ),
-        );
-    let cart_composite_inertia_5 = end_effector_composite_inertia_37
+    // cart: composite inertia (26 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49
+        + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50
+        - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
+            q[12]
+                .mul_add(
+                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+                    end_effector_composite_inertia_48 + n(0.03728),
+                ),
         );
-    let cart_composite_inertia_6 = end_effector_composite_inertia_38
-        + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = end_effector_composite_inertia_38
-        + cart_composite_inertia_3;
-    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_9 = (-q[6])
+    let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_10 = (-q[2])
+    let cart_composite_inertia_8 = q[2]
         .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
             q[1]
-                * ((-q[2])
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+                * (q[2]
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_11 = (-q[5])
+    let cart_composite_inertia_9 = q[5]
         .mul_add(
-            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
             q[4]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+                * (q[5]
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_12 = end_effector_composite_inertia_38
-        + cart_composite_inertia_8;
-    let cart_composite_inertia_13 = (q[3]
+    let cart_composite_inertia_10 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] + q[3]);
-    let cart_composite_inertia_14 = (q[6]
+    let cart_composite_inertia_11 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] + q[6]);
-    // plate: composite inertia (3 additions)
-    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
-        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
-        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: effort (3 additions)
     let end_effector_effort_4 = end_effector_effort - tau[6];
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
-    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
-    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
-    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
+    let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
         .mul_add(
             end_effector_factor_2,
-            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_24,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_22,
+                            q[10] * end_effector_composite_inertia_19,
+                        ),
+                ),
         );
-    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
-    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
-    let end_effector_factor_9 = (-q[3])
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_2,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[10] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_5 = (-end_effector_composite_inertia_38)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_40)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
+    let end_effector_factor_7 = (-end_effector_composite_inertia_42)
+        .mul_add(
+            end_effector_factor_2,
+            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
+        );
+    let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_8,
+            (-q[9])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[8]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[7] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
+    let end_effector_factor_11 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_35
+            end_effector_composite_inertia_42
                 .mul_add(
-                    end_effector_factor_8,
+                    end_effector_factor_10,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
-    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
-    let end_effector_factor_12 = n(1.0)
-        / ((-end_effector_composite_inertia_21)
-            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
-    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
-    let end_effector_factor_14 = (-end_effector_factor_4)
+    let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
+    let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
         .mul_add(
             end_effector_factor_13,
-            (-end_effector_composite_inertia_31)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
+            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+                + cart_composite_inertia_9 + cart_composite_inertia_11
+                + n(0.8799999999999999),
         );
-    let end_effector_factor_15 = (-end_effector_factor_5)
+    let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
+    let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
+    let end_effector_factor_17 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_33)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_38)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
         );
-    let end_effector_factor_16 = (-end_effector_factor_6)
+    let end_effector_factor_18 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_35)
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_40)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+        );
+    let end_effector_factor_19 = (-end_effector_factor_7)
+        .mul_add(
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_42)
                 .mul_add(
-                    end_effector_factor_7,
-                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
+                    end_effector_factor_8,
+                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
                 ),
         );
-    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
-    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
-    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
-    let end_effector_factor_20 = n(1.0)
-        / ((-end_effector_factor_3)
-            .mul_add(
-                end_effector_factor_13,
-                (-end_effector_composite_inertia_9)
-                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
-            ));
-    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
-    let end_effector_factor_22 = end_effector_factor_15
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_5
-                .mul_add(
-                    end_effector_factor_17,
-                    end_effector_composite_inertia_33
-                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_23 = end_effector_factor_16
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
-        );
-    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
-    let end_effector_factor_25 = end_effector_factor_16
+    let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
+    let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
+    let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
+    let end_effector_factor_23 = n(1.0)
+        / ((-end_effector_factor_4)
+            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
+    let end_effector_factor_25 = end_effector_factor_18
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_18,
-                    end_effector_composite_inertia_35
+                    end_effector_factor_20,
+                    end_effector_composite_inertia_40
+                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
+                ),
+        );
+    let end_effector_factor_26 = end_effector_factor_19
+        .mul_add(
+            end_effector_factor_24,
+            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
+        );
+    let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_28 = (-end_effector_factor_19)
+        .mul_add(
+            end_effector_factor_27,
+            (-end_effector_factor_7)
+                .mul_add(
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_42)
                         .mul_add(
-                            end_effector_factor_10,
-                            cart_composite_inertia_8 + cart_composite_inertia_9,
+                            end_effector_factor_12,
+                            cart_composite_inertia_6 - cart_composite_inertia_7,
                         ),
                 ),
         );
-    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
+    let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-end_effector_effort_4)
         .mul_add(
@@ -747,7 +813,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
         );
     let end_effector_load_2 = (-end_effector_effort_4)
         .mul_add(
-            end_effector_factor_7,
+            end_effector_factor_8,
             q[9]
                 .mul_add(
                     end_effector_force_6,
@@ -758,155 +824,155 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
                         ),
                 ),
         );
-    let end_effector_load_3 = (-end_effector_factor_13)
+    let end_effector_load_3 = (-end_effector_factor_16)
         .mul_add(end_effector_load, end_effector_load_2);
-    let end_effector_load_4 = end_effector_factor_21
+    let end_effector_load_4 = end_effector_factor_24
         .mul_add(
             end_effector_load_3,
-            end_effector_factor_17
+            end_effector_factor_20
                 .mul_add(
                     end_effector_load,
                     end_effector_effort_4
-                        .mul_add(end_effector_factor_8, cart_effort_2 + tau[2]),
+                        .mul_add(end_effector_factor_10, cart_effort_2 + tau[2]),
                 ),
         );
-    let end_effector_load_5 = (-end_effector_factor_24)
+    let end_effector_load_5 = (-end_effector_factor_27)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_18)
+            (-end_effector_factor_21)
                 .mul_add(
                     end_effector_load,
                     (-end_effector_effort_4)
-                        .mul_add(end_effector_factor_10, cart_effort - tau[1]),
+                        .mul_add(end_effector_factor_12, cart_effort - tau[1]),
                 ),
         );
-    let end_effector_load_6 = (-end_effector_factor_26)
+    let end_effector_load_6 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load,
                     (-end_effector_effort_4)
                         .mul_add(
-                            end_effector_factor_11,
+                            end_effector_factor_13,
                             cart_effort - cart_effort_4 - tau[0],
                         ),
                 ),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_14
+        / (end_effector_factor_17
             .mul_add(
-                end_effector_factor_21,
-                end_effector_factor_4
+                end_effector_factor_24,
+                end_effector_factor_5
                     .mul_add(
-                        end_effector_factor_17,
-                        end_effector_composite_inertia_31
-                            .mul_add(end_effector_factor_8, -n(5.7)),
+                        end_effector_factor_20,
+                        end_effector_composite_inertia_38
+                            .mul_add(end_effector_factor_10, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_22 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_22)
+    let cart_factor_2 = end_effector_factor_25 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            end_effector_factor_15
-                .mul_add(
-                    end_effector_factor_24,
-                    end_effector_factor_5
-                        .mul_add(
-                            end_effector_factor_18,
-                            end_effector_composite_inertia_33
-                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
-                        ),
-                ),
-        );
-    let cart_factor_4 = (-end_effector_factor_23)
-        .mul_add(cart_factor_2, end_effector_factor_25);
-    let cart_factor_5 = end_effector_factor_23 * cart_factor;
-    let cart_factor_6 = (-end_effector_factor_16)
-        .mul_add(
-            end_effector_factor_26,
+            end_effector_factor_27,
             (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_19,
-                    (-end_effector_composite_inertia_35)
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_40)
                         .mul_add(
-                            end_effector_factor_11,
-                            end_effector_factor_23
-                                .mul_add(cart_factor_5, plate_composite_inertia),
+                            end_effector_factor_12,
+                            end_effector_factor_25
+                                .mul_add(cart_factor_2, cart_composite_inertia_6),
                         ),
                 ),
         );
-    let cart_factor_7 = n(1.0) / cart_factor_3;
-    let cart_factor_8 = cart_factor_4 * cart_factor_7;
+    let cart_factor_4 = end_effector_factor_26
+        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_5 = end_effector_factor_26 * cart_factor;
+    let cart_factor_6 = n(1.0) / cart_factor_3;
+    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_8 = (-cart_factor_4)
+        .mul_add(
+            cart_factor_7,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_factor_29,
+                    (-end_effector_factor_7)
+                        .mul_add(
+                            end_effector_factor_22,
+                            end_effector_factor_26
+                                .mul_add(cart_factor_5, end_effector_factor_14),
+                        ),
+                ),
+        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
     // plate: response (1 multiplication)
-    let plate_acceleration_2 = (n(1.0)
-        / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
-        * ((-cart_factor_8)
+    let plate_acceleration_2 = (n(1.0) / cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load,
                 cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_acceleration_7 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_acceleration_2, cart_load));
+    let cart_acceleration_7 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
     let cart_acceleration_8 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_acceleration_2,
-                end_effector_factor_22.mul_add(cart_acceleration_7, end_effector_load_4),
+                (-end_effector_factor_25)
+                    .mul_add(cart_acceleration_7, end_effector_load_4),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_acceleration_21 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_acceleration_21 = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_acceleration_2,
-                (-end_effector_factor_14)
+                (-end_effector_factor_18)
                     .mul_add(
-                        cart_acceleration_8,
-                        end_effector_factor_15
-                            .mul_add(cart_acceleration_7, end_effector_load_3),
+                        cart_acceleration_7,
+                        (-end_effector_factor_17)
+                            .mul_add(cart_acceleration_8, end_effector_load_3),
                     ),
             ));
-    let end_effector_response = (-end_effector_factor_5)
+    let end_effector_response = end_effector_factor_7
         .mul_add(
-            cart_acceleration_7,
+            plate_acceleration_2,
             end_effector_factor_6
                 .mul_add(
-                    plate_acceleration_2,
-                    end_effector_factor_4
+                    cart_acceleration_7,
+                    end_effector_factor_5
                         .mul_add(
                             cart_acceleration_8,
-                            end_effector_factor_3 * end_effector_acceleration_21,
+                            end_effector_factor_4 * end_effector_acceleration_21,
                         ),
                 ),
         );
-    let end_effector_acceleration_22 = end_effector_factor_12
+    let end_effector_acceleration_22 = end_effector_factor_15
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_33)
+    let end_effector_response_2 = end_effector_composite_inertia_40
         .mul_add(
             cart_acceleration_7,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(
                     cart_acceleration_8,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_acceleration_21,
-                            end_effector_composite_inertia_21
+                            end_effector_composite_inertia_28
                                 * end_effector_acceleration_22,
                         ),
                 ),
         );
     [
         -plate_acceleration_2,
-        cart_acceleration_7,
+        -cart_acceleration_7,
         -cart_acceleration_8,
         -end_effector_acceleration_21,
         -end_effector_acceleration_22,
         -(end_effector_factor
-            * ((-end_effector_composite_inertia_35)
+            * ((-end_effector_composite_inertia_42)
                 .mul_add(
                     plate_acceleration_2,
                     end_effector_effort_4 - end_effector_response_2,
@@ -1213,165 +1279,165 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
 
 /// Mass matrix M̄ by rows.
 ///
-/// Operations: 117 additions, 149 multiplications.
+/// Operations: 122 additions, 160 multiplications.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
     let n = T::from_f64;
-    // end_effector: composite inertia (83 additions, 119 multiplications)
-    let end_effector_composite_inertia = (-q[9])
-        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
-    let end_effector_composite_inertia_2 = q[9]
-        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
-    let end_effector_composite_inertia_3 = (-q[9])
+    // end_effector: composite inertia (93 additions, 130 multiplications)
+    let end_effector_composite_inertia = q[8] * n(0.0078);
+    let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
+    let end_effector_composite_inertia_3 = q[7]
         .mul_add(
-            n(0.02713),
-            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
+            n(0.19388),
+            end_effector_composite_inertia - end_effector_composite_inertia_2,
         );
-    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
-    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
-    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[9])
+    let end_effector_composite_inertia_4 = q[7] * n(0.0078);
+    let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
+    let end_effector_composite_inertia_6 = q[8]
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[7] * end_effector_composite_inertia,
-                ),
+            n(0.18225),
+            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
         );
-    let end_effector_composite_inertia_8 = (-q[12])
+    let end_effector_composite_inertia_7 = (-q[8])
+        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9])
+        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
+    let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
+    let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
+    let end_effector_composite_inertia_12 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_3,
+            end_effector_composite_inertia_8,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[10] * end_effector_composite_inertia,
+                    end_effector_composite_inertia_6,
+                    q[10] * end_effector_composite_inertia_3,
                 ),
         );
-    let end_effector_composite_inertia_9 = (-q[15])
+    let end_effector_composite_inertia_13 = (-q[15])
         .mul_add(
-            end_effector_composite_inertia_3,
+            end_effector_composite_inertia_8,
             q[14]
                 .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[13] * end_effector_composite_inertia,
+                    end_effector_composite_inertia_6,
+                    q[13] * end_effector_composite_inertia_3,
                 ),
         );
-    let end_effector_composite_inertia_10 = (-q[9])
+    let end_effector_composite_inertia_14 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_6,
+            end_effector_composite_inertia_11,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[7] * end_effector_composite_inertia_4,
+                    end_effector_composite_inertia_10,
+                    q[7] * end_effector_composite_inertia_9,
                 ),
         );
-    let end_effector_composite_inertia_11 = (-q[12])
+    let end_effector_composite_inertia_15 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_6,
+            end_effector_composite_inertia_11,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[10] * end_effector_composite_inertia_4,
+                    end_effector_composite_inertia_10,
+                    q[10] * end_effector_composite_inertia_9,
                 ),
         );
-    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
+    let end_effector_composite_inertia_16 = end_effector_composite_inertia_14
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_11
-                .mul_add(n(0.15), end_effector_composite_inertia_9),
+            end_effector_composite_inertia_15
+                .mul_add(n(0.15), end_effector_composite_inertia_13),
         );
-    let end_effector_composite_inertia_13 = (-q[6])
+    let end_effector_composite_inertia_17 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_11,
-                    q[1] * end_effector_composite_inertia_10,
+                    end_effector_composite_inertia_15,
+                    q[1] * end_effector_composite_inertia_14,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_11,
-                        q[4] * end_effector_composite_inertia_10,
+                        end_effector_composite_inertia_15,
+                        q[4] * end_effector_composite_inertia_14,
                     )),
         );
-    let end_effector_composite_inertia_14 = end_effector_composite_inertia_12
-        + end_effector_composite_inertia_13;
-    let end_effector_composite_inertia_15 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_16 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
-    let end_effector_composite_inertia_17 = (-q[12])
+    let end_effector_composite_inertia_18 = end_effector_composite_inertia_16
+        + end_effector_composite_inertia_17;
+    let end_effector_composite_inertia_19 = q[11] * n(0.0078);
+    let end_effector_composite_inertia_20 = q[12] * n(0.027499999999999997);
+    let end_effector_composite_inertia_21 = q[10]
         .mul_add(
-            n(0.02713),
-            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
+            n(0.19388),
+            end_effector_composite_inertia_19 - end_effector_composite_inertia_20,
         );
-    let end_effector_composite_inertia_18 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_19 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_20 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_21 = (-q[12])
+    let end_effector_composite_inertia_22 = q[10] * n(0.0078);
+    let end_effector_composite_inertia_23 = q[12] * n(0.042300000000000004);
+    let end_effector_composite_inertia_24 = q[11]
         .mul_add(
-            end_effector_composite_inertia_17,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[10] * end_effector_composite_inertia_15,
-                ),
+            n(0.18225),
+            end_effector_composite_inertia_22 + end_effector_composite_inertia_23,
         );
-    let end_effector_composite_inertia_22 = (-q[15])
+    let end_effector_composite_inertia_25 = (-q[11])
+        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_26 = (-q[12])
+        .mul_add(n(0.02713), end_effector_composite_inertia_25);
+    let end_effector_composite_inertia_27 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_28 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_29 = q[11].mul_add(n(0.085), q[10] * n(0.136));
+    let end_effector_composite_inertia_30 = (-q[15])
         .mul_add(
-            end_effector_composite_inertia_17,
+            end_effector_composite_inertia_26,
             q[14]
-                .mul_add(
-                    end_effector_composite_inertia_16,
-                    q[13] * end_effector_composite_inertia_15,
-                ),
-        );
-    let end_effector_composite_inertia_23 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_20,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_19,
-                    q[7] * end_effector_composite_inertia_18,
-                ),
-        );
-    let end_effector_composite_inertia_24 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_20,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_19,
-                    q[10] * end_effector_composite_inertia_18,
-                ),
-        );
-    let end_effector_composite_inertia_25 = end_effector_composite_inertia_23
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_24
-                .mul_add(n(0.15), end_effector_composite_inertia_22),
-        );
-    let end_effector_composite_inertia_26 = (-q[6])
-        .mul_add(
-            q[2]
                 .mul_add(
                     end_effector_composite_inertia_24,
-                    q[1] * end_effector_composite_inertia_23,
+                    q[13] * end_effector_composite_inertia_21,
+                ),
+        );
+    let end_effector_composite_inertia_31 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_29,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_28,
+                    q[7] * end_effector_composite_inertia_27,
+                ),
+        );
+    let end_effector_composite_inertia_32 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_29,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_28,
+                    q[10] * end_effector_composite_inertia_27,
+                ),
+        );
+    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_32
+                .mul_add(n(0.15), end_effector_composite_inertia_30),
+        );
+    let end_effector_composite_inertia_34 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_32,
+                    q[1] * end_effector_composite_inertia_31,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_24,
-                        q[4] * end_effector_composite_inertia_23,
+                        end_effector_composite_inertia_32,
+                        q[4] * end_effector_composite_inertia_31,
                     )),
         );
-    let end_effector_composite_inertia_27 = end_effector_composite_inertia_25
-        + end_effector_composite_inertia_26;
-    let end_effector_composite_inertia_28 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_29 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_30 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_31 = q[14]
+    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
+        + end_effector_composite_inertia_34;
+    let end_effector_composite_inertia_36 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_37 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_38 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_39 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -1385,7 +1451,7 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_32 = (-q[15])
+    let end_effector_composite_inertia_40 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
@@ -1396,171 +1462,226 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_31,
+            end_effector_composite_inertia_39,
         );
-    let end_effector_composite_inertia_33 = (-q[9])
+    let end_effector_composite_inertia_41 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_30,
+            end_effector_composite_inertia_38,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_29,
-                    q[7] * end_effector_composite_inertia_28,
+                    end_effector_composite_inertia_37,
+                    q[7] * end_effector_composite_inertia_36,
                 ),
         );
-    let end_effector_composite_inertia_34 = (-q[12])
+    let end_effector_composite_inertia_42 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_30,
+            end_effector_composite_inertia_38,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_29,
-                    q[10] * end_effector_composite_inertia_28,
+                    end_effector_composite_inertia_37,
+                    q[10] * end_effector_composite_inertia_36,
                 ),
         );
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
+    let end_effector_composite_inertia_43 = end_effector_composite_inertia_41
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_34
-                .mul_add(n(0.15), end_effector_composite_inertia_32),
+            end_effector_composite_inertia_42
+                .mul_add(n(0.15), end_effector_composite_inertia_40),
         );
-    let end_effector_composite_inertia_36 = (-q[6])
+    let end_effector_composite_inertia_44 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[1] * end_effector_composite_inertia_33,
+                    end_effector_composite_inertia_42,
+                    q[1] * end_effector_composite_inertia_41,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_34,
-                        q[4] * end_effector_composite_inertia_33,
+                        end_effector_composite_inertia_42,
+                        q[4] * end_effector_composite_inertia_41,
                     )),
         );
-    let end_effector_composite_inertia_37 = end_effector_composite_inertia_35
-        + end_effector_composite_inertia_36;
-    let end_effector_composite_inertia_38 = (-q[8])
+    let end_effector_composite_inertia_45 = end_effector_composite_inertia_43
+        + end_effector_composite_inertia_44;
+    let end_effector_composite_inertia_46 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_39 = (-q[11])
+    let end_effector_composite_inertia_47 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_40 = (-((-q[14])
-        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
-        .mul_add(n(0.6), end_effector_composite_inertia_32 - n(0.20162999999999998));
-    // cart: composite inertia (31 additions, 30 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_38 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_39 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_38)
+    let end_effector_composite_inertia_48 = q[7]
         .mul_add(
-            n(0.3),
-            end_effector_composite_inertia_7 - n(0.20162999999999998)
-                - n(0.12764999999999999),
+            n(0.007750000000000002),
+            end_effector_composite_inertia_2 - end_effector_composite_inertia,
         );
-    let cart_composite_inertia_4 = (-end_effector_composite_inertia_39)
+    let end_effector_composite_inertia_49 = (-q[8])
         .mul_add(
-            n(0.15),
-            end_effector_composite_inertia_38
+            n(0.01938),
+            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
+        );
+    let end_effector_composite_inertia_50 = q[9]
+        .mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_51 = (-q[11])
+        .mul_add(
+            (-q[11])
                 .mul_add(
-                    n(0.02),
-                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                    n(0.01938),
+                    end_effector_composite_inertia_23 + end_effector_composite_inertia_22,
+                ),
+            q[10]
+                * (q[10]
+                    .mul_add(
+                        n(0.007750000000000002),
+                        end_effector_composite_inertia_20
+                            - end_effector_composite_inertia_19,
+                    )),
+        );
+    let end_effector_composite_inertia_52 = (-q[8])
+        .mul_add(
+            end_effector_composite_inertia_49,
+            end_effector_composite_inertia_46
+                .mul_add(
+                    n(0.3),
+                    q[9]
+                        .mul_add(
+                            end_effector_composite_inertia_50,
+                            q[7] * end_effector_composite_inertia_48,
+                        ),
                 ),
         );
-    let cart_composite_inertia_5 = end_effector_composite_inertia_39
+    let end_effector_composite_inertia_53 = (-end_effector_composite_inertia_46)
+        .mul_add(
+            n(0.02),
+            (-q[11])
+                .mul_add(
+                    end_effector_composite_inertia_49,
+                    end_effector_composite_inertia_47
+                        .mul_add(
+                            n(0.15),
+                            q[12]
+                                .mul_add(
+                                    end_effector_composite_inertia_50,
+                                    q[10] * end_effector_composite_inertia_48,
+                                ),
+                        ),
+                ),
+        );
+    // cart: composite inertia (26 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_46 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_47 + n(0.046);
+    let cart_composite_inertia_3 = end_effector_composite_inertia_52
+        + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_53
+        - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_47)
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_21 - n(0.20162999999999998) - n(0.03728),
+            q[12]
+                .mul_add(
+                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_25),
+                    end_effector_composite_inertia_51 + n(0.03728),
+                ),
         );
-    let cart_composite_inertia_6 = end_effector_composite_inertia_40
-        + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = end_effector_composite_inertia_40
-        + cart_composite_inertia_3;
-    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_9 = (-q[6])
+    let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_10 = cart_composite_inertia_8 + cart_composite_inertia_9;
-    let cart_composite_inertia_11 = (-q[3])
+    let cart_composite_inertia_8 = cart_composite_inertia_6 - cart_composite_inertia_7;
+    let cart_composite_inertia_9 = (-q[3])
         .mul_add(q[4] * n(5.7), q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2));
-    let cart_composite_inertia_12 = (-q[2])
+    let cart_composite_inertia_10 = q[2]
         .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
             q[1]
-                * ((-q[2])
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+                * (q[2]
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_13 = (-q[5])
+    let cart_composite_inertia_11 = q[5]
         .mul_add(
-            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
             q[4]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+                * (q[5]
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_14 = end_effector_composite_inertia_40
-        + cart_composite_inertia_8;
-    let cart_composite_inertia_15 = (q[3]
+    let cart_composite_inertia_12 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] + q[3]);
-    let cart_composite_inertia_16 = (q[6]
+    let cart_composite_inertia_13 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] + q[6]);
-    // plate: composite inertia (3 additions)
-    let plate_composite_inertia = cart_composite_inertia_12 + cart_composite_inertia_15
-        + n(1.1700000000000002) + cart_composite_inertia_13 + cart_composite_inertia_16
-        + n(0.8799999999999999) - cart_composite_inertia_14 - cart_composite_inertia_14;
     [
         [
-            plate_composite_inertia,
-            -cart_composite_inertia_10,
-            -cart_composite_inertia_11,
-            end_effector_composite_inertia_14,
-            end_effector_composite_inertia_27,
-            end_effector_composite_inertia_37,
-        ],
-        [
-            -cart_composite_inertia_10,
-            -cart_composite_inertia_8,
-            -cart_composite_inertia_2,
-            end_effector_composite_inertia_12,
-            end_effector_composite_inertia_25,
+            cart_composite_inertia_10 + cart_composite_inertia_12 + n(1.1700000000000002)
+                + cart_composite_inertia_11 + cart_composite_inertia_13
+                + n(0.8799999999999999),
+            cart_composite_inertia_8,
+            -cart_composite_inertia_9,
+            end_effector_composite_inertia_18,
             end_effector_composite_inertia_35,
+            end_effector_composite_inertia_45,
         ],
         [
-            -cart_composite_inertia_11,
+            cart_composite_inertia_8,
+            cart_composite_inertia_6,
+            -cart_composite_inertia_2,
+            end_effector_composite_inertia_16,
+            end_effector_composite_inertia_33,
+            end_effector_composite_inertia_43,
+        ],
+        [
+            -cart_composite_inertia_9,
             -cart_composite_inertia_2,
             n(5.7),
-            end_effector_composite_inertia_10,
-            end_effector_composite_inertia_23,
-            end_effector_composite_inertia_33,
-        ],
-        [
             end_effector_composite_inertia_14,
+            end_effector_composite_inertia_31,
+            end_effector_composite_inertia_41,
+        ],
+        [
+            end_effector_composite_inertia_18,
+            end_effector_composite_inertia_16,
+            end_effector_composite_inertia_14,
+            (-q[9])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[8]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[7] * end_effector_composite_inertia_3,
+                        ),
+                ),
             end_effector_composite_inertia_12,
-            end_effector_composite_inertia_10,
-            end_effector_composite_inertia_7,
-            end_effector_composite_inertia_8,
-            end_effector_composite_inertia_9,
+            end_effector_composite_inertia_13,
         ],
         [
-            end_effector_composite_inertia_27,
-            end_effector_composite_inertia_25,
-            end_effector_composite_inertia_23,
-            end_effector_composite_inertia_8,
-            end_effector_composite_inertia_21,
-            end_effector_composite_inertia_22,
-        ],
-        [
-            end_effector_composite_inertia_37,
             end_effector_composite_inertia_35,
             end_effector_composite_inertia_33,
-            end_effector_composite_inertia_9,
-            end_effector_composite_inertia_22,
-            end_effector_composite_inertia_32,
+            end_effector_composite_inertia_31,
+            end_effector_composite_inertia_12,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_24,
+                            q[10] * end_effector_composite_inertia_21,
+                        ),
+                ),
+            end_effector_composite_inertia_30,
+        ],
+        [
+            end_effector_composite_inertia_45,
+            end_effector_composite_inertia_43,
+            end_effector_composite_inertia_41,
+            end_effector_composite_inertia_13,
+            end_effector_composite_inertia_30,
+            end_effector_composite_inertia_40,
         ],
     ]
 }
@@ -1804,161 +1925,152 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
 
 /// v̄ and p̄̇ from Q, p̄ and τ, (27), (35).
 ///
-/// Operations: 266 additions, 340 multiplications, 6 divisions.
+/// Operations: 271 additions, 351 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 6]; 2] {
     let n = T::from_f64;
-    // end_effector: composite inertia (83 additions, 119 multiplications)
-    let end_effector_composite_inertia = (-q[9])
-        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
-    let end_effector_composite_inertia_2 = q[9]
-        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
-    let end_effector_composite_inertia_3 = (-q[9])
+    // end_effector: composite inertia (93 additions, 130 multiplications)
+    let end_effector_composite_inertia = q[8] * n(0.0078);
+    let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
+    let end_effector_composite_inertia_3 = q[7]
         .mul_add(
-            n(0.02713),
-            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
+            n(0.19388),
+            end_effector_composite_inertia - end_effector_composite_inertia_2,
         );
-    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
-    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
-    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[9])
+    let end_effector_composite_inertia_4 = q[7] * n(0.0078);
+    let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
+    let end_effector_composite_inertia_6 = q[8]
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[7] * end_effector_composite_inertia,
-                ),
+            n(0.18225),
+            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
         );
-    let end_effector_composite_inertia_8 = (-q[12])
+    let end_effector_composite_inertia_7 = (-q[8])
+        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9])
+        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
+    let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
+    let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
+    let end_effector_composite_inertia_12 = (-q[15])
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[10] * end_effector_composite_inertia,
-                ),
-        );
-    let end_effector_composite_inertia_9 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_3,
+            end_effector_composite_inertia_8,
             q[14]
                 .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[13] * end_effector_composite_inertia,
+                    end_effector_composite_inertia_6,
+                    q[13] * end_effector_composite_inertia_3,
                 ),
         );
-    let end_effector_composite_inertia_10 = (-q[9])
+    let end_effector_composite_inertia_13 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_6,
+            end_effector_composite_inertia_11,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[7] * end_effector_composite_inertia_4,
+                    end_effector_composite_inertia_10,
+                    q[7] * end_effector_composite_inertia_9,
                 ),
-        );
-    let end_effector_composite_inertia_11 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_6,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[10] * end_effector_composite_inertia_4,
-                ),
-        );
-    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_11
-                .mul_add(n(0.15), end_effector_composite_inertia_9),
-        );
-    let end_effector_composite_inertia_13 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_11,
-                    q[1] * end_effector_composite_inertia_10,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_11,
-                        q[4] * end_effector_composite_inertia_10,
-                    )),
         );
     let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_15 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
-    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.02713),
-            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
-        );
-    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_20 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_16,
+            end_effector_composite_inertia_11,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[10] * end_effector_composite_inertia_14,
+                    end_effector_composite_inertia_10,
+                    q[10] * end_effector_composite_inertia_9,
                 ),
         );
-    let end_effector_composite_inertia_21 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_16,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[13] * end_effector_composite_inertia_14,
-                ),
-        );
-    let end_effector_composite_inertia_22 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[7] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_23 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[10] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
+    let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_23
-                .mul_add(n(0.15), end_effector_composite_inertia_21),
+            end_effector_composite_inertia_14
+                .mul_add(n(0.15), end_effector_composite_inertia_12),
         );
-    let end_effector_composite_inertia_25 = (-q[6])
+    let end_effector_composite_inertia_16 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_23,
-                    q[1] * end_effector_composite_inertia_22,
+                    end_effector_composite_inertia_14,
+                    q[1] * end_effector_composite_inertia_13,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_23,
-                        q[4] * end_effector_composite_inertia_22,
+                        end_effector_composite_inertia_14,
+                        q[4] * end_effector_composite_inertia_13,
                     )),
         );
-    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_29 = q[14]
+    let end_effector_composite_inertia_17 = q[11] * n(0.0078);
+    let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
+    let end_effector_composite_inertia_19 = q[10]
+        .mul_add(
+            n(0.19388),
+            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
+        );
+    let end_effector_composite_inertia_20 = q[10] * n(0.0078);
+    let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
+    let end_effector_composite_inertia_22 = q[11]
+        .mul_add(
+            n(0.18225),
+            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
+        );
+    let end_effector_composite_inertia_23 = (-q[11])
+        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12])
+        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+    let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
+    let end_effector_composite_inertia_28 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_24,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_22,
+                    q[13] * end_effector_composite_inertia_19,
+                ),
+        );
+    let end_effector_composite_inertia_29 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[7] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_30 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[10] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_30
+                .mul_add(n(0.15), end_effector_composite_inertia_28),
+        );
+    let end_effector_composite_inertia_32 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_30,
+                    q[1] * end_effector_composite_inertia_29,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_30,
+                        q[4] * end_effector_composite_inertia_29,
+                    )),
+        );
+    let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_36 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -1972,7 +2084,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_30 = (-q[15])
+    let end_effector_composite_inertia_37 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
@@ -1983,352 +2095,430 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_29,
+            end_effector_composite_inertia_36,
         );
-    let end_effector_composite_inertia_31 = (-q[9])
+    let end_effector_composite_inertia_38 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[7] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[7] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_32 = (-q[12])
+    let end_effector_composite_inertia_39 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[10] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[10] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
+    let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_32
-                .mul_add(n(0.15), end_effector_composite_inertia_30),
+            end_effector_composite_inertia_39
+                .mul_add(n(0.15), end_effector_composite_inertia_37),
         );
-    let end_effector_composite_inertia_34 = (-q[6])
+    let end_effector_composite_inertia_41 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_32,
-                    q[1] * end_effector_composite_inertia_31,
+                    end_effector_composite_inertia_39,
+                    q[1] * end_effector_composite_inertia_38,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_32,
-                        q[4] * end_effector_composite_inertia_31,
+                        end_effector_composite_inertia_39,
+                        q[4] * end_effector_composite_inertia_38,
                     )),
         );
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
-        + end_effector_composite_inertia_34;
-    let end_effector_composite_inertia_36 = (-q[8])
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
+        + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_37 = (-q[11])
+    let end_effector_composite_inertia_44 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_38 = (-((-q[14])
-        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
-        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
-    // cart: composite inertia (31 additions, 30 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
+    let end_effector_composite_inertia_45 = q[7]
         .mul_add(
-            n(0.3),
-            end_effector_composite_inertia_7 - n(0.20162999999999998)
-                - n(0.12764999999999999),
+            n(0.007750000000000002),
+            end_effector_composite_inertia_2 - end_effector_composite_inertia,
         );
-    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+    let end_effector_composite_inertia_46 = (-q[8])
         .mul_add(
-            n(0.15),
-            end_effector_composite_inertia_36
+            n(0.01938),
+            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
+        );
+    let end_effector_composite_inertia_47 = q[9]
+        .mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11])
+        .mul_add(
+            (-q[11])
                 .mul_add(
-                    n(0.02),
-                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                    n(0.01938),
+                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
+                ),
+            q[10]
+                * (q[10]
+                    .mul_add(
+                        n(0.007750000000000002),
+                        end_effector_composite_inertia_18
+                            - end_effector_composite_inertia_17,
+                    )),
+        );
+    let end_effector_composite_inertia_49 = (-q[8])
+        .mul_add(
+            end_effector_composite_inertia_46,
+            end_effector_composite_inertia_43
+                .mul_add(
+                    n(0.3),
+                    q[9]
+                        .mul_add(
+                            end_effector_composite_inertia_47,
+                            q[7] * end_effector_composite_inertia_45,
+                        ),
                 ),
         );
-    let cart_composite_inertia_5 = end_effector_composite_inertia_37
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
+        .mul_add(
+            n(0.02),
+            (-q[11])
+                .mul_add(
+                    end_effector_composite_inertia_46,
+                    end_effector_composite_inertia_44
+                        .mul_add(
+                            n(0.15),
+                            q[12]
+                                .mul_add(
+                                    end_effector_composite_inertia_47,
+                                    q[10] * end_effector_composite_inertia_45,
+                                ),
+                        ),
+                ),
+        );
+    // cart: composite inertia (26 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49
+        + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50
+        - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
+            q[12]
+                .mul_add(
+                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+                    end_effector_composite_inertia_48 + n(0.03728),
+                ),
         );
-    let cart_composite_inertia_6 = end_effector_composite_inertia_38
-        + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = end_effector_composite_inertia_38
-        + cart_composite_inertia_3;
-    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_9 = (-q[6])
+    let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_10 = (-q[2])
+    let cart_composite_inertia_8 = q[2]
         .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
             q[1]
-                * ((-q[2])
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+                * (q[2]
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_11 = (-q[5])
+    let cart_composite_inertia_9 = q[5]
         .mul_add(
-            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
             q[4]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+                * (q[5]
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_12 = end_effector_composite_inertia_38
-        + cart_composite_inertia_8;
-    let cart_composite_inertia_13 = (q[3]
+    let cart_composite_inertia_10 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] + q[3]);
-    let cart_composite_inertia_14 = (q[6]
+    let cart_composite_inertia_11 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] + q[6]);
-    // plate: composite inertia (3 additions)
-    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
-        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
-        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
-    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
-    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
-    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
+    let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
         .mul_add(
             end_effector_factor_2,
-            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_24,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_22,
+                            q[10] * end_effector_composite_inertia_19,
+                        ),
+                ),
         );
-    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
-    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
-    let end_effector_factor_9 = (-q[3])
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_2,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[10] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_5 = (-end_effector_composite_inertia_38)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_40)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
+    let end_effector_factor_7 = (-end_effector_composite_inertia_42)
+        .mul_add(
+            end_effector_factor_2,
+            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
+        );
+    let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_8,
+            (-q[9])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[8]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[7] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
+    let end_effector_factor_11 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_35
+            end_effector_composite_inertia_42
                 .mul_add(
-                    end_effector_factor_8,
+                    end_effector_factor_10,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
-    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
-    let end_effector_factor_12 = n(1.0)
-        / ((-end_effector_composite_inertia_21)
-            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
-    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
-    let end_effector_factor_14 = (-end_effector_factor_4)
+    let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
+    let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
         .mul_add(
             end_effector_factor_13,
-            (-end_effector_composite_inertia_31)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
+            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+                + cart_composite_inertia_9 + cart_composite_inertia_11
+                + n(0.8799999999999999),
         );
-    let end_effector_factor_15 = (-end_effector_factor_5)
+    let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
+    let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
+    let end_effector_factor_17 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_33)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_38)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
         );
-    let end_effector_factor_16 = (-end_effector_factor_6)
+    let end_effector_factor_18 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_35)
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_40)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+        );
+    let end_effector_factor_19 = (-end_effector_factor_7)
+        .mul_add(
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_42)
                 .mul_add(
-                    end_effector_factor_7,
-                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
+                    end_effector_factor_8,
+                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
                 ),
         );
-    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
-    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
-    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
-    let end_effector_factor_20 = n(1.0)
-        / ((-end_effector_factor_3)
-            .mul_add(
-                end_effector_factor_13,
-                (-end_effector_composite_inertia_9)
-                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
-            ));
-    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
-    let end_effector_factor_22 = end_effector_factor_15
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_5
-                .mul_add(
-                    end_effector_factor_17,
-                    end_effector_composite_inertia_33
-                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_23 = end_effector_factor_16
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
-        );
-    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
-    let end_effector_factor_25 = end_effector_factor_16
+    let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
+    let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
+    let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
+    let end_effector_factor_23 = n(1.0)
+        / ((-end_effector_factor_4)
+            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
+    let end_effector_factor_25 = end_effector_factor_18
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_18,
-                    end_effector_composite_inertia_35
+                    end_effector_factor_20,
+                    end_effector_composite_inertia_40
+                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
+                ),
+        );
+    let end_effector_factor_26 = end_effector_factor_19
+        .mul_add(
+            end_effector_factor_24,
+            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
+        );
+    let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_28 = (-end_effector_factor_19)
+        .mul_add(
+            end_effector_factor_27,
+            (-end_effector_factor_7)
+                .mul_add(
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_42)
                         .mul_add(
-                            end_effector_factor_10,
-                            cart_composite_inertia_8 + cart_composite_inertia_9,
+                            end_effector_factor_12,
+                            cart_composite_inertia_6 - cart_composite_inertia_7,
                         ),
                 ),
         );
-    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
+    let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_13)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_7, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_21)
+    let end_effector_load_2 = (-end_effector_factor_16)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_2,
-            (-end_effector_factor_17)
-                .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[2])),
+            (-end_effector_factor_20)
+                .mul_add(
+                    end_effector_load,
+                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
+                ),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_14
+        / (end_effector_factor_17
             .mul_add(
-                end_effector_factor_21,
-                end_effector_factor_4
+                end_effector_factor_24,
+                end_effector_factor_5
                     .mul_add(
-                        end_effector_factor_17,
-                        end_effector_composite_inertia_31
-                            .mul_add(end_effector_factor_8, -n(5.7)),
+                        end_effector_factor_20,
+                        end_effector_composite_inertia_38
+                            .mul_add(end_effector_factor_10, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_22 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_22)
+    let cart_factor_2 = end_effector_factor_25 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            end_effector_factor_15
-                .mul_add(
-                    end_effector_factor_24,
-                    end_effector_factor_5
-                        .mul_add(
-                            end_effector_factor_18,
-                            end_effector_composite_inertia_33
-                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
-                        ),
-                ),
-        );
-    let cart_factor_4 = (-end_effector_factor_23)
-        .mul_add(cart_factor_2, end_effector_factor_25);
-    let cart_factor_5 = end_effector_factor_23 * cart_factor;
-    let cart_factor_6 = (-end_effector_factor_16)
-        .mul_add(
-            end_effector_factor_26,
+            end_effector_factor_27,
             (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_19,
-                    (-end_effector_composite_inertia_35)
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_40)
                         .mul_add(
-                            end_effector_factor_11,
-                            end_effector_factor_23
-                                .mul_add(cart_factor_5, plate_composite_inertia),
+                            end_effector_factor_12,
+                            end_effector_factor_25
+                                .mul_add(cart_factor_2, cart_composite_inertia_6),
                         ),
                 ),
         );
-    let cart_factor_7 = n(1.0) / cart_factor_3;
-    let cart_factor_8 = cart_factor_4 * cart_factor_7;
+    let cart_factor_4 = end_effector_factor_26
+        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_5 = end_effector_factor_26 * cart_factor;
+    let cart_factor_6 = n(1.0) / cart_factor_3;
+    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_8 = (-cart_factor_4)
+        .mul_add(
+            cart_factor_7,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_factor_29,
+                    (-end_effector_factor_7)
+                        .mul_add(
+                            end_effector_factor_22,
+                            end_effector_factor_26
+                                .mul_add(cart_factor_5, end_effector_factor_14),
+                        ),
+                ),
+        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_18)
+                    (-end_effector_factor_21)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_10, p[1]),
+                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
                         ),
                 ),
         );
     let cart_load_2 = (-cart_factor_5)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_26)
+            (-end_effector_factor_29)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_19)
+                    (-end_effector_factor_22)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_11, p[0]),
+                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
-    let plate_speed = (n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
-        * ((-cart_factor_8).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / cart_factor_8)
+        * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
-    let cart_speed = cart_factor_7 * (cart_factor_4.mul_add(plate_speed, cart_load));
+    let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * ((-end_effector_factor_22)
+        * (end_effector_factor_26
             .mul_add(
-                cart_speed,
-                end_effector_factor_23.mul_add(plate_speed, end_effector_load_3),
+                plate_speed,
+                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
             ));
     // cart: momentum (6 additions, 10 multiplications)
     let cart_momentum = q[6] * plate_speed;
     let cart_momentum_2 = q[3] * plate_speed;
     let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
-    let cart_momentum_4 = plate_speed - cart_speed;
+    let cart_momentum_4 = plate_speed + cart_speed;
     let cart_momentum_5 = (-q[4])
         .mul_add(cart_momentum_2, q[1].mul_add(cart_momentum, cart_speed_2));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_speed = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_speed = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_speed,
-                end_effector_factor_15
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_speed,
-                        end_effector_factor_14.mul_add(cart_speed_2, end_effector_load_2),
+                        end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2),
                     ),
             ));
     let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            cart_speed,
-            (-end_effector_factor_4)
+            cart_speed_2,
+            end_effector_factor_7
                 .mul_add(
-                    cart_speed_2,
+                    plate_speed,
                     end_effector_factor_6
-                        .mul_add(plate_speed, end_effector_factor_3 * end_effector_speed),
+                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
                 ),
         );
-    let end_effector_speed_2 = end_effector_factor_12
+    let end_effector_speed_2 = end_effector_factor_15
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_33)
+    let end_effector_response_2 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_speed,
-            (-end_effector_composite_inertia_31)
+            cart_speed_2,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_speed_2,
-                    end_effector_composite_inertia_9
+                    cart_speed,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_speed,
-                            end_effector_composite_inertia_21 * end_effector_speed_2,
+                            end_effector_composite_inertia_28 * end_effector_speed_2,
                         ),
                 ),
         );
     let end_effector_speed_3 = end_effector_factor
-        * ((-end_effector_composite_inertia_35)
+        * ((-end_effector_composite_inertia_42)
             .mul_add(plate_speed, p[5] - end_effector_response_2));
     // end_effector: momentum (23 additions, 32 multiplications)
     let end_effector_momentum = (-cart_momentum_4).mul_add(n(0.02), cart_momentum_5);
@@ -2573,7 +2763,7 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
     [
         [
             plate_speed,
-            -cart_speed,
+            cart_speed,
             -cart_speed_2,
             end_effector_speed,
             end_effector_speed_2,
@@ -2743,161 +2933,152 @@ pub fn momenta<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
 
 /// v̄ = M̄⁻¹ p̄.
 ///
-/// Operations: 182 additions, 235 multiplications, 6 divisions.
+/// Operations: 187 additions, 246 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
     let n = T::from_f64;
-    // end_effector: composite inertia (83 additions, 119 multiplications)
-    let end_effector_composite_inertia = (-q[9])
-        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
-    let end_effector_composite_inertia_2 = q[9]
-        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
-    let end_effector_composite_inertia_3 = (-q[9])
+    // end_effector: composite inertia (93 additions, 130 multiplications)
+    let end_effector_composite_inertia = q[8] * n(0.0078);
+    let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
+    let end_effector_composite_inertia_3 = q[7]
         .mul_add(
-            n(0.02713),
-            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
+            n(0.19388),
+            end_effector_composite_inertia - end_effector_composite_inertia_2,
         );
-    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
-    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
-    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[9])
+    let end_effector_composite_inertia_4 = q[7] * n(0.0078);
+    let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
+    let end_effector_composite_inertia_6 = q[8]
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[7] * end_effector_composite_inertia,
-                ),
+            n(0.18225),
+            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
         );
-    let end_effector_composite_inertia_8 = (-q[12])
+    let end_effector_composite_inertia_7 = (-q[8])
+        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9])
+        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
+    let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
+    let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
+    let end_effector_composite_inertia_12 = (-q[15])
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[10] * end_effector_composite_inertia,
-                ),
-        );
-    let end_effector_composite_inertia_9 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_3,
+            end_effector_composite_inertia_8,
             q[14]
                 .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[13] * end_effector_composite_inertia,
+                    end_effector_composite_inertia_6,
+                    q[13] * end_effector_composite_inertia_3,
                 ),
         );
-    let end_effector_composite_inertia_10 = (-q[9])
+    let end_effector_composite_inertia_13 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_6,
+            end_effector_composite_inertia_11,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[7] * end_effector_composite_inertia_4,
+                    end_effector_composite_inertia_10,
+                    q[7] * end_effector_composite_inertia_9,
                 ),
-        );
-    let end_effector_composite_inertia_11 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_6,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[10] * end_effector_composite_inertia_4,
-                ),
-        );
-    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_11
-                .mul_add(n(0.15), end_effector_composite_inertia_9),
-        );
-    let end_effector_composite_inertia_13 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_11,
-                    q[1] * end_effector_composite_inertia_10,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_11,
-                        q[4] * end_effector_composite_inertia_10,
-                    )),
         );
     let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_15 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
-    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.02713),
-            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
-        );
-    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_20 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_16,
+            end_effector_composite_inertia_11,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[10] * end_effector_composite_inertia_14,
+                    end_effector_composite_inertia_10,
+                    q[10] * end_effector_composite_inertia_9,
                 ),
         );
-    let end_effector_composite_inertia_21 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_16,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[13] * end_effector_composite_inertia_14,
-                ),
-        );
-    let end_effector_composite_inertia_22 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[7] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_23 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[10] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
+    let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_23
-                .mul_add(n(0.15), end_effector_composite_inertia_21),
+            end_effector_composite_inertia_14
+                .mul_add(n(0.15), end_effector_composite_inertia_12),
         );
-    let end_effector_composite_inertia_25 = (-q[6])
+    let end_effector_composite_inertia_16 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_23,
-                    q[1] * end_effector_composite_inertia_22,
+                    end_effector_composite_inertia_14,
+                    q[1] * end_effector_composite_inertia_13,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_23,
-                        q[4] * end_effector_composite_inertia_22,
+                        end_effector_composite_inertia_14,
+                        q[4] * end_effector_composite_inertia_13,
                     )),
         );
-    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_29 = q[14]
+    let end_effector_composite_inertia_17 = q[11] * n(0.0078);
+    let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
+    let end_effector_composite_inertia_19 = q[10]
+        .mul_add(
+            n(0.19388),
+            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
+        );
+    let end_effector_composite_inertia_20 = q[10] * n(0.0078);
+    let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
+    let end_effector_composite_inertia_22 = q[11]
+        .mul_add(
+            n(0.18225),
+            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
+        );
+    let end_effector_composite_inertia_23 = (-q[11])
+        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12])
+        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+    let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
+    let end_effector_composite_inertia_28 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_24,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_22,
+                    q[13] * end_effector_composite_inertia_19,
+                ),
+        );
+    let end_effector_composite_inertia_29 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[7] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_30 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[10] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_30
+                .mul_add(n(0.15), end_effector_composite_inertia_28),
+        );
+    let end_effector_composite_inertia_32 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_30,
+                    q[1] * end_effector_composite_inertia_29,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_30,
+                        q[4] * end_effector_composite_inertia_29,
+                    )),
+        );
+    let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_36 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -2911,7 +3092,7 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_30 = (-q[15])
+    let end_effector_composite_inertia_37 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
@@ -2922,512 +3103,581 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_29,
+            end_effector_composite_inertia_36,
         );
-    let end_effector_composite_inertia_31 = (-q[9])
+    let end_effector_composite_inertia_38 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[7] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[7] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_32 = (-q[12])
+    let end_effector_composite_inertia_39 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[10] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[10] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
+    let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_32
-                .mul_add(n(0.15), end_effector_composite_inertia_30),
+            end_effector_composite_inertia_39
+                .mul_add(n(0.15), end_effector_composite_inertia_37),
         );
-    let end_effector_composite_inertia_34 = (-q[6])
+    let end_effector_composite_inertia_41 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_32,
-                    q[1] * end_effector_composite_inertia_31,
+                    end_effector_composite_inertia_39,
+                    q[1] * end_effector_composite_inertia_38,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_32,
-                        q[4] * end_effector_composite_inertia_31,
+                        end_effector_composite_inertia_39,
+                        q[4] * end_effector_composite_inertia_38,
                     )),
         );
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
-        + end_effector_composite_inertia_34;
-    let end_effector_composite_inertia_36 = (-q[8])
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
+        + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_37 = (-q[11])
+    let end_effector_composite_inertia_44 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_38 = (-((-q[14])
-        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
-        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
-    // cart: composite inertia (31 additions, 30 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
+    let end_effector_composite_inertia_45 = q[7]
         .mul_add(
-            n(0.3),
-            end_effector_composite_inertia_7 - n(0.20162999999999998)
-                - n(0.12764999999999999),
+            n(0.007750000000000002),
+            end_effector_composite_inertia_2 - end_effector_composite_inertia,
         );
-    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+    let end_effector_composite_inertia_46 = (-q[8])
         .mul_add(
-            n(0.15),
-            end_effector_composite_inertia_36
+            n(0.01938),
+            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
+        );
+    let end_effector_composite_inertia_47 = q[9]
+        .mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11])
+        .mul_add(
+            (-q[11])
                 .mul_add(
-                    n(0.02),
-                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                    n(0.01938),
+                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
+                ),
+            q[10]
+                * (q[10]
+                    .mul_add(
+                        n(0.007750000000000002),
+                        end_effector_composite_inertia_18
+                            - end_effector_composite_inertia_17,
+                    )),
+        );
+    let end_effector_composite_inertia_49 = (-q[8])
+        .mul_add(
+            end_effector_composite_inertia_46,
+            end_effector_composite_inertia_43
+                .mul_add(
+                    n(0.3),
+                    q[9]
+                        .mul_add(
+                            end_effector_composite_inertia_47,
+                            q[7] * end_effector_composite_inertia_45,
+                        ),
                 ),
         );
-    let cart_composite_inertia_5 = end_effector_composite_inertia_37
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
+        .mul_add(
+            n(0.02),
+            (-q[11])
+                .mul_add(
+                    end_effector_composite_inertia_46,
+                    end_effector_composite_inertia_44
+                        .mul_add(
+                            n(0.15),
+                            q[12]
+                                .mul_add(
+                                    end_effector_composite_inertia_47,
+                                    q[10] * end_effector_composite_inertia_45,
+                                ),
+                        ),
+                ),
+        );
+    // cart: composite inertia (26 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49
+        + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50
+        - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
+            q[12]
+                .mul_add(
+                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+                    end_effector_composite_inertia_48 + n(0.03728),
+                ),
         );
-    let cart_composite_inertia_6 = end_effector_composite_inertia_38
-        + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = end_effector_composite_inertia_38
-        + cart_composite_inertia_3;
-    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_9 = (-q[6])
+    let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_10 = (-q[2])
+    let cart_composite_inertia_8 = q[2]
         .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
             q[1]
-                * ((-q[2])
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+                * (q[2]
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_11 = (-q[5])
+    let cart_composite_inertia_9 = q[5]
         .mul_add(
-            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
             q[4]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+                * (q[5]
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_12 = end_effector_composite_inertia_38
-        + cart_composite_inertia_8;
-    let cart_composite_inertia_13 = (q[3]
+    let cart_composite_inertia_10 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] + q[3]);
-    let cart_composite_inertia_14 = (q[6]
+    let cart_composite_inertia_11 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] + q[6]);
-    // plate: composite inertia (3 additions)
-    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
-        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
-        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
-    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
-    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
-    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
+    let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
         .mul_add(
             end_effector_factor_2,
-            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_24,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_22,
+                            q[10] * end_effector_composite_inertia_19,
+                        ),
+                ),
         );
-    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
-    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
-    let end_effector_factor_9 = (-q[3])
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_2,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[10] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_5 = (-end_effector_composite_inertia_38)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_40)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
+    let end_effector_factor_7 = (-end_effector_composite_inertia_42)
+        .mul_add(
+            end_effector_factor_2,
+            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
+        );
+    let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_8,
+            (-q[9])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[8]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[7] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
+    let end_effector_factor_11 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_35
+            end_effector_composite_inertia_42
                 .mul_add(
-                    end_effector_factor_8,
+                    end_effector_factor_10,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
-    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
-    let end_effector_factor_12 = n(1.0)
-        / ((-end_effector_composite_inertia_21)
-            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
-    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
-    let end_effector_factor_14 = (-end_effector_factor_4)
+    let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
+    let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
         .mul_add(
             end_effector_factor_13,
-            (-end_effector_composite_inertia_31)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
+            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+                + cart_composite_inertia_9 + cart_composite_inertia_11
+                + n(0.8799999999999999),
         );
-    let end_effector_factor_15 = (-end_effector_factor_5)
+    let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
+    let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
+    let end_effector_factor_17 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_33)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_38)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
         );
-    let end_effector_factor_16 = (-end_effector_factor_6)
+    let end_effector_factor_18 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_35)
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_40)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+        );
+    let end_effector_factor_19 = (-end_effector_factor_7)
+        .mul_add(
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_42)
                 .mul_add(
-                    end_effector_factor_7,
-                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
+                    end_effector_factor_8,
+                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
                 ),
         );
-    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
-    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
-    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
-    let end_effector_factor_20 = n(1.0)
-        / ((-end_effector_factor_3)
-            .mul_add(
-                end_effector_factor_13,
-                (-end_effector_composite_inertia_9)
-                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
-            ));
-    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
-    let end_effector_factor_22 = end_effector_factor_15
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_5
-                .mul_add(
-                    end_effector_factor_17,
-                    end_effector_composite_inertia_33
-                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_23 = end_effector_factor_16
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
-        );
-    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
-    let end_effector_factor_25 = end_effector_factor_16
+    let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
+    let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
+    let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
+    let end_effector_factor_23 = n(1.0)
+        / ((-end_effector_factor_4)
+            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
+    let end_effector_factor_25 = end_effector_factor_18
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_18,
-                    end_effector_composite_inertia_35
+                    end_effector_factor_20,
+                    end_effector_composite_inertia_40
+                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
+                ),
+        );
+    let end_effector_factor_26 = end_effector_factor_19
+        .mul_add(
+            end_effector_factor_24,
+            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
+        );
+    let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_28 = (-end_effector_factor_19)
+        .mul_add(
+            end_effector_factor_27,
+            (-end_effector_factor_7)
+                .mul_add(
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_42)
                         .mul_add(
-                            end_effector_factor_10,
-                            cart_composite_inertia_8 + cart_composite_inertia_9,
+                            end_effector_factor_12,
+                            cart_composite_inertia_6 - cart_composite_inertia_7,
                         ),
                 ),
         );
-    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
+    let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_13)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_7, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_21)
+    let end_effector_load_2 = (-end_effector_factor_16)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_2,
-            (-end_effector_factor_17)
-                .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[2])),
+            (-end_effector_factor_20)
+                .mul_add(
+                    end_effector_load,
+                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
+                ),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_14
+        / (end_effector_factor_17
             .mul_add(
-                end_effector_factor_21,
-                end_effector_factor_4
+                end_effector_factor_24,
+                end_effector_factor_5
                     .mul_add(
-                        end_effector_factor_17,
-                        end_effector_composite_inertia_31
-                            .mul_add(end_effector_factor_8, -n(5.7)),
+                        end_effector_factor_20,
+                        end_effector_composite_inertia_38
+                            .mul_add(end_effector_factor_10, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_22 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_22)
+    let cart_factor_2 = end_effector_factor_25 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            end_effector_factor_15
-                .mul_add(
-                    end_effector_factor_24,
-                    end_effector_factor_5
-                        .mul_add(
-                            end_effector_factor_18,
-                            end_effector_composite_inertia_33
-                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
-                        ),
-                ),
-        );
-    let cart_factor_4 = (-end_effector_factor_23)
-        .mul_add(cart_factor_2, end_effector_factor_25);
-    let cart_factor_5 = end_effector_factor_23 * cart_factor;
-    let cart_factor_6 = (-end_effector_factor_16)
-        .mul_add(
-            end_effector_factor_26,
+            end_effector_factor_27,
             (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_19,
-                    (-end_effector_composite_inertia_35)
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_40)
                         .mul_add(
-                            end_effector_factor_11,
-                            end_effector_factor_23
-                                .mul_add(cart_factor_5, plate_composite_inertia),
+                            end_effector_factor_12,
+                            end_effector_factor_25
+                                .mul_add(cart_factor_2, cart_composite_inertia_6),
                         ),
                 ),
         );
-    let cart_factor_7 = n(1.0) / cart_factor_3;
-    let cart_factor_8 = cart_factor_4 * cart_factor_7;
+    let cart_factor_4 = end_effector_factor_26
+        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_5 = end_effector_factor_26 * cart_factor;
+    let cart_factor_6 = n(1.0) / cart_factor_3;
+    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_8 = (-cart_factor_4)
+        .mul_add(
+            cart_factor_7,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_factor_29,
+                    (-end_effector_factor_7)
+                        .mul_add(
+                            end_effector_factor_22,
+                            end_effector_factor_26
+                                .mul_add(cart_factor_5, end_effector_factor_14),
+                        ),
+                ),
+        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_18)
+                    (-end_effector_factor_21)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_10, p[1]),
+                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
                         ),
                 ),
         );
     let cart_load_2 = (-cart_factor_5)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_26)
+            (-end_effector_factor_29)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_19)
+                    (-end_effector_factor_22)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_11, p[0]),
+                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
-    let plate_speed = (n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
-        * ((-cart_factor_8).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / cart_factor_8)
+        * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
-    let cart_speed = cart_factor_7 * (cart_factor_4.mul_add(plate_speed, cart_load));
+    let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_speed,
-                end_effector_factor_23.mul_add(plate_speed, end_effector_load_3),
-            ));
-    // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_speed = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_speed,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
+            ));
+    // end_effector: response (12 additions, 15 multiplications)
+    let end_effector_speed = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_speed,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_speed,
-                        end_effector_factor_14.mul_add(cart_speed_2, end_effector_load_2),
+                        end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2),
                     ),
             ));
     let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            cart_speed,
-            (-end_effector_factor_4)
+            cart_speed_2,
+            end_effector_factor_7
                 .mul_add(
-                    cart_speed_2,
+                    plate_speed,
                     end_effector_factor_6
-                        .mul_add(plate_speed, end_effector_factor_3 * end_effector_speed),
+                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
                 ),
         );
-    let end_effector_speed_2 = end_effector_factor_12
+    let end_effector_speed_2 = end_effector_factor_15
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_33)
+    let end_effector_response_2 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_speed,
-            (-end_effector_composite_inertia_31)
+            cart_speed_2,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_speed_2,
-                    end_effector_composite_inertia_9
+                    cart_speed,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_speed,
-                            end_effector_composite_inertia_21 * end_effector_speed_2,
+                            end_effector_composite_inertia_28 * end_effector_speed_2,
                         ),
                 ),
         );
     [
         plate_speed,
-        -cart_speed,
+        cart_speed,
         -cart_speed_2,
         end_effector_speed,
         end_effector_speed_2,
         end_effector_factor
-            * ((-end_effector_composite_inertia_35)
+            * ((-end_effector_composite_inertia_42)
                 .mul_add(plate_speed, p[5] - end_effector_response_2)),
     ]
 }
 
 /// H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.
 ///
-/// Operations: 190 additions, 243 multiplications, 6 divisions.
+/// Operations: 197 additions, 257 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
     let n = T::from_f64;
-    // end_effector: composite inertia (83 additions, 119 multiplications)
-    let end_effector_composite_inertia = (-q[9])
-        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
-    let end_effector_composite_inertia_2 = q[9]
-        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
-    let end_effector_composite_inertia_3 = (-q[9])
+    // end_effector: composite inertia (95 additions, 133 multiplications)
+    let end_effector_composite_inertia = q[8] * n(0.0078);
+    let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
+    let end_effector_composite_inertia_3 = q[7]
         .mul_add(
-            n(0.02713),
-            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
+            n(0.19388),
+            end_effector_composite_inertia - end_effector_composite_inertia_2,
         );
-    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
-    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
-    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[9])
+    let end_effector_composite_inertia_4 = q[7] * n(0.0078);
+    let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
+    let end_effector_composite_inertia_6 = q[8]
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[7] * end_effector_composite_inertia,
-                ),
+            n(0.18225),
+            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
         );
-    let end_effector_composite_inertia_8 = (-q[12])
+    let end_effector_composite_inertia_7 = (-q[8])
+        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9])
+        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
+    let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
+    let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
+    let end_effector_composite_inertia_12 = (-q[15])
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[10] * end_effector_composite_inertia,
-                ),
-        );
-    let end_effector_composite_inertia_9 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_3,
+            end_effector_composite_inertia_8,
             q[14]
                 .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[13] * end_effector_composite_inertia,
+                    end_effector_composite_inertia_6,
+                    q[13] * end_effector_composite_inertia_3,
                 ),
         );
-    let end_effector_composite_inertia_10 = (-q[9])
+    let end_effector_composite_inertia_13 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_6,
+            end_effector_composite_inertia_11,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[7] * end_effector_composite_inertia_4,
+                    end_effector_composite_inertia_10,
+                    q[7] * end_effector_composite_inertia_9,
                 ),
-        );
-    let end_effector_composite_inertia_11 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_6,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[10] * end_effector_composite_inertia_4,
-                ),
-        );
-    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_11
-                .mul_add(n(0.15), end_effector_composite_inertia_9),
-        );
-    let end_effector_composite_inertia_13 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_11,
-                    q[1] * end_effector_composite_inertia_10,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_11,
-                        q[4] * end_effector_composite_inertia_10,
-                    )),
         );
     let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_15 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
-    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.02713),
-            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
-        );
-    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_20 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_16,
+            end_effector_composite_inertia_11,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[10] * end_effector_composite_inertia_14,
+                    end_effector_composite_inertia_10,
+                    q[10] * end_effector_composite_inertia_9,
                 ),
         );
-    let end_effector_composite_inertia_21 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_16,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[13] * end_effector_composite_inertia_14,
-                ),
-        );
-    let end_effector_composite_inertia_22 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[7] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_23 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[10] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
+    let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_23
-                .mul_add(n(0.15), end_effector_composite_inertia_21),
+            end_effector_composite_inertia_14
+                .mul_add(n(0.15), end_effector_composite_inertia_12),
         );
-    let end_effector_composite_inertia_25 = (-q[6])
+    let end_effector_composite_inertia_16 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_23,
-                    q[1] * end_effector_composite_inertia_22,
+                    end_effector_composite_inertia_14,
+                    q[1] * end_effector_composite_inertia_13,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_23,
-                        q[4] * end_effector_composite_inertia_22,
+                        end_effector_composite_inertia_14,
+                        q[4] * end_effector_composite_inertia_13,
                     )),
         );
-    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_29 = q[14]
+    let end_effector_composite_inertia_17 = q[11] * n(0.0078);
+    let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
+    let end_effector_composite_inertia_19 = q[10]
+        .mul_add(
+            n(0.19388),
+            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
+        );
+    let end_effector_composite_inertia_20 = q[10] * n(0.0078);
+    let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
+    let end_effector_composite_inertia_22 = q[11]
+        .mul_add(
+            n(0.18225),
+            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
+        );
+    let end_effector_composite_inertia_23 = (-q[11])
+        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12])
+        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+    let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
+    let end_effector_composite_inertia_28 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_24,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_22,
+                    q[13] * end_effector_composite_inertia_19,
+                ),
+        );
+    let end_effector_composite_inertia_29 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[7] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_30 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[10] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_30
+                .mul_add(n(0.15), end_effector_composite_inertia_28),
+        );
+    let end_effector_composite_inertia_32 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_30,
+                    q[1] * end_effector_composite_inertia_29,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_30,
+                        q[4] * end_effector_composite_inertia_29,
+                    )),
+        );
+    let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_36 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -3441,7 +3691,7 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_30 = (-q[15])
+    let end_effector_composite_inertia_37 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
@@ -3452,364 +3702,444 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_29,
+            end_effector_composite_inertia_36,
         );
-    let end_effector_composite_inertia_31 = (-q[9])
+    let end_effector_composite_inertia_38 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[7] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[7] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_32 = (-q[12])
+    let end_effector_composite_inertia_39 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[10] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[10] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
+    let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_32
-                .mul_add(n(0.15), end_effector_composite_inertia_30),
+            end_effector_composite_inertia_39
+                .mul_add(n(0.15), end_effector_composite_inertia_37),
         );
-    let end_effector_composite_inertia_34 = (-q[6])
+    let end_effector_composite_inertia_41 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_32,
-                    q[1] * end_effector_composite_inertia_31,
+                    end_effector_composite_inertia_39,
+                    q[1] * end_effector_composite_inertia_38,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_32,
-                        q[4] * end_effector_composite_inertia_31,
+                        end_effector_composite_inertia_39,
+                        q[4] * end_effector_composite_inertia_38,
                     )),
         );
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
-        + end_effector_composite_inertia_34;
-    let end_effector_composite_inertia_36 = (-q[8])
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
+        + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_37 = (-q[11])
+    let end_effector_composite_inertia_44 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_38 = (-q[14])
-        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)));
-    let end_effector_composite_inertia_39 = (-end_effector_composite_inertia_38)
-        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
-    // cart: composite inertia (32 additions, 30 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
+    let end_effector_composite_inertia_45 = q[7]
         .mul_add(
-            n(0.3),
-            end_effector_composite_inertia_7 - n(0.20162999999999998)
-                - n(0.12764999999999999),
+            n(0.007750000000000002),
+            end_effector_composite_inertia_2 - end_effector_composite_inertia,
         );
-    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
+    let end_effector_composite_inertia_46 = (-q[8])
         .mul_add(
-            n(0.15),
-            end_effector_composite_inertia_36
+            n(0.01938),
+            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
+        );
+    let end_effector_composite_inertia_47 = q[9]
+        .mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11])
+        .mul_add(
+            (-q[11])
                 .mul_add(
-                    n(0.02),
-                    end_effector_composite_inertia_8 + n(0.002300000000000001),
+                    n(0.01938),
+                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
+                ),
+            q[10]
+                * (q[10]
+                    .mul_add(
+                        n(0.007750000000000002),
+                        end_effector_composite_inertia_18
+                            - end_effector_composite_inertia_17,
+                    )),
+        );
+    let end_effector_composite_inertia_49 = (-q[8])
+        .mul_add(
+            end_effector_composite_inertia_46,
+            end_effector_composite_inertia_43
+                .mul_add(
+                    n(0.3),
+                    q[9]
+                        .mul_add(
+                            end_effector_composite_inertia_47,
+                            q[7] * end_effector_composite_inertia_45,
+                        ),
                 ),
         );
-    let cart_composite_inertia_5 = end_effector_composite_inertia_37
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
+        .mul_add(
+            n(0.02),
+            (-q[11])
+                .mul_add(
+                    end_effector_composite_inertia_46,
+                    end_effector_composite_inertia_44
+                        .mul_add(
+                            n(0.15),
+                            q[12]
+                                .mul_add(
+                                    end_effector_composite_inertia_47,
+                                    q[10] * end_effector_composite_inertia_45,
+                                ),
+                        ),
+                ),
+        );
+    // cart: composite inertia (27 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49
+        + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50
+        - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
+            q[12]
+                .mul_add(
+                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+                    end_effector_composite_inertia_48 + n(0.03728),
+                ),
         );
-    let cart_composite_inertia_6 = end_effector_composite_inertia_39
-        + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = end_effector_composite_inertia_39
-        + cart_composite_inertia_3;
-    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_9 = (-q[6])
+    let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_10 = (-q[2])
+    let cart_composite_inertia_8 = q[2]
         .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
             q[1]
-                * ((-q[2])
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+                * (q[2]
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_11 = (-q[5])
+    let cart_composite_inertia_9 = q[5]
         .mul_add(
-            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
             q[4]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+                * (q[5]
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_12 = end_effector_composite_inertia_39
-        + cart_composite_inertia_8;
-    let cart_composite_inertia_13 = (q[3]
+    let cart_composite_inertia_10 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] + q[3]);
-    let cart_composite_inertia_14 = (q[6]
+    let cart_composite_inertia_11 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] + q[6]);
-    // plate: composite inertia (3 additions)
-    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
-        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
-        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
-    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
-    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
-    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
+    let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
         .mul_add(
             end_effector_factor_2,
-            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_24,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_22,
+                            q[10] * end_effector_composite_inertia_19,
+                        ),
+                ),
         );
-    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
-    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
-    let end_effector_factor_9 = (-q[3])
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_2,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[10] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_5 = (-end_effector_composite_inertia_38)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_40)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
+    let end_effector_factor_7 = (-end_effector_composite_inertia_42)
+        .mul_add(
+            end_effector_factor_2,
+            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
+        );
+    let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_8,
+            (-q[9])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[8]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[7] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
+    let end_effector_factor_11 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_35
+            end_effector_composite_inertia_42
                 .mul_add(
-                    end_effector_factor_8,
+                    end_effector_factor_10,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
-    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
-    let end_effector_factor_12 = n(1.0)
-        / ((-end_effector_composite_inertia_21)
-            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
-    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
-    let end_effector_factor_14 = (-end_effector_factor_4)
+    let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
+    let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
         .mul_add(
             end_effector_factor_13,
-            (-end_effector_composite_inertia_31)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
+            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+                + cart_composite_inertia_9 + cart_composite_inertia_11
+                + n(0.8799999999999999),
         );
-    let end_effector_factor_15 = (-end_effector_factor_5)
+    let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
+    let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
+    let end_effector_factor_17 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_33)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_38)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
         );
-    let end_effector_factor_16 = (-end_effector_factor_6)
+    let end_effector_factor_18 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_35)
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_40)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+        );
+    let end_effector_factor_19 = (-end_effector_factor_7)
+        .mul_add(
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_42)
                 .mul_add(
-                    end_effector_factor_7,
-                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
+                    end_effector_factor_8,
+                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
                 ),
         );
-    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
-    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
-    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
-    let end_effector_factor_20 = n(1.0)
-        / ((-end_effector_factor_3)
-            .mul_add(
-                end_effector_factor_13,
-                (-end_effector_composite_inertia_9)
-                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
-            ));
-    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
-    let end_effector_factor_22 = end_effector_factor_15
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_5
-                .mul_add(
-                    end_effector_factor_17,
-                    end_effector_composite_inertia_33
-                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_23 = end_effector_factor_16
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
-        );
-    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
-    let end_effector_factor_25 = end_effector_factor_16
+    let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
+    let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
+    let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
+    let end_effector_factor_23 = n(1.0)
+        / ((-end_effector_factor_4)
+            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
+    let end_effector_factor_25 = end_effector_factor_18
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_18,
-                    end_effector_composite_inertia_35
+                    end_effector_factor_20,
+                    end_effector_composite_inertia_40
+                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
+                ),
+        );
+    let end_effector_factor_26 = end_effector_factor_19
+        .mul_add(
+            end_effector_factor_24,
+            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
+        );
+    let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_28 = (-end_effector_factor_19)
+        .mul_add(
+            end_effector_factor_27,
+            (-end_effector_factor_7)
+                .mul_add(
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_42)
                         .mul_add(
-                            end_effector_factor_10,
-                            cart_composite_inertia_8 + cart_composite_inertia_9,
+                            end_effector_factor_12,
+                            cart_composite_inertia_6 - cart_composite_inertia_7,
                         ),
                 ),
         );
-    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
+    let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
-    let end_effector_load_2 = (-end_effector_factor_13)
-        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_7, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_21)
+    let end_effector_load_2 = (-end_effector_factor_16)
+        .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
+    let end_effector_load_3 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_2,
-            (-end_effector_factor_17)
-                .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[2])),
+            (-end_effector_factor_20)
+                .mul_add(
+                    end_effector_load,
+                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
+                ),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_14
+        / (end_effector_factor_17
             .mul_add(
-                end_effector_factor_21,
-                end_effector_factor_4
+                end_effector_factor_24,
+                end_effector_factor_5
                     .mul_add(
-                        end_effector_factor_17,
-                        end_effector_composite_inertia_31
-                            .mul_add(end_effector_factor_8, -n(5.7)),
+                        end_effector_factor_20,
+                        end_effector_composite_inertia_38
+                            .mul_add(end_effector_factor_10, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_22 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_22)
+    let cart_factor_2 = end_effector_factor_25 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            end_effector_factor_15
-                .mul_add(
-                    end_effector_factor_24,
-                    end_effector_factor_5
-                        .mul_add(
-                            end_effector_factor_18,
-                            end_effector_composite_inertia_33
-                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
-                        ),
-                ),
-        );
-    let cart_factor_4 = (-end_effector_factor_23)
-        .mul_add(cart_factor_2, end_effector_factor_25);
-    let cart_factor_5 = end_effector_factor_23 * cart_factor;
-    let cart_factor_6 = (-end_effector_factor_16)
-        .mul_add(
-            end_effector_factor_26,
+            end_effector_factor_27,
             (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_19,
-                    (-end_effector_composite_inertia_35)
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_40)
                         .mul_add(
-                            end_effector_factor_11,
-                            end_effector_factor_23
-                                .mul_add(cart_factor_5, plate_composite_inertia),
+                            end_effector_factor_12,
+                            end_effector_factor_25
+                                .mul_add(cart_factor_2, cart_composite_inertia_6),
                         ),
                 ),
         );
-    let cart_factor_7 = n(1.0) / cart_factor_3;
-    let cart_factor_8 = cart_factor_4 * cart_factor_7;
+    let cart_factor_4 = end_effector_factor_26
+        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_5 = end_effector_factor_26 * cart_factor;
+    let cart_factor_6 = n(1.0) / cart_factor_3;
+    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_8 = (-cart_factor_4)
+        .mul_add(
+            cart_factor_7,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_factor_29,
+                    (-end_effector_factor_7)
+                        .mul_add(
+                            end_effector_factor_22,
+                            end_effector_factor_26
+                                .mul_add(cart_factor_5, end_effector_factor_14),
+                        ),
+                ),
+        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = (-cart_factor_2)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_18)
+                    (-end_effector_factor_21)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_10, p[1]),
+                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
                         ),
                 ),
         );
     let cart_load_2 = (-cart_factor_5)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_26)
+            (-end_effector_factor_29)
                 .mul_add(
                     end_effector_load_2,
-                    (-end_effector_factor_19)
+                    (-end_effector_factor_22)
                         .mul_add(
                             end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_11, p[0]),
+                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
-    let plate_speed = (n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6)))
-        * ((-cart_factor_8).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / cart_factor_8)
+        * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
-    let cart_speed = cart_factor_7 * (cart_factor_4.mul_add(plate_speed, cart_load));
+    let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_speed,
-                end_effector_factor_23.mul_add(plate_speed, end_effector_load_3),
-            ));
-    // end_effector: response (17 additions, 22 multiplications)
-    let end_effector_speed = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_speed,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
+            ));
+    // end_effector: response (17 additions, 22 multiplications)
+    let end_effector_speed = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_speed,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_speed,
-                        end_effector_factor_14.mul_add(cart_speed_2, end_effector_load_2),
+                        end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2),
                     ),
             ));
     let end_effector_response = (-end_effector_factor_5)
         .mul_add(
-            cart_speed,
-            (-end_effector_factor_4)
+            cart_speed_2,
+            end_effector_factor_7
                 .mul_add(
-                    cart_speed_2,
+                    plate_speed,
                     end_effector_factor_6
-                        .mul_add(plate_speed, end_effector_factor_3 * end_effector_speed),
+                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
                 ),
         );
-    let end_effector_speed_2 = end_effector_factor_12
+    let end_effector_speed_2 = end_effector_factor_15
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_33)
+    let end_effector_response_2 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_speed,
-            (-end_effector_composite_inertia_31)
+            cart_speed_2,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_speed_2,
-                    end_effector_composite_inertia_9
+                    cart_speed,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_speed,
-                            end_effector_composite_inertia_21 * end_effector_speed_2,
+                            end_effector_composite_inertia_28 * end_effector_speed_2,
                         ),
                 ),
         );
     let end_effector_response_3 = (-p[2])
         .mul_add(
             cart_speed_2,
-            (-p[1])
+            p[3]
                 .mul_add(
-                    cart_speed,
-                    p[3].mul_add(end_effector_speed, p[0] * plate_speed),
+                    end_effector_speed,
+                    p[1].mul_add(cart_speed, p[0] * plate_speed),
                 ),
         );
     let end_effector_response_4 = p[5]
         .mul_add(
             end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(plate_speed, p[5] - end_effector_response_2)),
             p[4].mul_add(end_effector_speed_2, end_effector_response_3),
         );
-    [
-        (end_effector_composite_inertia_38 + n(1.31) - n(0.36))
-            .mul_add(n(9.81), end_effector_response_4 * n(0.5)),
-    ]
+    // plate: first moment (2 additions, 1 multiplication)
+    let plate_first_moment = (-q[14])
+        .mul_add(
+            n(0.136),
+            q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))),
+        );
+    [plate_first_moment.mul_add(n(9.81), end_effector_response_4 * n(0.5))]
 }
 
 /// Kinetic and potential energy, J.
@@ -4011,7 +4341,7 @@ pub fn poses<T: Scalar>(q: &[T; 16]) -> [[T; 12]; 3] {
 
 /// For each speed ∂v̄̇/∂ϕ, ∂v̄̇/∂v̄ and ∂v̄̇/∂τ in local coordinates ϕ about Q, then v̄̇; where constraints couple joints ∂v̄/∂ϕ and ∂v̄/∂v̄ of the speeds that they complete after these.
 ///
-/// Operations: 1275 additions, 1523 multiplications, 6 divisions.
+/// Operations: 1280 additions, 1534 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
 pub fn forward_dynamics_derivatives<T: Scalar>(
@@ -4199,156 +4529,147 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_force_16,
             q[12].mul_add(end_effector_force_18, q[10] * end_effector_force_14),
         );
-    // end_effector: composite inertia (83 additions, 119 multiplications)
-    let end_effector_composite_inertia = (-q[9])
-        .mul_add(n(0.027499999999999997), q[8].mul_add(n(0.0078), q[7] * n(0.19388)));
-    let end_effector_composite_inertia_2 = q[9]
-        .mul_add(n(0.042300000000000004), q[8].mul_add(n(0.18225), q[7] * n(0.0078)));
-    let end_effector_composite_inertia_3 = (-q[9])
+    // end_effector: composite inertia (93 additions, 130 multiplications)
+    let end_effector_composite_inertia = q[8] * n(0.0078);
+    let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
+    let end_effector_composite_inertia_3 = q[7]
         .mul_add(
-            n(0.02713),
-            (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997)),
+            n(0.19388),
+            end_effector_composite_inertia - end_effector_composite_inertia_2,
         );
-    let end_effector_composite_inertia_4 = q[9].mul_add(n(0.136), q[8] * n(0.51));
-    let end_effector_composite_inertia_5 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
-    let end_effector_composite_inertia_6 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_7 = (-q[9])
+    let end_effector_composite_inertia_4 = q[7] * n(0.0078);
+    let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
+    let end_effector_composite_inertia_6 = q[8]
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[7] * end_effector_composite_inertia,
-                ),
+            n(0.18225),
+            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
         );
-    let end_effector_composite_inertia_8 = (-q[12])
+    let end_effector_composite_inertia_7 = (-q[8])
+        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9])
+        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
+    let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
+    let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
+    let end_effector_composite_inertia_12 = (-q[15])
         .mul_add(
-            end_effector_composite_inertia_3,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[10] * end_effector_composite_inertia,
-                ),
-        );
-    let end_effector_composite_inertia_9 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_3,
+            end_effector_composite_inertia_8,
             q[14]
                 .mul_add(
-                    end_effector_composite_inertia_2,
-                    q[13] * end_effector_composite_inertia,
+                    end_effector_composite_inertia_6,
+                    q[13] * end_effector_composite_inertia_3,
                 ),
         );
-    let end_effector_composite_inertia_10 = (-q[9])
+    let end_effector_composite_inertia_13 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_6,
+            end_effector_composite_inertia_11,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[7] * end_effector_composite_inertia_4,
+                    end_effector_composite_inertia_10,
+                    q[7] * end_effector_composite_inertia_9,
                 ),
-        );
-    let end_effector_composite_inertia_11 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_6,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_5,
-                    q[10] * end_effector_composite_inertia_4,
-                ),
-        );
-    let end_effector_composite_inertia_12 = end_effector_composite_inertia_10
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_11
-                .mul_add(n(0.15), end_effector_composite_inertia_9),
-        );
-    let end_effector_composite_inertia_13 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_11,
-                    q[1] * end_effector_composite_inertia_10,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_11,
-                        q[4] * end_effector_composite_inertia_10,
-                    )),
         );
     let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(n(0.027499999999999997), q[11].mul_add(n(0.0078), q[10] * n(0.19388)));
-    let end_effector_composite_inertia_15 = q[12]
-        .mul_add(n(0.042300000000000004), q[11].mul_add(n(0.18225), q[10] * n(0.0078)));
-    let end_effector_composite_inertia_16 = (-q[12])
         .mul_add(
-            n(0.02713),
-            (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997)),
-        );
-    let end_effector_composite_inertia_17 = q[12].mul_add(n(0.136), q[11] * n(0.51));
-    let end_effector_composite_inertia_18 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
-    let end_effector_composite_inertia_19 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_20 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_16,
+            end_effector_composite_inertia_11,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[10] * end_effector_composite_inertia_14,
+                    end_effector_composite_inertia_10,
+                    q[10] * end_effector_composite_inertia_9,
                 ),
         );
-    let end_effector_composite_inertia_21 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_16,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[13] * end_effector_composite_inertia_14,
-                ),
-        );
-    let end_effector_composite_inertia_22 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[7] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_23 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_19,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_18,
-                    q[10] * end_effector_composite_inertia_17,
-                ),
-        );
-    let end_effector_composite_inertia_24 = end_effector_composite_inertia_22
+    let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_23
-                .mul_add(n(0.15), end_effector_composite_inertia_21),
+            end_effector_composite_inertia_14
+                .mul_add(n(0.15), end_effector_composite_inertia_12),
         );
-    let end_effector_composite_inertia_25 = (-q[6])
+    let end_effector_composite_inertia_16 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_23,
-                    q[1] * end_effector_composite_inertia_22,
+                    end_effector_composite_inertia_14,
+                    q[1] * end_effector_composite_inertia_13,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_23,
-                        q[4] * end_effector_composite_inertia_22,
+                        end_effector_composite_inertia_14,
+                        q[4] * end_effector_composite_inertia_13,
                     )),
         );
-    let end_effector_composite_inertia_26 = q[15].mul_add(n(0.136), q[14] * n(0.51));
-    let end_effector_composite_inertia_27 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
-    let end_effector_composite_inertia_28 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_29 = q[14]
+    let end_effector_composite_inertia_17 = q[11] * n(0.0078);
+    let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
+    let end_effector_composite_inertia_19 = q[10]
+        .mul_add(
+            n(0.19388),
+            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
+        );
+    let end_effector_composite_inertia_20 = q[10] * n(0.0078);
+    let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
+    let end_effector_composite_inertia_22 = q[11]
+        .mul_add(
+            n(0.18225),
+            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
+        );
+    let end_effector_composite_inertia_23 = (-q[11])
+        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12])
+        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+    let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
+    let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
+    let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
+    let end_effector_composite_inertia_28 = (-q[15])
+        .mul_add(
+            end_effector_composite_inertia_24,
+            q[14]
+                .mul_add(
+                    end_effector_composite_inertia_22,
+                    q[13] * end_effector_composite_inertia_19,
+                ),
+        );
+    let end_effector_composite_inertia_29 = (-q[9])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[8]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[7] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_30 = (-q[12])
+        .mul_add(
+            end_effector_composite_inertia_27,
+            q[11]
+                .mul_add(
+                    end_effector_composite_inertia_26,
+                    q[10] * end_effector_composite_inertia_25,
+                ),
+        );
+    let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
+        .mul_add(
+            n(0.02),
+            end_effector_composite_inertia_30
+                .mul_add(n(0.15), end_effector_composite_inertia_28),
+        );
+    let end_effector_composite_inertia_32 = (-q[6])
+        .mul_add(
+            q[2]
+                .mul_add(
+                    end_effector_composite_inertia_30,
+                    q[1] * end_effector_composite_inertia_29,
+                ),
+            q[3]
+                * (q[5]
+                    .mul_add(
+                        end_effector_composite_inertia_30,
+                        q[4] * end_effector_composite_inertia_29,
+                    )),
+        );
+    let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
+    let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
+    let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
+    let end_effector_composite_inertia_36 = q[14]
         .mul_add(
             q[15]
                 .mul_add(
@@ -4362,7 +4683,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
                     )),
         );
-    let end_effector_composite_inertia_30 = (-q[15])
+    let end_effector_composite_inertia_37 = (-q[15])
         .mul_add(
             (-q[15])
                 .mul_add(
@@ -4373,55 +4694,109 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                             q[13] * n(0.027499999999999997),
                         ),
                 ),
-            end_effector_composite_inertia_29,
+            end_effector_composite_inertia_36,
         );
-    let end_effector_composite_inertia_31 = (-q[9])
+    let end_effector_composite_inertia_38 = (-q[9])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[8]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[7] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[7] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_32 = (-q[12])
+    let end_effector_composite_inertia_39 = (-q[12])
         .mul_add(
-            end_effector_composite_inertia_28,
+            end_effector_composite_inertia_35,
             q[11]
                 .mul_add(
-                    end_effector_composite_inertia_27,
-                    q[10] * end_effector_composite_inertia_26,
+                    end_effector_composite_inertia_34,
+                    q[10] * end_effector_composite_inertia_33,
                 ),
         );
-    let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
+    let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
         .mul_add(
             n(0.02),
-            end_effector_composite_inertia_32
-                .mul_add(n(0.15), end_effector_composite_inertia_30),
+            end_effector_composite_inertia_39
+                .mul_add(n(0.15), end_effector_composite_inertia_37),
         );
-    let end_effector_composite_inertia_34 = (-q[6])
+    let end_effector_composite_inertia_41 = (-q[6])
         .mul_add(
             q[2]
                 .mul_add(
-                    end_effector_composite_inertia_32,
-                    q[1] * end_effector_composite_inertia_31,
+                    end_effector_composite_inertia_39,
+                    q[1] * end_effector_composite_inertia_38,
                 ),
             q[3]
                 * (q[5]
                     .mul_add(
-                        end_effector_composite_inertia_32,
-                        q[4] * end_effector_composite_inertia_31,
+                        end_effector_composite_inertia_39,
+                        q[4] * end_effector_composite_inertia_38,
                     )),
         );
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
-        + end_effector_composite_inertia_34;
-    let end_effector_composite_inertia_36 = (-q[8])
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
+        + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8])
         .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_37 = (-q[11])
+    let end_effector_composite_inertia_44 = (-q[11])
         .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
-    let end_effector_composite_inertia_38 = (-((-q[14])
-        .mul_add(n(0.136), q[15].mul_add(n(0.51), q[13] * n(0.085)))))
-        .mul_add(n(0.6), end_effector_composite_inertia_30 - n(0.20162999999999998));
+    let end_effector_composite_inertia_45 = q[7]
+        .mul_add(
+            n(0.007750000000000002),
+            end_effector_composite_inertia_2 - end_effector_composite_inertia,
+        );
+    let end_effector_composite_inertia_46 = (-q[8])
+        .mul_add(
+            n(0.01938),
+            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
+        );
+    let end_effector_composite_inertia_47 = q[9]
+        .mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11])
+        .mul_add(
+            (-q[11])
+                .mul_add(
+                    n(0.01938),
+                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
+                ),
+            q[10]
+                * (q[10]
+                    .mul_add(
+                        n(0.007750000000000002),
+                        end_effector_composite_inertia_18
+                            - end_effector_composite_inertia_17,
+                    )),
+        );
+    let end_effector_composite_inertia_49 = (-q[8])
+        .mul_add(
+            end_effector_composite_inertia_46,
+            end_effector_composite_inertia_43
+                .mul_add(
+                    n(0.3),
+                    q[9]
+                        .mul_add(
+                            end_effector_composite_inertia_47,
+                            q[7] * end_effector_composite_inertia_45,
+                        ),
+                ),
+        );
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
+        .mul_add(
+            n(0.02),
+            (-q[11])
+                .mul_add(
+                    end_effector_composite_inertia_46,
+                    end_effector_composite_inertia_44
+                        .mul_add(
+                            n(0.15),
+                            q[12]
+                                .mul_add(
+                                    end_effector_composite_inertia_47,
+                                    q[10] * end_effector_composite_inertia_45,
+                                ),
+                        ),
+                ),
+        );
     // cart: effort (7 additions, 6 multiplications)
     let cart_effort = (-end_effector_effort_2)
         .mul_add(
@@ -4445,166 +4820,187 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
             q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
         );
-    // cart: composite inertia (31 additions, 30 multiplications)
-    let cart_composite_inertia = end_effector_composite_inertia_36 + n(0.495);
-    let cart_composite_inertia_2 = end_effector_composite_inertia_37 + n(0.046);
-    let cart_composite_inertia_3 = (-end_effector_composite_inertia_36)
-        .mul_add(
-            n(0.3),
-            end_effector_composite_inertia_7 - n(0.20162999999999998)
-                - n(0.12764999999999999),
-        );
-    let cart_composite_inertia_4 = (-end_effector_composite_inertia_37)
-        .mul_add(
-            n(0.15),
-            end_effector_composite_inertia_36
-                .mul_add(
-                    n(0.02),
-                    end_effector_composite_inertia_8 + n(0.002300000000000001),
-                ),
-        );
-    let cart_composite_inertia_5 = end_effector_composite_inertia_37
+    // cart: composite inertia (26 additions, 30 multiplications)
+    let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
+    let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49
+        + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50
+        - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
         .mul_add(
             n(0.04),
-            end_effector_composite_inertia_20 - n(0.20162999999999998) - n(0.03728),
+            q[12]
+                .mul_add(
+                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+                    end_effector_composite_inertia_48 + n(0.03728),
+                ),
         );
-    let cart_composite_inertia_6 = end_effector_composite_inertia_38
-        + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = end_effector_composite_inertia_38
-        + cart_composite_inertia_3;
-    let cart_composite_inertia_8 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_9 = (-q[6])
+    let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
+    let cart_composite_inertia_7 = (-q[6])
         .mul_add(
             (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
             q[3]
                 * ((-q[5])
                     .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
         );
-    let cart_composite_inertia_10 = (-q[2])
+    let cart_composite_inertia_8 = q[2]
         .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia_7, q[1] * cart_composite_inertia_4),
+            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
             q[1]
-                * ((-q[2])
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_6)),
+                * (q[2]
+                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_11 = (-q[5])
+    let cart_composite_inertia_9 = q[5]
         .mul_add(
-            (-q[5]).mul_add(cart_composite_inertia_7, q[4] * cart_composite_inertia_4),
+            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
             q[4]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_6)),
+                * (q[5]
+                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
         );
-    let cart_composite_inertia_12 = end_effector_composite_inertia_38
-        + cart_composite_inertia_8;
-    let cart_composite_inertia_13 = (q[3]
+    let cart_composite_inertia_10 = (q[3]
         .mul_add(
             n(2.85),
             q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
         )) * (q[3] + q[3]);
-    let cart_composite_inertia_14 = (q[6]
+    let cart_composite_inertia_11 = (q[6]
         .mul_add(
             n(2.85),
             q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
         )) * (q[6] + q[6]);
-    // plate: composite inertia (3 additions)
-    let plate_composite_inertia = cart_composite_inertia_10 + cart_composite_inertia_13
-        + n(1.1700000000000002) + cart_composite_inertia_11 + cart_composite_inertia_14
-        + n(0.8799999999999999) - cart_composite_inertia_12 - cart_composite_inertia_12;
     // end_effector: effort (3 additions)
     let end_effector_effort_4 = end_effector_effort - tau[6];
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
-    let end_effector_factor = n(1.0) / end_effector_composite_inertia_30;
-    let end_effector_factor_2 = end_effector_composite_inertia_21 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_9)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_8);
-    let end_effector_factor_4 = (-end_effector_composite_inertia_31)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_22);
-    let end_effector_factor_5 = (-end_effector_composite_inertia_33)
-        .mul_add(end_effector_factor_2, end_effector_composite_inertia_24);
-    let end_effector_factor_6 = (-end_effector_composite_inertia_35)
+    let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
+    let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
         .mul_add(
             end_effector_factor_2,
-            end_effector_composite_inertia_24 + end_effector_composite_inertia_25,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_24,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_22,
+                            q[10] * end_effector_composite_inertia_19,
+                        ),
+                ),
         );
-    let end_effector_factor_7 = end_effector_composite_inertia_9 * end_effector_factor;
-    let end_effector_factor_8 = end_effector_composite_inertia_31 * end_effector_factor;
-    let end_effector_factor_9 = (-q[3])
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_2,
+            (-q[12])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[11]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[10] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_5 = (-end_effector_composite_inertia_38)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
+    let end_effector_factor_6 = (-end_effector_composite_inertia_40)
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
+    let end_effector_factor_7 = (-end_effector_composite_inertia_42)
+        .mul_add(
+            end_effector_factor_2,
+            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
+        );
+    let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
+        .mul_add(
+            end_effector_factor_8,
+            (-q[9])
+                .mul_add(
+                    end_effector_composite_inertia_8,
+                    q[8]
+                        .mul_add(
+                            end_effector_composite_inertia_6,
+                            q[7] * end_effector_composite_inertia_3,
+                        ),
+                ),
+        );
+    let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
+    let end_effector_factor_11 = (-q[3])
         .mul_add(
             q[4] * n(5.7),
-            end_effector_composite_inertia_35
+            end_effector_composite_inertia_42
                 .mul_add(
-                    end_effector_factor_8,
+                    end_effector_factor_10,
                     q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
                 ),
         );
-    let end_effector_factor_10 = end_effector_composite_inertia_33 * end_effector_factor;
-    let end_effector_factor_11 = end_effector_composite_inertia_35 * end_effector_factor;
-    let end_effector_factor_12 = n(1.0)
-        / ((-end_effector_composite_inertia_21)
-            .mul_add(end_effector_factor_2, end_effector_composite_inertia_20));
-    let end_effector_factor_13 = end_effector_factor_3 * end_effector_factor_12;
-    let end_effector_factor_14 = (-end_effector_factor_4)
+    let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
+    let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
         .mul_add(
             end_effector_factor_13,
-            (-end_effector_composite_inertia_31)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_10),
+            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+                + cart_composite_inertia_9 + cart_composite_inertia_11
+                + n(0.8799999999999999),
         );
-    let end_effector_factor_15 = (-end_effector_factor_5)
+    let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
+    let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
+    let end_effector_factor_17 = (-end_effector_factor_5)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_33)
-                .mul_add(end_effector_factor_7, end_effector_composite_inertia_12),
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_38)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
         );
-    let end_effector_factor_16 = (-end_effector_factor_6)
+    let end_effector_factor_18 = (-end_effector_factor_6)
         .mul_add(
-            end_effector_factor_13,
-            (-end_effector_composite_inertia_35)
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_40)
+                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+        );
+    let end_effector_factor_19 = (-end_effector_factor_7)
+        .mul_add(
+            end_effector_factor_16,
+            (-end_effector_composite_inertia_42)
                 .mul_add(
-                    end_effector_factor_7,
-                    end_effector_composite_inertia_12 + end_effector_composite_inertia_13,
+                    end_effector_factor_8,
+                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
                 ),
         );
-    let end_effector_factor_17 = end_effector_factor_4 * end_effector_factor_12;
-    let end_effector_factor_18 = end_effector_factor_5 * end_effector_factor_12;
-    let end_effector_factor_19 = end_effector_factor_6 * end_effector_factor_12;
-    let end_effector_factor_20 = n(1.0)
-        / ((-end_effector_factor_3)
-            .mul_add(
-                end_effector_factor_13,
-                (-end_effector_composite_inertia_9)
-                    .mul_add(end_effector_factor_7, end_effector_composite_inertia_7),
-            ));
-    let end_effector_factor_21 = end_effector_factor_14 * end_effector_factor_20;
-    let end_effector_factor_22 = end_effector_factor_15
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_5
-                .mul_add(
-                    end_effector_factor_17,
-                    end_effector_composite_inertia_33
-                        .mul_add(end_effector_factor_8, cart_composite_inertia_2),
-                ),
-        );
-    let end_effector_factor_23 = end_effector_factor_16
-        .mul_add(
-            end_effector_factor_21,
-            end_effector_factor_6.mul_add(end_effector_factor_17, end_effector_factor_9),
-        );
-    let end_effector_factor_24 = end_effector_factor_15 * end_effector_factor_20;
-    let end_effector_factor_25 = end_effector_factor_16
+    let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
+    let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
+    let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
+    let end_effector_factor_23 = n(1.0)
+        / ((-end_effector_factor_4)
+            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
+    let end_effector_factor_25 = end_effector_factor_18
         .mul_add(
             end_effector_factor_24,
             end_effector_factor_6
                 .mul_add(
-                    end_effector_factor_18,
-                    end_effector_composite_inertia_35
+                    end_effector_factor_20,
+                    end_effector_composite_inertia_40
+                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
+                ),
+        );
+    let end_effector_factor_26 = end_effector_factor_19
+        .mul_add(
+            end_effector_factor_24,
+            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
+        );
+    let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
+    let end_effector_factor_28 = (-end_effector_factor_19)
+        .mul_add(
+            end_effector_factor_27,
+            (-end_effector_factor_7)
+                .mul_add(
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_42)
                         .mul_add(
-                            end_effector_factor_10,
-                            cart_composite_inertia_8 + cart_composite_inertia_9,
+                            end_effector_factor_12,
+                            cart_composite_inertia_6 - cart_composite_inertia_7,
                         ),
                 ),
         );
-    let end_effector_factor_26 = end_effector_factor_16 * end_effector_factor_20;
+    let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-end_effector_effort_4)
         .mul_add(
@@ -4621,7 +5017,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         );
     let end_effector_load_2 = (-end_effector_effort_4)
         .mul_add(
-            end_effector_factor_7,
+            end_effector_factor_8,
             q[9]
                 .mul_add(
                     end_effector_force_12,
@@ -4632,113 +5028,114 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                         ),
                 ),
         );
-    let end_effector_load_3 = (-end_effector_factor_13)
+    let end_effector_load_3 = (-end_effector_factor_16)
         .mul_add(end_effector_load, end_effector_load_2);
-    let end_effector_load_4 = end_effector_factor_21
+    let end_effector_load_4 = end_effector_factor_24
         .mul_add(
             end_effector_load_3,
-            end_effector_factor_17
+            end_effector_factor_20
                 .mul_add(
                     end_effector_load,
                     end_effector_effort_4
-                        .mul_add(end_effector_factor_8, cart_effort_2 + tau[2]),
+                        .mul_add(end_effector_factor_10, cart_effort_2 + tau[2]),
                 ),
         );
-    let end_effector_load_5 = (-end_effector_factor_24)
+    let end_effector_load_5 = (-end_effector_factor_27)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_18)
+            (-end_effector_factor_21)
                 .mul_add(
                     end_effector_load,
                     (-end_effector_effort_4)
-                        .mul_add(end_effector_factor_10, cart_effort - tau[1]),
+                        .mul_add(end_effector_factor_12, cart_effort - tau[1]),
                 ),
         );
-    let end_effector_load_6 = (-end_effector_factor_26)
+    let end_effector_load_6 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_3,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load,
                     (-end_effector_effort_4)
                         .mul_add(
-                            end_effector_factor_11,
+                            end_effector_factor_13,
                             cart_effort - cart_effort_4 - tau[0],
                         ),
                 ),
         );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
     let cart_factor = n(1.0)
-        / (end_effector_factor_14
+        / (end_effector_factor_17
             .mul_add(
-                end_effector_factor_21,
-                end_effector_factor_4
+                end_effector_factor_24,
+                end_effector_factor_5
                     .mul_add(
-                        end_effector_factor_17,
-                        end_effector_composite_inertia_31
-                            .mul_add(end_effector_factor_8, -n(5.7)),
+                        end_effector_factor_20,
+                        end_effector_composite_inertia_38
+                            .mul_add(end_effector_factor_10, -n(5.7)),
                     ),
             ));
-    let cart_factor_2 = end_effector_factor_22 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_22)
+    let cart_factor_2 = end_effector_factor_25 * cart_factor;
+    let cart_factor_3 = (-end_effector_factor_18)
         .mul_add(
-            cart_factor_2,
-            end_effector_factor_15
-                .mul_add(
-                    end_effector_factor_24,
-                    end_effector_factor_5
-                        .mul_add(
-                            end_effector_factor_18,
-                            end_effector_composite_inertia_33
-                                .mul_add(end_effector_factor_10, cart_composite_inertia_8),
-                        ),
-                ),
-        );
-    let cart_factor_4 = (-end_effector_factor_23)
-        .mul_add(cart_factor_2, end_effector_factor_25);
-    let cart_factor_5 = end_effector_factor_23 * cart_factor;
-    let cart_factor_6 = (-end_effector_factor_16)
-        .mul_add(
-            end_effector_factor_26,
+            end_effector_factor_27,
             (-end_effector_factor_6)
                 .mul_add(
-                    end_effector_factor_19,
-                    (-end_effector_composite_inertia_35)
+                    end_effector_factor_21,
+                    (-end_effector_composite_inertia_40)
                         .mul_add(
-                            end_effector_factor_11,
-                            end_effector_factor_23
-                                .mul_add(cart_factor_5, plate_composite_inertia),
+                            end_effector_factor_12,
+                            end_effector_factor_25
+                                .mul_add(cart_factor_2, cart_composite_inertia_6),
                         ),
                 ),
         );
-    let cart_factor_7 = n(1.0) / cart_factor_3;
-    let cart_factor_8 = cart_factor_4 * cart_factor_7;
+    let cart_factor_4 = end_effector_factor_26
+        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_5 = end_effector_factor_26 * cart_factor;
+    let cart_factor_6 = n(1.0) / cart_factor_3;
+    let cart_factor_7 = cart_factor_4 * cart_factor_6;
+    let cart_factor_8 = (-cart_factor_4)
+        .mul_add(
+            cart_factor_7,
+            (-end_effector_factor_19)
+                .mul_add(
+                    end_effector_factor_29,
+                    (-end_effector_factor_7)
+                        .mul_add(
+                            end_effector_factor_22,
+                            end_effector_factor_26
+                                .mul_add(cart_factor_5, end_effector_factor_14),
+                        ),
+                ),
+        );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
     // plate: factor (1 division)
-    let plate_factor = n(1.0) / (cart_factor_4.mul_add(cart_factor_8, cart_factor_6));
+    let plate_factor = n(1.0) / cart_factor_8;
     // plate: response (1 multiplication)
     let plate_acceleration_2 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load,
                 cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_acceleration_8 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_acceleration_2, cart_load));
+    let cart_acceleration_8 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
     let cart_acceleration_9 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_acceleration_2,
-                end_effector_factor_22.mul_add(cart_acceleration_8, end_effector_load_4),
+                (-end_effector_factor_25)
+                    .mul_add(cart_acceleration_8, end_effector_load_4),
             ));
     // cart: acceleration (7 additions, 6 multiplications)
     let cart_acceleration_10 = q[6] * plate_acceleration_2;
     let cart_acceleration_11 = cart_acceleration_3 - cart_acceleration_10;
     let cart_acceleration_12 = q[3] * plate_acceleration_2;
     let cart_acceleration_13 = cart_acceleration_4 + cart_acceleration_12;
-    let cart_acceleration_14 = plate_acceleration_2 - cart_acceleration_8;
+    let cart_acceleration_14 = plate_acceleration_2 + cart_acceleration_8;
     let cart_acceleration_15 = q[4]
         .mul_add(
             cart_acceleration_13,
@@ -4770,48 +5167,48 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             v[0].mul_add(cart_motion_4, q[1] * cart_acceleration_10),
         );
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_acceleration_26 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_acceleration_26 = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_acceleration_2,
-                (-end_effector_factor_14)
+                (-end_effector_factor_18)
                     .mul_add(
-                        cart_acceleration_9,
-                        end_effector_factor_15
-                            .mul_add(cart_acceleration_8, end_effector_load_3),
+                        cart_acceleration_8,
+                        (-end_effector_factor_17)
+                            .mul_add(cart_acceleration_9, end_effector_load_3),
                     ),
             ));
-    let end_effector_response = (-end_effector_factor_5)
+    let end_effector_response = end_effector_factor_7
         .mul_add(
-            cart_acceleration_8,
+            plate_acceleration_2,
             end_effector_factor_6
                 .mul_add(
-                    plate_acceleration_2,
-                    end_effector_factor_4
+                    cart_acceleration_8,
+                    end_effector_factor_5
                         .mul_add(
                             cart_acceleration_9,
-                            end_effector_factor_3 * end_effector_acceleration_26,
+                            end_effector_factor_4 * end_effector_acceleration_26,
                         ),
                 ),
         );
-    let end_effector_acceleration_27 = end_effector_factor_12
+    let end_effector_acceleration_27 = end_effector_factor_15
         * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_33)
+    let end_effector_response_2 = end_effector_composite_inertia_40
         .mul_add(
             cart_acceleration_8,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(
                     cart_acceleration_9,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_acceleration_26,
-                            end_effector_composite_inertia_21
+                            end_effector_composite_inertia_28
                                 * end_effector_acceleration_27,
                         ),
                 ),
         );
     let end_effector_acceleration_28 = end_effector_factor
-        * ((-end_effector_composite_inertia_35)
+        * ((-end_effector_composite_inertia_42)
             .mul_add(
                 plate_acceleration_2,
                 end_effector_effort_4 - end_effector_response_2,
@@ -6170,25 +6567,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
             end_effector_slope_104,
         );
-    let end_effector_slope_106 = (-end_effector_composite_inertia_32)
-        .mul_add(cart_variation_5, end_effector_composite_inertia_31 * cart_variation_4);
-    let end_effector_slope_107 = end_effector_composite_inertia_32
+    let end_effector_slope_106 = (-end_effector_composite_inertia_39)
+        .mul_add(cart_variation_5, end_effector_composite_inertia_38 * cart_variation_4);
+    let end_effector_slope_107 = end_effector_composite_inertia_39
         .mul_add(
             plate_acceleration_2,
-            plate_acceleration * end_effector_composite_inertia_31,
+            plate_acceleration * end_effector_composite_inertia_38,
         );
     let end_effector_slope_108 = (-plate_acceleration)
         .mul_add(
-            end_effector_composite_inertia_32,
-            end_effector_composite_inertia_31 * plate_acceleration_2,
+            end_effector_composite_inertia_39,
+            end_effector_composite_inertia_38 * plate_acceleration_2,
         );
-    let end_effector_slope_109 = (-end_effector_composite_inertia_32)
+    let end_effector_slope_109 = (-end_effector_composite_inertia_39)
         .mul_add(
             cart_variation_2,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(cart_variation_3, end_effector_slope_105),
         );
-    let end_effector_slope_110 = end_effector_composite_inertia_32 * cart_variation;
+    let end_effector_slope_110 = end_effector_composite_inertia_39 * cart_variation;
     let end_effector_slope_111 = (-q[6])
         .mul_add(
             q[2].mul_add(end_effector_slope_83, q[1] * end_effector_slope_82),
@@ -6345,42 +6742,42 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_7 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_106,
-            (-end_effector_composite_inertia_23)
+            (-end_effector_composite_inertia_30)
                 .mul_add(
                     cart_variation_5,
-                    end_effector_composite_inertia_22 * cart_variation_4,
+                    end_effector_composite_inertia_29 * cart_variation_4,
                 ),
         );
-    let end_effector_load_8 = (-end_effector_factor_13)
+    let end_effector_load_8 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_7,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(
                     end_effector_slope_106,
-                    (-end_effector_composite_inertia_11)
+                    (-end_effector_composite_inertia_14)
                         .mul_add(
                             cart_variation_5,
-                            end_effector_composite_inertia_10 * cart_variation_4,
+                            end_effector_composite_inertia_13 * cart_variation_4,
                         ),
                 ),
         );
-    let end_effector_load_9 = (-end_effector_factor_21)
+    let end_effector_load_9 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_8,
-            (-end_effector_factor_17)
+            (-end_effector_factor_20)
                 .mul_add(
                     end_effector_load_7,
-                    (-end_effector_factor_8)
+                    (-end_effector_factor_10)
                         .mul_add(end_effector_slope_106, cart_slope_2),
                 ),
         );
-    let end_effector_load_10 = end_effector_factor_26
+    let end_effector_load_10 = end_effector_factor_29
         .mul_add(
             end_effector_load_8,
-            end_effector_factor_19
+            end_effector_factor_22
                 .mul_add(
                     end_effector_load_7,
-                    end_effector_factor_11
+                    end_effector_factor_13
                         .mul_add(end_effector_slope_106, cart_slope + cart_slope_14),
                 ),
         );
@@ -6388,70 +6785,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_2 = cart_factor_2
         .mul_add(
             end_effector_load_9,
-            end_effector_factor_24
+            end_effector_factor_27
                 .mul_add(
                     end_effector_load_8,
-                    end_effector_factor_18
+                    end_effector_factor_21
                         .mul_add(
                             end_effector_load_7,
-                            end_effector_factor_10
+                            end_effector_factor_12
                                 .mul_add(end_effector_slope_106, cart_slope),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_2,
                 cart_factor_5.mul_add(end_effector_load_9, end_effector_load_10),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_19 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope, cart_load_2));
+    let cart_slope_19 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope, cart_load_2));
     let cart_slope_20 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_slope,
-                end_effector_factor_22.mul_add(cart_slope_19, end_effector_load_9),
+                (-end_effector_factor_25).mul_add(cart_slope_19, end_effector_load_9),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_125 = end_effector_factor_20
-        * ((-end_effector_factor_15)
+    let end_effector_slope_125 = end_effector_factor_23
+        * (end_effector_factor_19
             .mul_add(
-                cart_slope_19,
-                end_effector_factor_16
+                plate_slope,
+                end_effector_factor_18
                     .mul_add(
-                        plate_slope,
-                        end_effector_factor_14
+                        cart_slope_19,
+                        end_effector_factor_17
                             .mul_add(cart_slope_20, end_effector_load_8),
                     ),
             ));
-    let end_effector_response_3 = (-end_effector_factor_6)
+    let end_effector_response_3 = (-end_effector_factor_7)
         .mul_add(
             plate_slope,
-            (-end_effector_factor_4)
+            (-end_effector_factor_6)
                 .mul_add(
-                    cart_slope_20,
-                    end_effector_factor_5
+                    cart_slope_19,
+                    (-end_effector_factor_5)
                         .mul_add(
-                            cart_slope_19,
-                            end_effector_factor_3 * end_effector_slope_125,
+                            cart_slope_20,
+                            end_effector_factor_4 * end_effector_slope_125,
                         ),
                 ),
         );
-    let end_effector_slope_126 = end_effector_factor_12
+    let end_effector_slope_126 = end_effector_factor_15
         * (end_effector_load_7 - end_effector_response_3);
-    let end_effector_response_4 = (-end_effector_composite_inertia_31)
+    let end_effector_response_4 = (-end_effector_composite_inertia_40)
         .mul_add(
-            cart_slope_20,
-            end_effector_composite_inertia_33
+            cart_slope_19,
+            (-end_effector_composite_inertia_38)
                 .mul_add(
-                    cart_slope_19,
-                    end_effector_composite_inertia_9
+                    cart_slope_20,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_125,
-                            end_effector_composite_inertia_21 * end_effector_slope_126,
+                            end_effector_composite_inertia_28 * end_effector_slope_126,
                         ),
                 ),
         );
@@ -6459,42 +6856,42 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_11 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_107,
-            end_effector_composite_inertia_23
+            end_effector_composite_inertia_30
                 .mul_add(
                     plate_acceleration_2,
-                    plate_acceleration * end_effector_composite_inertia_22,
+                    plate_acceleration * end_effector_composite_inertia_29,
                 ),
         );
-    let end_effector_load_12 = (-end_effector_factor_13)
+    let end_effector_load_12 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_11,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(
                     end_effector_slope_107,
-                    end_effector_composite_inertia_11
+                    end_effector_composite_inertia_14
                         .mul_add(
                             plate_acceleration_2,
-                            plate_acceleration * end_effector_composite_inertia_10,
+                            plate_acceleration * end_effector_composite_inertia_13,
                         ),
                 ),
         );
-    let end_effector_load_13 = (-end_effector_factor_21)
+    let end_effector_load_13 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_12,
-            (-end_effector_factor_17)
+            (-end_effector_factor_20)
                 .mul_add(
                     end_effector_load_11,
-                    (-end_effector_factor_8)
+                    (-end_effector_factor_10)
                         .mul_add(end_effector_slope_107, cart_slope_4),
                 ),
         );
-    let end_effector_load_14 = end_effector_factor_26
+    let end_effector_load_14 = end_effector_factor_29
         .mul_add(
             end_effector_load_12,
-            end_effector_factor_19
+            end_effector_factor_22
                 .mul_add(
                     end_effector_load_11,
-                    end_effector_factor_11
+                    end_effector_factor_13
                         .mul_add(
                             end_effector_slope_107,
                             end_effector_slope_124 - cart_slope_3 - cart_slope_15,
@@ -6505,70 +6902,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_3 = (-cart_factor_2)
         .mul_add(
             end_effector_load_13,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_12,
-                    (-end_effector_factor_18)
+                    (-end_effector_factor_21)
                         .mul_add(
                             end_effector_load_11,
-                            (-end_effector_factor_10)
+                            (-end_effector_factor_12)
                                 .mul_add(end_effector_slope_107, cart_slope_3),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_2 = plate_factor
-        * (cart_factor_8
+        * (cart_factor_7
             .mul_add(
                 cart_load_3,
                 cart_factor_5.mul_add(end_effector_load_13, end_effector_load_14),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_21 = cart_factor_7
-        * ((-cart_factor_4).mul_add(plate_slope_2, cart_load_3));
+    let cart_slope_21 = cart_factor_6
+        * (cart_factor_4.mul_add(plate_slope_2, cart_load_3));
     let cart_slope_22 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_slope_2,
-                (-end_effector_factor_22).mul_add(cart_slope_21, end_effector_load_13),
+                end_effector_factor_25.mul_add(cart_slope_21, end_effector_load_13),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_127 = end_effector_factor_20
-        * (end_effector_factor_16
+    let end_effector_slope_127 = end_effector_factor_23
+        * ((-end_effector_factor_18)
             .mul_add(
-                plate_slope_2,
-                end_effector_factor_15
+                cart_slope_21,
+                end_effector_factor_19
                     .mul_add(
-                        cart_slope_21,
-                        end_effector_factor_14
+                        plate_slope_2,
+                        end_effector_factor_17
                             .mul_add(cart_slope_22, end_effector_load_12),
                     ),
             ));
-    let end_effector_response_5 = (-end_effector_factor_6)
+    let end_effector_response_5 = (-end_effector_factor_7)
         .mul_add(
             plate_slope_2,
             (-end_effector_factor_5)
                 .mul_add(
-                    cart_slope_21,
-                    (-end_effector_factor_4)
+                    cart_slope_22,
+                    end_effector_factor_6
                         .mul_add(
-                            cart_slope_22,
-                            end_effector_factor_3 * end_effector_slope_127,
+                            cart_slope_21,
+                            end_effector_factor_4 * end_effector_slope_127,
                         ),
                 ),
         );
-    let end_effector_slope_128 = end_effector_factor_12
+    let end_effector_slope_128 = end_effector_factor_15
         * (end_effector_load_11 - end_effector_response_5);
-    let end_effector_response_6 = (-end_effector_composite_inertia_33)
+    let end_effector_response_6 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_slope_21,
-            (-end_effector_composite_inertia_31)
+            cart_slope_22,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_slope_22,
-                    end_effector_composite_inertia_9
+                    cart_slope_21,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_127,
-                            end_effector_composite_inertia_21 * end_effector_slope_128,
+                            end_effector_composite_inertia_28 * end_effector_slope_128,
                         ),
                 ),
         );
@@ -6578,40 +6975,40 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_slope_108,
             (-plate_acceleration)
                 .mul_add(
-                    end_effector_composite_inertia_23,
-                    end_effector_composite_inertia_22 * plate_acceleration_2,
+                    end_effector_composite_inertia_30,
+                    end_effector_composite_inertia_29 * plate_acceleration_2,
                 ),
         );
-    let end_effector_load_16 = (-end_effector_factor_13)
+    let end_effector_load_16 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_15,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(
                     end_effector_slope_108,
                     (-plate_acceleration)
                         .mul_add(
-                            end_effector_composite_inertia_11,
-                            end_effector_composite_inertia_10 * plate_acceleration_2,
+                            end_effector_composite_inertia_14,
+                            end_effector_composite_inertia_13 * plate_acceleration_2,
                         ),
                 ),
         );
-    let end_effector_load_17 = (-end_effector_factor_21)
+    let end_effector_load_17 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_16,
-            (-end_effector_factor_17)
+            (-end_effector_factor_20)
                 .mul_add(
                     end_effector_load_15,
-                    (-end_effector_factor_8)
+                    (-end_effector_factor_10)
                         .mul_add(end_effector_slope_108, cart_slope_5),
                 ),
         );
-    let end_effector_load_18 = (-end_effector_factor_26)
+    let end_effector_load_18 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_16,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load_15,
-                    (-end_effector_factor_11)
+                    (-end_effector_factor_13)
                         .mul_add(
                             end_effector_slope_108,
                             end_effector_slope_123 + cart_slope_16 - cart_slope_6,
@@ -6622,13 +7019,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_4 = cart_factor_2
         .mul_add(
             end_effector_load_17,
-            end_effector_factor_24
+            end_effector_factor_27
                 .mul_add(
                     end_effector_load_16,
-                    end_effector_factor_18
+                    end_effector_factor_21
                         .mul_add(
                             end_effector_load_15,
-                            end_effector_factor_10
+                            end_effector_factor_12
                                 .mul_add(end_effector_slope_108, cart_slope_6),
                         ),
                 ),
@@ -6638,83 +7035,83 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         * ((-cart_factor_5)
             .mul_add(
                 end_effector_load_17,
-                cart_factor_8.mul_add(cart_load_4, end_effector_load_18),
+                cart_factor_7.mul_add(cart_load_4, end_effector_load_18),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_23 = cart_factor_7
-        * ((-cart_factor_4).mul_add(plate_slope_3, cart_load_4));
+    let cart_slope_23 = cart_factor_6
+        * (cart_factor_4.mul_add(plate_slope_3, cart_load_4));
     let cart_slope_24 = cart_factor
-        * (end_effector_factor_23
+        * ((-end_effector_factor_25)
             .mul_add(
-                plate_slope_3,
-                end_effector_factor_22.mul_add(cart_slope_23, end_effector_load_17),
+                cart_slope_23,
+                end_effector_factor_26.mul_add(plate_slope_3, end_effector_load_17),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_129 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_slope_129 = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_slope_3,
-                (-end_effector_factor_15)
+                end_effector_factor_18
                     .mul_add(
                         cart_slope_23,
-                        end_effector_factor_14
+                        end_effector_factor_17
                             .mul_add(cart_slope_24, end_effector_load_16),
                     ),
             ));
-    let end_effector_response_7 = (-end_effector_factor_4)
+    let end_effector_response_7 = (-end_effector_factor_6)
         .mul_add(
-            cart_slope_24,
-            end_effector_factor_6
+            cart_slope_23,
+            (-end_effector_factor_5)
                 .mul_add(
-                    plate_slope_3,
-                    end_effector_factor_5
+                    cart_slope_24,
+                    end_effector_factor_7
                         .mul_add(
-                            cart_slope_23,
-                            end_effector_factor_3 * end_effector_slope_129,
+                            plate_slope_3,
+                            end_effector_factor_4 * end_effector_slope_129,
                         ),
                 ),
         );
-    let end_effector_slope_130 = end_effector_factor_12
+    let end_effector_slope_130 = end_effector_factor_15
         * (end_effector_load_15 - end_effector_response_7);
-    let end_effector_response_8 = (-end_effector_composite_inertia_31)
+    let end_effector_response_8 = (-end_effector_composite_inertia_40)
         .mul_add(
-            cart_slope_24,
-            end_effector_composite_inertia_33
+            cart_slope_23,
+            (-end_effector_composite_inertia_38)
                 .mul_add(
-                    cart_slope_23,
-                    end_effector_composite_inertia_9
+                    cart_slope_24,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_129,
-                            end_effector_composite_inertia_21 * end_effector_slope_130,
+                            end_effector_composite_inertia_28 * end_effector_slope_130,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_19 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_64, end_effector_slope_62);
-    let end_effector_load_20 = (-end_effector_factor_13)
+    let end_effector_load_20 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_19,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(end_effector_slope_64, end_effector_slope_61),
         );
-    let end_effector_load_21 = end_effector_factor_21
+    let end_effector_load_21 = end_effector_factor_24
         .mul_add(
             end_effector_load_20,
-            end_effector_factor_17
+            end_effector_factor_20
                 .mul_add(
                     end_effector_load_19,
-                    end_effector_factor_8
+                    end_effector_factor_10
                         .mul_add(end_effector_slope_64, end_effector_slope_82),
                 ),
         );
-    let end_effector_load_22 = (-end_effector_factor_26)
+    let end_effector_load_22 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_20,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load_19,
-                    (-end_effector_factor_11)
+                    (-end_effector_factor_13)
                         .mul_add(
                             end_effector_slope_64,
                             end_effector_slope_84 - end_effector_slope_111,
@@ -6722,13 +7119,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_5 = (-end_effector_factor_24)
+    let cart_load_5 = (-end_effector_factor_27)
         .mul_add(
             end_effector_load_20,
-            (-end_effector_factor_18)
+            (-end_effector_factor_21)
                 .mul_add(
                     end_effector_load_19,
-                    (-end_effector_factor_10)
+                    (-end_effector_factor_12)
                         .mul_add(
                             end_effector_slope_64,
                             cart_factor_2
@@ -6738,86 +7135,86 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         );
     // plate: response (1 multiplication)
     let plate_slope_4 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_5,
                 cart_factor_5.mul_add(end_effector_load_21, end_effector_load_22),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_25 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_4, cart_load_5));
+    let cart_slope_25 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_4, cart_load_5));
     let cart_slope_26 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_slope_4,
-                end_effector_factor_22.mul_add(cart_slope_25, end_effector_load_21),
+                (-end_effector_factor_25).mul_add(cart_slope_25, end_effector_load_21),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_131 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_slope_131 = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_slope_4,
-                (-end_effector_factor_14)
+                (-end_effector_factor_18)
                     .mul_add(
-                        cart_slope_26,
-                        end_effector_factor_15
-                            .mul_add(cart_slope_25, end_effector_load_20),
+                        cart_slope_25,
+                        (-end_effector_factor_17)
+                            .mul_add(cart_slope_26, end_effector_load_20),
                     ),
             ));
-    let end_effector_response_9 = (-end_effector_factor_5)
+    let end_effector_response_9 = end_effector_factor_7
         .mul_add(
-            cart_slope_25,
+            plate_slope_4,
             end_effector_factor_6
                 .mul_add(
-                    plate_slope_4,
-                    end_effector_factor_4
+                    cart_slope_25,
+                    end_effector_factor_5
                         .mul_add(
                             cart_slope_26,
-                            end_effector_factor_3 * end_effector_slope_131,
+                            end_effector_factor_4 * end_effector_slope_131,
                         ),
                 ),
         );
-    let end_effector_slope_132 = end_effector_factor_12
+    let end_effector_slope_132 = end_effector_factor_15
         * (end_effector_load_19 - end_effector_response_9);
-    let end_effector_response_10 = (-end_effector_composite_inertia_33)
+    let end_effector_response_10 = end_effector_composite_inertia_40
         .mul_add(
             cart_slope_25,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(
                     cart_slope_26,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_131,
-                            end_effector_composite_inertia_21 * end_effector_slope_132,
+                            end_effector_composite_inertia_28 * end_effector_slope_132,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_23 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_68, end_effector_slope_66);
-    let end_effector_load_24 = (-end_effector_factor_13)
+    let end_effector_load_24 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_23,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(end_effector_slope_68, end_effector_slope_65),
         );
-    let end_effector_load_25 = end_effector_factor_21
+    let end_effector_load_25 = end_effector_factor_24
         .mul_add(
             end_effector_load_24,
-            end_effector_factor_17
+            end_effector_factor_20
                 .mul_add(
                     end_effector_load_23,
-                    end_effector_factor_8
+                    end_effector_factor_10
                         .mul_add(end_effector_slope_68, end_effector_slope_85),
                 ),
         );
-    let end_effector_load_26 = (-end_effector_factor_26)
+    let end_effector_load_26 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_24,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load_23,
-                    (-end_effector_factor_11)
+                    (-end_effector_factor_13)
                         .mul_add(
                             end_effector_slope_68,
                             end_effector_slope_87 - end_effector_slope_112,
@@ -6825,13 +7222,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_6 = (-end_effector_factor_24)
+    let cart_load_6 = (-end_effector_factor_27)
         .mul_add(
             end_effector_load_24,
-            (-end_effector_factor_18)
+            (-end_effector_factor_21)
                 .mul_add(
                     end_effector_load_23,
-                    (-end_effector_factor_10)
+                    (-end_effector_factor_12)
                         .mul_add(
                             end_effector_slope_68,
                             cart_factor_2
@@ -6841,86 +7238,86 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         );
     // plate: response (1 multiplication)
     let plate_slope_5 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_6,
                 cart_factor_5.mul_add(end_effector_load_25, end_effector_load_26),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_27 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_5, cart_load_6));
+    let cart_slope_27 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_5, cart_load_6));
     let cart_slope_28 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_slope_5,
-                end_effector_factor_22.mul_add(cart_slope_27, end_effector_load_25),
+                (-end_effector_factor_25).mul_add(cart_slope_27, end_effector_load_25),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_133 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_slope_133 = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_slope_5,
-                (-end_effector_factor_14)
+                (-end_effector_factor_18)
                     .mul_add(
-                        cart_slope_28,
-                        end_effector_factor_15
-                            .mul_add(cart_slope_27, end_effector_load_24),
+                        cart_slope_27,
+                        (-end_effector_factor_17)
+                            .mul_add(cart_slope_28, end_effector_load_24),
                     ),
             ));
-    let end_effector_response_11 = (-end_effector_factor_5)
+    let end_effector_response_11 = end_effector_factor_7
         .mul_add(
-            cart_slope_27,
+            plate_slope_5,
             end_effector_factor_6
                 .mul_add(
-                    plate_slope_5,
-                    end_effector_factor_4
+                    cart_slope_27,
+                    end_effector_factor_5
                         .mul_add(
                             cart_slope_28,
-                            end_effector_factor_3 * end_effector_slope_133,
+                            end_effector_factor_4 * end_effector_slope_133,
                         ),
                 ),
         );
-    let end_effector_slope_134 = end_effector_factor_12
+    let end_effector_slope_134 = end_effector_factor_15
         * (end_effector_load_23 - end_effector_response_11);
-    let end_effector_response_12 = (-end_effector_composite_inertia_33)
+    let end_effector_response_12 = end_effector_composite_inertia_40
         .mul_add(
             cart_slope_27,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(
                     cart_slope_28,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_133,
-                            end_effector_composite_inertia_21 * end_effector_slope_134,
+                            end_effector_composite_inertia_28 * end_effector_slope_134,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_27 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_72, end_effector_slope_70);
-    let end_effector_load_28 = (-end_effector_factor_13)
+    let end_effector_load_28 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_27,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(end_effector_slope_72, end_effector_slope_69),
         );
-    let end_effector_load_29 = end_effector_factor_21
+    let end_effector_load_29 = end_effector_factor_24
         .mul_add(
             end_effector_load_28,
-            end_effector_factor_17
+            end_effector_factor_20
                 .mul_add(
                     end_effector_load_27,
-                    end_effector_factor_8
+                    end_effector_factor_10
                         .mul_add(end_effector_slope_72, end_effector_slope_88),
                 ),
         );
-    let end_effector_load_30 = (-end_effector_factor_26)
+    let end_effector_load_30 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_28,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load_27,
-                    (-end_effector_factor_11)
+                    (-end_effector_factor_13)
                         .mul_add(
                             end_effector_slope_72,
                             end_effector_slope_90 - end_effector_slope_113,
@@ -6928,13 +7325,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_7 = (-end_effector_factor_24)
+    let cart_load_7 = (-end_effector_factor_27)
         .mul_add(
             end_effector_load_28,
-            (-end_effector_factor_18)
+            (-end_effector_factor_21)
                 .mul_add(
                     end_effector_load_27,
-                    (-end_effector_factor_10)
+                    (-end_effector_factor_12)
                         .mul_add(
                             end_effector_slope_72,
                             cart_factor_2
@@ -6944,86 +7341,86 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         );
     // plate: response (1 multiplication)
     let plate_slope_6 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_7,
                 cart_factor_5.mul_add(end_effector_load_29, end_effector_load_30),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_29 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_6, cart_load_7));
+    let cart_slope_29 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_6, cart_load_7));
     let cart_slope_30 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_slope_6,
-                end_effector_factor_22.mul_add(cart_slope_29, end_effector_load_29),
+                (-end_effector_factor_25).mul_add(cart_slope_29, end_effector_load_29),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_135 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_slope_135 = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_slope_6,
-                (-end_effector_factor_14)
+                (-end_effector_factor_18)
                     .mul_add(
-                        cart_slope_30,
-                        end_effector_factor_15
-                            .mul_add(cart_slope_29, end_effector_load_28),
+                        cart_slope_29,
+                        (-end_effector_factor_17)
+                            .mul_add(cart_slope_30, end_effector_load_28),
                     ),
             ));
-    let end_effector_response_13 = (-end_effector_factor_5)
+    let end_effector_response_13 = end_effector_factor_7
         .mul_add(
-            cart_slope_29,
+            plate_slope_6,
             end_effector_factor_6
                 .mul_add(
-                    plate_slope_6,
-                    end_effector_factor_4
+                    cart_slope_29,
+                    end_effector_factor_5
                         .mul_add(
                             cart_slope_30,
-                            end_effector_factor_3 * end_effector_slope_135,
+                            end_effector_factor_4 * end_effector_slope_135,
                         ),
                 ),
         );
-    let end_effector_slope_136 = end_effector_factor_12
+    let end_effector_slope_136 = end_effector_factor_15
         * (end_effector_load_27 - end_effector_response_13);
-    let end_effector_response_14 = (-end_effector_composite_inertia_33)
+    let end_effector_response_14 = end_effector_composite_inertia_40
         .mul_add(
             cart_slope_29,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(
                     cart_slope_30,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_135,
-                            end_effector_composite_inertia_21 * end_effector_slope_136,
+                            end_effector_composite_inertia_28 * end_effector_slope_136,
                         ),
                 ),
         );
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load_31 = (-end_effector_factor_2)
         .mul_add(end_effector_slope_105, end_effector_slope_103);
-    let end_effector_load_32 = (-end_effector_factor_13)
+    let end_effector_load_32 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_31,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(end_effector_slope_105, end_effector_slope_101),
         );
-    let end_effector_load_33 = end_effector_factor_21
+    let end_effector_load_33 = end_effector_factor_24
         .mul_add(
             end_effector_load_32,
-            end_effector_factor_17
+            end_effector_factor_20
                 .mul_add(
                     end_effector_load_31,
-                    end_effector_factor_8
+                    end_effector_factor_10
                         .mul_add(end_effector_slope_105, end_effector_slope_122),
                 ),
         );
-    let end_effector_load_34 = end_effector_factor_26
+    let end_effector_load_34 = end_effector_factor_29
         .mul_add(
             end_effector_load_32,
-            end_effector_factor_19
+            end_effector_factor_22
                 .mul_add(
                     end_effector_load_31,
-                    end_effector_factor_11
+                    end_effector_factor_13
                         .mul_add(
                             end_effector_slope_105,
                             end_effector_slope_120 + cart_slope_18,
@@ -7034,70 +7431,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_8 = (-cart_factor_2)
         .mul_add(
             end_effector_load_33,
-            end_effector_factor_24
+            end_effector_factor_27
                 .mul_add(
                     end_effector_load_32,
-                    end_effector_factor_18
+                    end_effector_factor_21
                         .mul_add(
                             end_effector_load_31,
-                            end_effector_factor_10
+                            end_effector_factor_12
                                 .mul_add(end_effector_slope_105, end_effector_slope_120),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_7 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_8,
                 (-cart_factor_5).mul_add(end_effector_load_33, end_effector_load_34),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_31 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_7, cart_load_8));
+    let cart_slope_31 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_7, cart_load_8));
     let cart_slope_32 = cart_factor
-        * ((-end_effector_factor_22)
+        * (end_effector_factor_26
             .mul_add(
-                cart_slope_31,
-                end_effector_factor_23.mul_add(plate_slope_7, end_effector_load_33),
+                plate_slope_7,
+                end_effector_factor_25.mul_add(cart_slope_31, end_effector_load_33),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_137 = end_effector_factor_20
-        * ((-end_effector_factor_15)
+    let end_effector_slope_137 = end_effector_factor_23
+        * ((-end_effector_factor_17)
             .mul_add(
-                cart_slope_31,
-                (-end_effector_factor_14)
+                cart_slope_32,
+                end_effector_factor_19
                     .mul_add(
-                        cart_slope_32,
-                        end_effector_factor_16
-                            .mul_add(plate_slope_7, end_effector_load_32),
+                        plate_slope_7,
+                        end_effector_factor_18
+                            .mul_add(cart_slope_31, end_effector_load_32),
                     ),
             ));
-    let end_effector_response_15 = (-end_effector_factor_6)
+    let end_effector_response_15 = (-end_effector_factor_7)
         .mul_add(
             plate_slope_7,
-            end_effector_factor_5
+            (-end_effector_factor_6)
                 .mul_add(
                     cart_slope_31,
-                    end_effector_factor_4
+                    end_effector_factor_5
                         .mul_add(
                             cart_slope_32,
-                            end_effector_factor_3 * end_effector_slope_137,
+                            end_effector_factor_4 * end_effector_slope_137,
                         ),
                 ),
         );
-    let end_effector_slope_138 = end_effector_factor_12
+    let end_effector_slope_138 = end_effector_factor_15
         * (end_effector_load_31 - end_effector_response_15);
-    let end_effector_response_16 = end_effector_composite_inertia_33
+    let end_effector_response_16 = (-end_effector_composite_inertia_40)
         .mul_add(
             cart_slope_31,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(
                     cart_slope_32,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_137,
-                            end_effector_composite_inertia_21 * end_effector_slope_138,
+                            end_effector_composite_inertia_28 * end_effector_slope_138,
                         ),
                 ),
         );
@@ -7105,44 +7502,44 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_35 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_109,
-            (-end_effector_composite_inertia_23)
+            (-end_effector_composite_inertia_30)
                 .mul_add(
                     cart_variation_2,
-                    end_effector_composite_inertia_22
+                    end_effector_composite_inertia_29
                         .mul_add(cart_variation_3, end_effector_slope_103),
                 ),
         );
-    let end_effector_load_36 = (-end_effector_factor_13)
+    let end_effector_load_36 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_35,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(
                     end_effector_slope_109,
-                    (-end_effector_composite_inertia_11)
+                    (-end_effector_composite_inertia_14)
                         .mul_add(
                             cart_variation_2,
-                            end_effector_composite_inertia_10
+                            end_effector_composite_inertia_13
                                 .mul_add(cart_variation_3, end_effector_slope_101),
                         ),
                 ),
         );
-    let end_effector_load_37 = (-end_effector_factor_21)
+    let end_effector_load_37 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_36,
-            (-end_effector_factor_17)
+            (-end_effector_factor_20)
                 .mul_add(
                     end_effector_load_35,
-                    (-end_effector_factor_8)
+                    (-end_effector_factor_10)
                         .mul_add(end_effector_slope_109, cart_slope_8),
                 ),
         );
-    let end_effector_load_38 = end_effector_factor_26
+    let end_effector_load_38 = end_effector_factor_29
         .mul_add(
             end_effector_load_36,
-            end_effector_factor_19
+            end_effector_factor_22
                 .mul_add(
                     end_effector_load_35,
-                    end_effector_factor_11
+                    end_effector_factor_13
                         .mul_add(end_effector_slope_109, cart_slope_7 - cart_slope_17),
                 ),
         );
@@ -7150,70 +7547,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_9 = cart_factor_2
         .mul_add(
             end_effector_load_37,
-            end_effector_factor_24
+            end_effector_factor_27
                 .mul_add(
                     end_effector_load_36,
-                    end_effector_factor_18
+                    end_effector_factor_21
                         .mul_add(
                             end_effector_load_35,
-                            end_effector_factor_10
+                            end_effector_factor_12
                                 .mul_add(end_effector_slope_109, cart_slope_7),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_8 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_9,
                 cart_factor_5.mul_add(end_effector_load_37, end_effector_load_38),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_33 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_8, cart_load_9));
+    let cart_slope_33 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_8, cart_load_9));
     let cart_slope_34 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_slope_8,
-                end_effector_factor_22.mul_add(cart_slope_33, end_effector_load_37),
+                (-end_effector_factor_25).mul_add(cart_slope_33, end_effector_load_37),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_139 = end_effector_factor_20
-        * ((-end_effector_factor_15)
+    let end_effector_slope_139 = end_effector_factor_23
+        * (end_effector_factor_19
             .mul_add(
-                cart_slope_33,
-                end_effector_factor_16
+                plate_slope_8,
+                end_effector_factor_18
                     .mul_add(
-                        plate_slope_8,
-                        end_effector_factor_14
+                        cart_slope_33,
+                        end_effector_factor_17
                             .mul_add(cart_slope_34, end_effector_load_36),
                     ),
             ));
-    let end_effector_response_17 = (-end_effector_factor_6)
+    let end_effector_response_17 = (-end_effector_factor_7)
         .mul_add(
             plate_slope_8,
-            (-end_effector_factor_4)
+            (-end_effector_factor_6)
                 .mul_add(
-                    cart_slope_34,
-                    end_effector_factor_5
+                    cart_slope_33,
+                    (-end_effector_factor_5)
                         .mul_add(
-                            cart_slope_33,
-                            end_effector_factor_3 * end_effector_slope_139,
+                            cart_slope_34,
+                            end_effector_factor_4 * end_effector_slope_139,
                         ),
                 ),
         );
-    let end_effector_slope_140 = end_effector_factor_12
+    let end_effector_slope_140 = end_effector_factor_15
         * (end_effector_load_35 - end_effector_response_17);
-    let end_effector_response_18 = (-end_effector_composite_inertia_31)
+    let end_effector_response_18 = (-end_effector_composite_inertia_40)
         .mul_add(
-            cart_slope_34,
-            end_effector_composite_inertia_33
+            cart_slope_33,
+            (-end_effector_composite_inertia_38)
                 .mul_add(
-                    cart_slope_33,
-                    end_effector_composite_inertia_9
+                    cart_slope_34,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_139,
-                            end_effector_composite_inertia_21 * end_effector_slope_140,
+                            end_effector_composite_inertia_28 * end_effector_slope_140,
                         ),
                 ),
         );
@@ -7221,9 +7618,9 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_load_39 = (-end_effector_factor_2)
         .mul_add(
             end_effector_slope_110,
-            end_effector_composite_inertia_23 * cart_variation,
+            end_effector_composite_inertia_30 * cart_variation,
         );
-    let end_effector_load_40 = (-end_effector_factor_11)
+    let end_effector_load_40 = (-end_effector_factor_13)
         .mul_add(
             end_effector_slope_110,
             (-q[6])
@@ -7232,45 +7629,45 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[3].mul_add(q[5] * cart_slope_11, cart_slope_10),
                 ),
         );
-    let end_effector_load_41 = (-end_effector_factor_13)
+    let end_effector_load_41 = (-end_effector_factor_16)
         .mul_add(
             end_effector_load_39,
-            (-end_effector_factor_7)
+            (-end_effector_factor_8)
                 .mul_add(
                     end_effector_slope_110,
-                    end_effector_composite_inertia_11 * cart_variation,
+                    end_effector_composite_inertia_14 * cart_variation,
                 ),
         );
-    let end_effector_load_42 = end_effector_factor_21
+    let end_effector_load_42 = end_effector_factor_24
         .mul_add(
             end_effector_load_41,
-            end_effector_factor_17
+            end_effector_factor_20
                 .mul_add(
                     end_effector_load_39,
-                    end_effector_factor_8 * end_effector_slope_110,
+                    end_effector_factor_10 * end_effector_slope_110,
                 ),
         );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_10 = (-end_effector_factor_24)
+    let cart_load_10 = (-end_effector_factor_27)
         .mul_add(
             end_effector_load_41,
-            (-end_effector_factor_18)
+            (-end_effector_factor_21)
                 .mul_add(
                     end_effector_load_39,
-                    (-end_effector_factor_10)
+                    (-end_effector_factor_12)
                         .mul_add(
                             end_effector_slope_110,
                             cart_factor_2.mul_add(end_effector_load_42, cart_slope_10),
                         ),
                 ),
         );
-    let cart_load_11 = (-cart_factor_8)
+    let cart_load_11 = (-cart_factor_7)
         .mul_add(
             cart_load_10,
-            (-end_effector_factor_26)
+            (-end_effector_factor_29)
                 .mul_add(
                     end_effector_load_41,
-                    (-end_effector_factor_19)
+                    (-end_effector_factor_22)
                         .mul_add(
                             end_effector_load_39,
                             cart_factor_5
@@ -7281,51 +7678,51 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     // plate: response (1 multiplication)
     let plate_slope_9 = plate_factor * cart_load_11;
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_35 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_9, cart_load_10));
+    let cart_slope_35 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_9, cart_load_10));
     let cart_slope_36 = cart_factor
-        * ((-end_effector_factor_23)
+        * ((-end_effector_factor_26)
             .mul_add(
                 plate_slope_9,
-                end_effector_factor_22.mul_add(cart_slope_35, end_effector_load_42),
+                (-end_effector_factor_25).mul_add(cart_slope_35, end_effector_load_42),
             ));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_141 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+    let end_effector_slope_141 = end_effector_factor_23
+        * ((-end_effector_factor_19)
             .mul_add(
                 plate_slope_9,
-                (-end_effector_factor_14)
+                (-end_effector_factor_18)
                     .mul_add(
-                        cart_slope_36,
-                        end_effector_factor_15
-                            .mul_add(cart_slope_35, end_effector_load_41),
+                        cart_slope_35,
+                        (-end_effector_factor_17)
+                            .mul_add(cart_slope_36, end_effector_load_41),
                     ),
             ));
-    let end_effector_response_19 = (-end_effector_factor_5)
+    let end_effector_response_19 = end_effector_factor_7
         .mul_add(
-            cart_slope_35,
+            plate_slope_9,
             end_effector_factor_6
                 .mul_add(
-                    plate_slope_9,
-                    end_effector_factor_4
+                    cart_slope_35,
+                    end_effector_factor_5
                         .mul_add(
                             cart_slope_36,
-                            end_effector_factor_3 * end_effector_slope_141,
+                            end_effector_factor_4 * end_effector_slope_141,
                         ),
                 ),
         );
-    let end_effector_slope_142 = end_effector_factor_12
+    let end_effector_slope_142 = end_effector_factor_15
         * (end_effector_load_39 - end_effector_response_19);
-    let end_effector_response_20 = (-end_effector_composite_inertia_33)
+    let end_effector_response_20 = end_effector_composite_inertia_40
         .mul_add(
             cart_slope_35,
-            end_effector_composite_inertia_31
+            end_effector_composite_inertia_38
                 .mul_add(
                     cart_slope_36,
-                    end_effector_composite_inertia_9
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_141,
-                            end_effector_composite_inertia_21 * end_effector_slope_142,
+                            end_effector_composite_inertia_28 * end_effector_slope_142,
                         ),
                 ),
         );
@@ -7339,7 +7736,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[11].mul_add(end_effector_slope_32, q[10] * end_effector_slope_31),
                 ),
         );
-    let end_effector_load_44 = (-end_effector_factor_7)
+    let end_effector_load_44 = (-end_effector_factor_8)
         .mul_add(
             end_effector_slope_73,
             (-q[9])
@@ -7348,25 +7745,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[8].mul_add(end_effector_slope_32, q[7] * end_effector_slope_31),
                 ),
         );
-    let end_effector_load_45 = (-end_effector_factor_13)
+    let end_effector_load_45 = (-end_effector_factor_16)
         .mul_add(end_effector_load_43, end_effector_load_44);
-    let end_effector_load_46 = (-end_effector_factor_21)
+    let end_effector_load_46 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_45,
-            (-end_effector_factor_17)
+            (-end_effector_factor_20)
                 .mul_add(
                     end_effector_load_43,
-                    (-end_effector_factor_8)
+                    (-end_effector_factor_10)
                         .mul_add(end_effector_slope_73, end_effector_slope_91),
                 ),
         );
-    let end_effector_load_47 = (-end_effector_factor_26)
+    let end_effector_load_47 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_45,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load_43,
-                    (-end_effector_factor_11)
+                    (-end_effector_factor_13)
                         .mul_add(
                             end_effector_slope_73,
                             end_effector_slope_93 + end_effector_slope_114,
@@ -7377,70 +7774,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_12 = (-cart_factor_2)
         .mul_add(
             end_effector_load_46,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_45,
-                    (-end_effector_factor_18)
+                    (-end_effector_factor_21)
                         .mul_add(
                             end_effector_load_43,
-                            (-end_effector_factor_10)
+                            (-end_effector_factor_12)
                                 .mul_add(end_effector_slope_73, end_effector_slope_93),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_10 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_12,
                 (-cart_factor_5).mul_add(end_effector_load_46, end_effector_load_47),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_37 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_10, cart_load_12));
+    let cart_slope_37 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_10, cart_load_12));
     let cart_slope_38 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_slope_37,
-                end_effector_factor_23.mul_add(plate_slope_10, end_effector_load_46),
-            ));
-    // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_143 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_slope_10,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_slope_37, end_effector_load_46),
+            ));
+    // end_effector: response (12 additions, 15 multiplications)
+    let end_effector_slope_143 = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_slope_10,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_slope_37,
-                        end_effector_factor_14
+                        end_effector_factor_17
                             .mul_add(cart_slope_38, end_effector_load_45),
                     ),
             ));
     let end_effector_response_21 = (-end_effector_factor_5)
         .mul_add(
-            cart_slope_37,
-            (-end_effector_factor_4)
+            cart_slope_38,
+            end_effector_factor_7
                 .mul_add(
-                    cart_slope_38,
+                    plate_slope_10,
                     end_effector_factor_6
                         .mul_add(
-                            plate_slope_10,
-                            end_effector_factor_3 * end_effector_slope_143,
+                            cart_slope_37,
+                            end_effector_factor_4 * end_effector_slope_143,
                         ),
                 ),
         );
-    let end_effector_slope_144 = end_effector_factor_12
+    let end_effector_slope_144 = end_effector_factor_15
         * (end_effector_load_43 - end_effector_response_21);
-    let end_effector_response_22 = (-end_effector_composite_inertia_33)
+    let end_effector_response_22 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_slope_37,
-            (-end_effector_composite_inertia_31)
+            cart_slope_38,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_slope_38,
-                    end_effector_composite_inertia_9
+                    cart_slope_37,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_143,
-                            end_effector_composite_inertia_21 * end_effector_slope_144,
+                            end_effector_composite_inertia_28 * end_effector_slope_144,
                         ),
                 ),
         );
@@ -7454,7 +7851,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[11].mul_add(end_effector_slope_44, q[10] * end_effector_slope_43),
                 ),
         );
-    let end_effector_load_49 = (-end_effector_factor_7)
+    let end_effector_load_49 = (-end_effector_factor_8)
         .mul_add(
             end_effector_slope_74,
             (-q[9])
@@ -7463,25 +7860,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[8].mul_add(end_effector_slope_44, q[7] * end_effector_slope_43),
                 ),
         );
-    let end_effector_load_50 = (-end_effector_factor_13)
+    let end_effector_load_50 = (-end_effector_factor_16)
         .mul_add(end_effector_load_48, end_effector_load_49);
-    let end_effector_load_51 = (-end_effector_factor_21)
+    let end_effector_load_51 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_50,
-            (-end_effector_factor_17)
+            (-end_effector_factor_20)
                 .mul_add(
                     end_effector_load_48,
-                    (-end_effector_factor_8)
+                    (-end_effector_factor_10)
                         .mul_add(end_effector_slope_74, end_effector_slope_94),
                 ),
         );
-    let end_effector_load_52 = (-end_effector_factor_26)
+    let end_effector_load_52 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_50,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load_48,
-                    (-end_effector_factor_11)
+                    (-end_effector_factor_13)
                         .mul_add(
                             end_effector_slope_74,
                             end_effector_slope_96 + end_effector_slope_115,
@@ -7492,70 +7889,70 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_13 = (-cart_factor_2)
         .mul_add(
             end_effector_load_51,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_50,
-                    (-end_effector_factor_18)
+                    (-end_effector_factor_21)
                         .mul_add(
                             end_effector_load_48,
-                            (-end_effector_factor_10)
+                            (-end_effector_factor_12)
                                 .mul_add(end_effector_slope_74, end_effector_slope_96),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_slope_11 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_13,
                 (-cart_factor_5).mul_add(end_effector_load_51, end_effector_load_52),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_39 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_11, cart_load_13));
+    let cart_slope_39 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_11, cart_load_13));
     let cart_slope_40 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_slope_39,
-                end_effector_factor_23.mul_add(plate_slope_11, end_effector_load_51),
-            ));
-    // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_145 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_slope_11,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_slope_39, end_effector_load_51),
+            ));
+    // end_effector: response (12 additions, 15 multiplications)
+    let end_effector_slope_145 = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_slope_11,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_slope_39,
-                        end_effector_factor_14
+                        end_effector_factor_17
                             .mul_add(cart_slope_40, end_effector_load_50),
                     ),
             ));
     let end_effector_response_23 = (-end_effector_factor_5)
         .mul_add(
-            cart_slope_39,
-            (-end_effector_factor_4)
+            cart_slope_40,
+            end_effector_factor_7
                 .mul_add(
-                    cart_slope_40,
+                    plate_slope_11,
                     end_effector_factor_6
                         .mul_add(
-                            plate_slope_11,
-                            end_effector_factor_3 * end_effector_slope_145,
+                            cart_slope_39,
+                            end_effector_factor_4 * end_effector_slope_145,
                         ),
                 ),
         );
-    let end_effector_slope_146 = end_effector_factor_12
+    let end_effector_slope_146 = end_effector_factor_15
         * (end_effector_load_48 - end_effector_response_23);
-    let end_effector_response_24 = (-end_effector_composite_inertia_33)
+    let end_effector_response_24 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_slope_39,
-            (-end_effector_composite_inertia_31)
+            cart_slope_40,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_slope_40,
-                    end_effector_composite_inertia_9
+                    cart_slope_39,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_145,
-                            end_effector_composite_inertia_21 * end_effector_slope_146,
+                            end_effector_composite_inertia_28 * end_effector_slope_146,
                         ),
                 ),
         );
@@ -7569,7 +7966,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[11].mul_add(end_effector_slope_56, q[10] * end_effector_slope_55),
                 ),
         );
-    let end_effector_load_54 = (-end_effector_factor_7)
+    let end_effector_load_54 = (-end_effector_factor_8)
         .mul_add(
             end_effector_slope_75,
             (-q[9])
@@ -7578,25 +7975,25 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
                     q[8].mul_add(end_effector_slope_56, q[7] * end_effector_slope_55),
                 ),
         );
-    let end_effector_load_55 = (-end_effector_factor_13)
+    let end_effector_load_55 = (-end_effector_factor_16)
         .mul_add(end_effector_load_53, end_effector_load_54);
-    let end_effector_load_56 = (-end_effector_factor_21)
+    let end_effector_load_56 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_55,
-            (-end_effector_factor_17)
+            (-end_effector_factor_20)
                 .mul_add(
                     end_effector_load_53,
-                    (-end_effector_factor_8)
+                    (-end_effector_factor_10)
                         .mul_add(end_effector_slope_75, end_effector_slope_97),
                 ),
         );
-    let end_effector_load_57 = (-end_effector_factor_26)
+    let end_effector_load_57 = (-end_effector_factor_29)
         .mul_add(
             end_effector_load_55,
-            (-end_effector_factor_19)
+            (-end_effector_factor_22)
                 .mul_add(
                     end_effector_load_53,
-                    (-end_effector_factor_11)
+                    (-end_effector_factor_13)
                         .mul_add(
                             end_effector_slope_75,
                             end_effector_slope_99 + end_effector_slope_116,
@@ -7607,248 +8004,248 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_load_14 = (-cart_factor_2)
         .mul_add(
             end_effector_load_56,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_55,
-                    (-end_effector_factor_18)
+                    (-end_effector_factor_21)
                         .mul_add(
                             end_effector_load_53,
-                            (-end_effector_factor_10)
+                            (-end_effector_factor_12)
                                 .mul_add(end_effector_slope_75, end_effector_slope_99),
                         ),
                 ),
         );
     // plate: response (2 multiplications)
     let plate_slope_12 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_14,
                 (-cart_factor_5).mul_add(end_effector_load_56, end_effector_load_57),
             ));
-    let plate_response = cart_factor_8 * plate_factor;
+    let plate_response = cart_factor_7 * plate_factor;
     // cart: response (4 additions, 7 multiplications)
-    let cart_slope_41 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_slope_12, cart_load_14));
+    let cart_slope_41 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_slope_12, cart_load_14));
     let cart_slope_42 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_slope_41,
-                end_effector_factor_23.mul_add(plate_slope_12, end_effector_load_56),
-            ));
-    // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_147 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_slope_12,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_slope_41, end_effector_load_56),
+            ));
+    // end_effector: response (12 additions, 15 multiplications)
+    let end_effector_slope_147 = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_slope_12,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_slope_41,
-                        end_effector_factor_14
+                        end_effector_factor_17
                             .mul_add(cart_slope_42, end_effector_load_55),
                     ),
             ));
     let end_effector_response_25 = (-end_effector_factor_5)
         .mul_add(
-            cart_slope_41,
-            (-end_effector_factor_4)
+            cart_slope_42,
+            end_effector_factor_7
                 .mul_add(
-                    cart_slope_42,
+                    plate_slope_12,
                     end_effector_factor_6
                         .mul_add(
-                            plate_slope_12,
-                            end_effector_factor_3 * end_effector_slope_147,
+                            cart_slope_41,
+                            end_effector_factor_4 * end_effector_slope_147,
                         ),
                 ),
         );
-    let end_effector_slope_148 = end_effector_factor_12
+    let end_effector_slope_148 = end_effector_factor_15
         * (end_effector_load_53 - end_effector_response_25);
-    let end_effector_response_26 = (-end_effector_composite_inertia_33)
+    let end_effector_response_26 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_slope_41,
-            (-end_effector_composite_inertia_31)
+            cart_slope_42,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_slope_42,
-                    end_effector_composite_inertia_9
+                    cart_slope_41,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_slope_147,
-                            end_effector_composite_inertia_21 * end_effector_slope_148,
+                            end_effector_composite_inertia_28 * end_effector_slope_148,
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_response_2 = plate_factor
-        * ((-cart_factor_2).mul_add(cart_factor_8, cart_factor_5));
+        * ((-cart_factor_2).mul_add(cart_factor_7, cart_factor_5));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response = cart_factor_7
-        * (cart_factor_4.mul_add(plate_response_2, cart_factor_2));
+    let cart_response = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_response_2, cart_factor_2));
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_15 = (-end_effector_factor_21)
-        .mul_add(cart_factor_2, end_effector_factor_24);
+    let cart_load_15 = (-end_effector_factor_24)
+        .mul_add(cart_factor_2, end_effector_factor_27);
     // plate: response (1 multiplication)
     let plate_response_3 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_15,
-                (-end_effector_factor_21).mul_add(cart_factor_5, end_effector_factor_26),
+                (-end_effector_factor_24).mul_add(cart_factor_5, end_effector_factor_29),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_2 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_response_3, cart_load_15));
+    let cart_response_2 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_response_3, cart_load_15));
     let cart_response_3 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_response_2,
-                end_effector_factor_23.mul_add(plate_response_3, end_effector_factor_21),
-            ));
-    // end_effector: response (3 additions, 4 multiplications)
-    let end_effector_response_27 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_response_3,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_response_2, end_effector_factor_24),
+            ));
+    // end_effector: response (3 additions, 4 multiplications)
+    let end_effector_response_27 = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_response_3,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_response_2,
-                        end_effector_factor_14.mul_add(cart_response_3, -n(1.0)),
+                        end_effector_factor_17.mul_add(cart_response_3, -n(1.0)),
                     ),
             ));
     // end_effector: load (3 additions, 3 multiplications)
-    let end_effector_load_58 = (-end_effector_factor_13)
-        .mul_add(end_effector_factor_21, end_effector_factor_17);
+    let end_effector_load_58 = (-end_effector_factor_16)
+        .mul_add(end_effector_factor_24, end_effector_factor_20);
     // cart: load (3 additions, 3 multiplications)
     let cart_load_16 = (-cart_factor_2)
         .mul_add(
             end_effector_load_58,
-            (-end_effector_factor_13)
-                .mul_add(end_effector_factor_24, end_effector_factor_18),
+            (-end_effector_factor_16)
+                .mul_add(end_effector_factor_27, end_effector_factor_21),
         );
     // plate: response (1 multiplication)
     let plate_response_4 = plate_factor
-        * ((-cart_factor_8)
+        * ((-cart_factor_7)
             .mul_add(
                 cart_load_16,
                 (-cart_factor_5)
                     .mul_add(
                         end_effector_load_58,
-                        (-end_effector_factor_13)
-                            .mul_add(end_effector_factor_26, end_effector_factor_19),
+                        (-end_effector_factor_16)
+                            .mul_add(end_effector_factor_29, end_effector_factor_22),
                     ),
             ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_4 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_response_4, cart_load_16));
+    let cart_response_4 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_response_4, cart_load_16));
     let cart_response_5 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_response_4,
-                end_effector_factor_23.mul_add(plate_response_4, end_effector_load_58),
-            ));
-    // end_effector: response (7 additions, 9 multiplications)
-    let end_effector_response_28 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_response_4,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_response_4, end_effector_load_58),
+            ));
+    // end_effector: response (7 additions, 9 multiplications)
+    let end_effector_response_28 = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_response_4,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_response_4,
-                        end_effector_factor_14
-                            .mul_add(cart_response_5, end_effector_factor_13),
+                        end_effector_factor_17
+                            .mul_add(cart_response_5, end_effector_factor_16),
                     ),
             ));
     let end_effector_response_29 = (-end_effector_factor_5)
         .mul_add(
-            cart_response_4,
-            (-end_effector_factor_4)
+            cart_response_5,
+            end_effector_factor_7
                 .mul_add(
-                    cart_response_5,
+                    plate_response_4,
                     end_effector_factor_6
                         .mul_add(
-                            plate_response_4,
-                            end_effector_factor_3 * end_effector_response_28,
+                            cart_response_4,
+                            end_effector_factor_4 * end_effector_response_28,
                         ),
                 ),
         );
     // end_effector: load (7 additions, 7 multiplications)
     let end_effector_load_59 = (-end_effector_factor_2)
-        .mul_add(end_effector_factor_13, end_effector_factor_7);
-    let end_effector_load_60 = (-end_effector_factor_21)
+        .mul_add(end_effector_factor_16, end_effector_factor_8);
+    let end_effector_load_60 = (-end_effector_factor_24)
         .mul_add(
             end_effector_load_59,
             (-end_effector_factor_2)
-                .mul_add(end_effector_factor_17, end_effector_factor_8),
+                .mul_add(end_effector_factor_20, end_effector_factor_10),
         );
     // cart: load (3 additions, 3 multiplications)
     let cart_load_17 = (-cart_factor_2)
         .mul_add(
             end_effector_load_60,
-            (-end_effector_factor_24)
+            (-end_effector_factor_27)
                 .mul_add(
                     end_effector_load_59,
                     (-end_effector_factor_2)
-                        .mul_add(end_effector_factor_18, end_effector_factor_10),
+                        .mul_add(end_effector_factor_21, end_effector_factor_12),
                 ),
         );
-    let cart_load_18 = (-cart_factor_8)
+    let cart_load_18 = (-cart_factor_7)
         .mul_add(
             cart_load_17,
             (-cart_factor_5)
                 .mul_add(
                     end_effector_load_60,
-                    (-end_effector_factor_26)
+                    (-end_effector_factor_29)
                         .mul_add(
                             end_effector_load_59,
                             (-end_effector_factor_2)
-                                .mul_add(end_effector_factor_19, end_effector_factor_11),
+                                .mul_add(end_effector_factor_22, end_effector_factor_13),
                         ),
                 ),
         );
     // plate: response (1 multiplication)
     let plate_response_5 = plate_factor * cart_load_18;
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_6 = cart_factor_7
-        * (cart_factor_4.mul_add(plate_response_5, cart_load_17));
+    let cart_response_6 = cart_factor_6
+        * ((-cart_factor_4).mul_add(plate_response_5, cart_load_17));
     let cart_response_7 = cart_factor
-        * ((-end_effector_factor_22)
-            .mul_add(
-                cart_response_6,
-                end_effector_factor_23.mul_add(plate_response_5, end_effector_load_60),
-            ));
-    // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_response_30 = end_effector_factor_20
-        * ((-end_effector_factor_16)
+        * (end_effector_factor_26
             .mul_add(
                 plate_response_5,
-                end_effector_factor_15
+                end_effector_factor_25.mul_add(cart_response_6, end_effector_load_60),
+            ));
+    // end_effector: response (12 additions, 15 multiplications)
+    let end_effector_response_30 = end_effector_factor_23
+        * ((-end_effector_factor_19)
+            .mul_add(
+                plate_response_5,
+                (-end_effector_factor_18)
                     .mul_add(
                         cart_response_6,
-                        end_effector_factor_14
+                        end_effector_factor_17
                             .mul_add(cart_response_7, end_effector_load_59),
                     ),
             ));
     let end_effector_response_31 = (-end_effector_factor_5)
         .mul_add(
-            cart_response_6,
-            (-end_effector_factor_4)
+            cart_response_7,
+            end_effector_factor_7
                 .mul_add(
-                    cart_response_7,
+                    plate_response_5,
                     end_effector_factor_6
                         .mul_add(
-                            plate_response_5,
-                            end_effector_factor_3 * end_effector_response_30,
+                            cart_response_6,
+                            end_effector_factor_4 * end_effector_response_30,
                         ),
                 ),
         );
-    let end_effector_response_32 = end_effector_factor_12
+    let end_effector_response_32 = end_effector_factor_15
         * (end_effector_factor_2 - end_effector_response_31);
-    let end_effector_response_33 = (-end_effector_composite_inertia_33)
+    let end_effector_response_33 = (-end_effector_composite_inertia_38)
         .mul_add(
-            cart_response_6,
-            (-end_effector_composite_inertia_31)
+            cart_response_7,
+            end_effector_composite_inertia_40
                 .mul_add(
-                    cart_response_7,
-                    end_effector_composite_inertia_9
+                    cart_response_6,
+                    end_effector_composite_inertia_12
                         .mul_add(
                             end_effector_response_30,
-                            end_effector_composite_inertia_21 * end_effector_response_32,
+                            end_effector_composite_inertia_28 * end_effector_response_32,
                         ),
                 ),
         );
@@ -7878,26 +8275,26 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
         ],
         [
             n(0.0),
-            -cart_slope_19,
-            -cart_slope_21,
-            -cart_slope_23,
-            cart_slope_25,
-            cart_slope_27,
-            cart_slope_29,
-            cart_slope_31,
-            cart_slope_33,
-            cart_slope_35,
-            -cart_slope_37,
-            -cart_slope_39,
-            -cart_slope_41,
+            cart_slope_19,
+            cart_slope_21,
+            cart_slope_23,
+            -cart_slope_25,
+            -cart_slope_27,
+            -cart_slope_29,
+            -cart_slope_31,
+            -cart_slope_33,
+            -cart_slope_35,
+            cart_slope_37,
+            cart_slope_39,
+            cart_slope_41,
             -plate_response,
-            cart_factor_7 * (cart_factor_4.mul_add(plate_response, -n(1.0))),
-            cart_response,
+            cart_factor_6 * (cart_factor_4.mul_add(plate_response, n(1.0))),
+            -cart_response,
             n(0.0),
-            cart_response_2,
-            cart_response_4,
-            cart_response_6,
-            cart_acceleration_8,
+            -cart_response_2,
+            -cart_response_4,
+            -cart_response_6,
+            -cart_acceleration_8,
         ],
         [
             n(0.0),
@@ -7914,13 +8311,13 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             -cart_slope_40,
             -cart_slope_42,
             -plate_response_2,
-            cart_response,
-            -(cart_factor
-                * ((-end_effector_factor_23)
+            -cart_response,
+            cart_factor
+                * (end_effector_factor_26
                     .mul_add(
                         plate_response_2,
-                        end_effector_factor_22.mul_add(cart_response, n(1.0)),
-                    ))),
+                        end_effector_factor_25.mul_add(cart_response, -n(1.0)),
+                    )),
             n(0.0),
             cart_response_3,
             cart_response_5,
@@ -7942,7 +8339,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_slope_145,
             end_effector_slope_147,
             -plate_response_3,
-            cart_response_2,
+            -cart_response_2,
             cart_response_3,
             n(0.0),
             -end_effector_response_27,
@@ -7965,96 +8362,96 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
             end_effector_slope_146,
             end_effector_slope_148,
             -plate_response_4,
-            cart_response_4,
+            -cart_response_4,
             cart_response_5,
             n(0.0),
             -end_effector_response_28,
-            end_effector_factor_12 * (end_effector_response_29 + n(1.0)),
+            end_effector_factor_15 * (end_effector_response_29 + n(1.0)),
             -end_effector_response_32,
             -end_effector_acceleration_27,
         ],
         [
             n(0.0),
             -(end_effector_factor
-                * (end_effector_composite_inertia_35
+                * (end_effector_composite_inertia_42
                     .mul_add(
                         plate_slope,
                         end_effector_slope_106 - end_effector_response_4,
                     ))),
             end_effector_factor
-                * (end_effector_composite_inertia_35
+                * (end_effector_composite_inertia_42
                     .mul_add(
                         plate_slope_2,
                         end_effector_slope_107 - end_effector_response_6,
                     )),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_3,
                         end_effector_slope_108 - end_effector_response_8,
                     ))),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_4,
                         end_effector_slope_64 - end_effector_response_10,
                     ))),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_5,
                         end_effector_slope_68 - end_effector_response_12,
                     ))),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_6,
                         end_effector_slope_72 - end_effector_response_14,
                     ))),
             end_effector_factor
-                * (end_effector_composite_inertia_35
+                * (end_effector_composite_inertia_42
                     .mul_add(
                         plate_slope_7,
                         end_effector_slope_105 - end_effector_response_16,
                     )),
             end_effector_factor
-                * (end_effector_composite_inertia_35
+                * (end_effector_composite_inertia_42
                     .mul_add(
                         plate_slope_8,
                         end_effector_slope_109 - end_effector_response_18,
                     )),
             -(end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_9,
                         end_effector_slope_110 - end_effector_response_20,
                     ))),
             end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_10,
                         end_effector_slope_73 - end_effector_response_22,
                     )),
             end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_11,
                         end_effector_slope_74 - end_effector_response_24,
                     )),
             end_effector_factor
-                * ((-end_effector_composite_inertia_35)
+                * ((-end_effector_composite_inertia_42)
                     .mul_add(
                         plate_slope_12,
                         end_effector_slope_75 - end_effector_response_26,
                     )),
             -plate_response_5,
-            cart_response_6,
+            -cart_response_6,
             cart_response_7,
             n(0.0),
             -end_effector_response_30,
             -end_effector_response_32,
             end_effector_factor
-                * (end_effector_composite_inertia_35
+                * (end_effector_composite_inertia_42
                     .mul_add(plate_response_5, end_effector_response_33 + n(1.0))),
             -end_effector_acceleration_28,
         ],

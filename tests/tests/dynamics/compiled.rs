@@ -3,6 +3,7 @@
 
 mod derivatives;
 mod loops;
+mod moments;
 
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::elements::BodySpring;

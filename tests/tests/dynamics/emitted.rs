@@ -84,7 +84,7 @@ fn loops_give_the_values_of_the_tree() {
         tree.accelerations(&q, &v, &tau, &mut expected)
             .expect("the scene is sound");
         let found = ball_chain::forward_dynamics(chunk, speeds, inputs);
-        // Conditions of M̄ of such chains are some 1e4: 10 roundings each.
+        // Conditions of M̄ of such chains are some 1e6, of which that allows a hundredth.
         assert!(difference(&found, &expected) < 1e-11);
         tree.inverse_dynamics(&q, &v, &tau, &mut expected)
             .expect("the scene is sound");

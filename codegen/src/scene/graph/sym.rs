@@ -203,13 +203,14 @@ fn add_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
 
 /// Twice a node: a sum, which costs less than a product where products set the pace, unless it is multiplied by a number already.
 fn doubled(graph: &mut Graph, node: u32) -> u32 {
-    if let Operation::Product(of, factor) = graph.nodes[node as usize].operation
-        && let Some(factor) = constant(graph, factor)
-    {
-        let twice = graph.node(Operation::Constant((2.0 * factor).to_bits()));
-        return graph.node(Operation::Product(of, twice));
+    match scaled(graph, node, 2.0) {
+        Some((of, 1.0)) => of,
+        Some((of, factor)) => {
+            let factor = graph.node(Operation::Constant(factor.to_bits()));
+            graph.node(Operation::Product(of, factor))
+        }
+        None => graph.node(Operation::Sum(node, node)),
     }
-    graph.node(Operation::Sum(node, node))
 }
 
 fn multiply(a: Sym, b: Sym) -> Sym {
@@ -237,8 +238,13 @@ fn multiply_nodes(graph: &mut Graph, a: Value, b: Value) -> Sym {
         false => (b.node, a.node),
     };
     let negative = a.negative != b.negative;
-    let (first, second) = match scaled(graph, first, second) {
+    let factor = constant(graph, second).and_then(|factor| scaled(graph, first, factor));
+    let (first, second) = match factor {
         Some((node, 1.0)) => return Sym::Node(Value { node, negative }),
+        Some((node, 2.0)) => {
+            let node = graph.node(Operation::Sum(node, node));
+            return Sym::Node(Value { node, negative });
+        }
         Some((node, factor)) => {
             let factor = graph.node(Operation::Constant(factor.to_bits()));
             (node, factor)
@@ -259,14 +265,14 @@ fn constant(graph: &Graph, node: u32) -> Option<f64> {
     }
 }
 
-/// A node and the number that it is multiplied by, where `first` is such a product already and `second` a number: one product instead of two.
-fn scaled(graph: &Graph, first: u32, second: u32) -> Option<(u32, f64)> {
-    let (node, factor) = match graph.nodes[first as usize].operation {
+/// A node and the number that it is multiplied by, where `product` is such a product already: one instead of two.
+fn scaled(graph: &Graph, product: u32, by: f64) -> Option<(u32, f64)> {
+    let (node, factor) = match graph.nodes[product as usize].operation {
         Operation::Product(node, factor) => (node, constant(graph, factor)?),
         Operation::Sum(node, same) if node == same => (node, 2.0),
         _ => return None,
     };
-    let factor = constant(graph, second)? * factor;
+    let factor = by * factor;
     // Beyond the range of doubles the two factors are not one.
     factor.is_normal().then_some((node, factor))
 }

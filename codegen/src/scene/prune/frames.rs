@@ -9,7 +9,7 @@ use crate::scene::joint::Joint;
 use crate::scene::model::{Body, Inertia, Model};
 use crate::scene::spatial::{Step, Twist};
 use hamel::spatial::Pose;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use num_traits::Zero;
 
 /// Rounds of improvement: the frames of neighbours depend on each other.
@@ -227,14 +227,25 @@ pub fn clean(shift: Vector3<f64>) -> Vector3<f64> {
     shift.map(|entry| if entry.abs() <= limit { 0.0 } else { entry })
 }
 
-/// Without entries that are rounding of the others.
+/// Without entries that are rounding of the others: of squares, of both moments of inertia that they are part of.
 fn tidy(inertia: &Inertia) -> Inertia {
-    let limit = ROUNDING * inertia.second.trace().abs();
+    let second = &inertia.second;
+    let limit = |i: usize, j: usize| {
+        let [a, b] = [1, 2].map(|k| second[(i, i)] + second[((i + k) % 3, (i + k) % 3)]);
+        let size = if i == j {
+            a.abs().min(b.abs())
+        } else {
+            second.trace().abs()
+        };
+        ROUNDING * size
+    };
+    let entry = |i: usize, j: usize| match second[(i, j)] {
+        entry if entry.abs() <= limit(i, j) => 0.0,
+        entry => entry,
+    };
     Inertia {
         first: clean(inertia.first),
-        second: inertia
-            .second
-            .map(|entry| if entry.abs() <= limit { 0.0 } else { entry }),
+        second: Matrix3::from_fn(entry),
         ..*inertia
     }
 }

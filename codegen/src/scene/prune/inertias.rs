@@ -12,9 +12,9 @@ use hamel::spatial::Pose;
 use nalgebra::{Matrix3, Vector3};
 use num_traits::ToPrimitive;
 
-/// The order in which parameters are made 0: those that cost most first; of second moments squares first, whose elements are large wherever
-/// an axis points.
-const ORDER: [usize; 10] = [0, 3, 1, 2, 6, 5, 4, 9, 8, 7];
+/// Parameters that are made 0, those that cost most first; among equals the one with the largest entry. Of second moments squares come first: wherever an
+/// axis points, one of them has an entry of at least a third.
+const ORDER: [&[usize]; 4] = [&[0], &[3, 1, 2], &[6, 5, 4], &[9, 8, 7]];
 /// Elements of a basis below this are rounding of the turn that was made with it.
 const ROUNDING: f64 = 1e-14;
 
@@ -53,29 +53,37 @@ fn basis(body: &Body, to_link: &Pose<f64>) -> Vec<[f64; 10]> {
 /// The same space with a basis of which each element alone has 1 at a parameter of its own: element and parameter.
 fn reduced(mut basis: Vec<[f64; 10]>) -> Vec<(usize, [f64; 10])> {
     let mut done: Vec<(usize, [f64; 10])> = vec![];
-    for parameter in ORDER {
-        let largest = (0..basis.len()).max_by(|&a, &b| {
-            basis[a][parameter]
-                .abs()
-                .total_cmp(&basis[b][parameter].abs())
-        });
-        let Some(largest) = largest.filter(|&k| basis[k][parameter] != 0.0) else {
-            continue;
-        };
-        let pivot = basis.swap_remove(largest);
-        let pivot = pivot.map(|entry| entry / pivot[parameter]);
-        let others = basis
-            .iter_mut()
-            .chain(done.iter_mut().map(|(_, element)| element));
-        for other in others {
-            let factor = other[parameter];
-            for (entry, pivot) in other.iter_mut().zip(pivot) {
-                *entry -= factor * pivot;
+    for parameters in ORDER {
+        while let Some((element, parameter)) = largest(&basis, parameters) {
+            let pivot = basis.swap_remove(element);
+            let pivot = pivot.map(|entry| entry / pivot[parameter]);
+            let others = basis
+                .iter_mut()
+                .chain(done.iter_mut().map(|(_, element)| element));
+            for other in others {
+                let factor = other[parameter];
+                for (entry, pivot) in other.iter_mut().zip(pivot) {
+                    *entry -= factor * pivot;
+                }
+                other[parameter] = 0.0;
             }
+            done.push((parameter, pivot));
         }
-        done.push((parameter, pivot));
     }
     done
+}
+
+/// Where the elements' largest entry at one of the parameters stands, unless all are 0: the first of equals.
+fn largest(basis: &[[f64; 10]], parameters: &[usize]) -> Option<(usize, usize)> {
+    let places = parameters
+        .iter()
+        .flat_map(|&parameter| (0..basis.len()).map(move |element| (element, parameter)));
+    let size = |&(element, parameter): &(usize, usize)| basis[element][parameter].abs();
+    let largest = places.reduce(|first, other| match size(&other) > size(&first) {
+        true => other,
+        false => first,
+    });
+    largest.filter(|place| size(place) != 0.0)
 }
 
 /// What is left of an inertia, with zeros at the parameters of the basis, and what was taken.

@@ -38,22 +38,9 @@ impl Rigid {
                 _ => Self {
                     mass: inertia.mass,
                     first: step.to_parent(&inertia.first),
-                    second: inertia.turned(step),
+                    second: step.turned(&inertia.second, true),
                 },
             })
-    }
-
-    /// The second moments in the parent's axes. Behind any rotation by way of moments of inertia: half of the products are those of momenta.
-    fn turned(&self, step: &Step) -> Mat3 {
-        let Step::Rotate(_) = step else {
-            return step.turned(&self.second, true);
-        };
-        let moments = step.turned(&self.moments(), true);
-        let trace = self.second.trace();
-        symmetric(|i, j| match i == j {
-            true => trace - moments[(i, j)],
-            false => -moments[(i, j)],
-        })
     }
 
     /// About a point from which the present one stands at `by`: `J + p kᵀ + k pᵀ` with `k = h + m p / 2`.
