@@ -267,8 +267,8 @@ fn worth_factorising(model: &Model) -> bool {
 
 /// Operations of a function from which on like bodies are looped over, if that halves what is written.
 ///
-/// Below, one body after the other is faster: looped forward dynamics took 1.33 times as long where that were 3200 operations (anymal), 1.28 times with 7000
-/// (eight ball joints) and 1.20 times with 8700 (g1).
+/// Below, one body after the other is faster: looped forward dynamics of 3200 operations (anymal) took 1.33 times as long, of 7000 (eight ball joints)
+/// 1.28 times and of 8700 (g1) 1.20 times.
 const LOOPED: usize = 10_000;
 
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
