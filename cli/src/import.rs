@@ -1,8 +1,13 @@
 //! `hamel import`: a robot in URDF as a scene file.
 
-use crate::output::{self, Failure, refuse_overwriting, tell};
+use crate::files::{Force, admit};
+use crate::output::{self, Failure, tell};
+use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
-use hamel_scene::urdf;
+use hamel_scene::{read_file, urdf};
+use std::fs::File;
+use std::hash::Hasher;
+use std::io::Read;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -19,7 +24,9 @@ Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres,
 which pictures show; meshes and the shapes of <collision> do not. What the scene does not hold (limits, mimic joints, friction, meshes …)
 is told on stderr and in comments. scenes/README.md says how each element of URDF is read.
 
-Exit codes: 0 success; 1 a robot with mistakes, a file that cannot be written; 2 wrong options.";
+The first line of the scene tells whether it was edited: an imported scene is replaced by another import, an edited one only with --force.
+
+Exit codes: 0 success; 1 a robot with mistakes, a file that cannot be written; 2 wrong options; 130 interrupted.";
 
 /// Turn a robot in URDF into a scene file.
 #[derive(Debug, clap::Args)]
@@ -36,6 +43,9 @@ pub struct Args {
     /// Let the root link move freely; otherwise it is fixed to the world
     #[arg(long)]
     pub floating_base: bool,
+
+    #[command(flatten)]
+    pub force: Force,
 }
 
 /// Writes the scene of `args`.
@@ -47,15 +57,38 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         floating_base: args.floating_base,
         ..urdf::Options::default()
     };
-    refuse_overwriting([&args.robot], args.output.as_deref())?;
-    let import = urdf::load(&args.robot, &options)?;
+    let (text, name) = read_file(&args.robot)?;
+    let import = urdf::read(&text, &name, &options)?;
     tell(&import.build(registry)?.notices);
-    let text = import.to_toml();
-    match &args.output {
+    let written = args.output.as_deref().map(|path| (path, is_own as _));
+    let outputs = admit([&*args.robot], written, args.force.force)?;
+    let text = marked(&import.to_toml());
+    match outputs.first() {
         None => output::print(&text),
-        Some(path) => std::fs::write(path, text).map_err(|error| Failure::Write {
-            target: path.display().to_string(),
-            error,
-        }),
+        Some(output) => output.write(text),
     }
+}
+
+/// How the first line of an imported scene begins.
+const MARK: &str = "# Imported by `hamel import`; sum of what follows: ";
+
+/// The scene under a line that tells whether it was edited since.
+fn marked(scene: &str) -> String {
+    format!("{MARK}{:016x}\n{scene}", sum(scene))
+}
+
+/// Whether a file is an imported scene as it was written: one that was edited is the user's.
+fn is_own(mut file: &File) -> bool {
+    let mut text = String::new();
+    let is_text = file.read_to_string(&mut text).is_ok();
+    let parts = text
+        .strip_prefix(MARK)
+        .and_then(|text| text.split_once('\n'));
+    is_text && parts.is_some_and(|(told, scene)| told == format!("{:016x}", sum(scene)))
+}
+
+fn sum(text: &str) -> u64 {
+    let mut hasher = FnvHasher::default();
+    hasher.write(text.as_bytes());
+    hasher.finish()
 }

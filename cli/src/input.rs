@@ -1,28 +1,76 @@
-//! What commands read: a scene file, or a robot in URDF.
+//! What commands read: a scene file, or a robot in URDF. It is read once, whatever is made of it.
 
 use crate::output::Failure;
 use hamel::registry::JointRegistry;
-use hamel_scene::{Scene, urdf};
+use hamel_codegen::scene::Build;
+use hamel_scene::{Scene, SceneDescription, read_file, urdf};
 use std::path::Path;
 
-/// The scene, or the robot in URDF, as the file's ending says.
-///
-/// # Errors
-/// Mistakes in the file; `floating_base` for what is no robot.
-pub fn scene(path: &Path, floating_base: bool, registry: &JointRegistry) -> Result<Scene, Failure> {
-    let ending = path.extension().unwrap_or_default();
-    if ending.eq_ignore_ascii_case("urdf") {
-        let options = urdf::Options {
-            floating_base,
-            ..urdf::Options::default()
+/// The text of a scene or of a robot.
+#[derive(Debug)]
+pub struct Input {
+    text: String,
+    /// As messages call the file.
+    name: String,
+    /// Name of the file without its folder.
+    label: String,
+    /// How to read a robot; absent for a scene.
+    robot: Option<urdf::Options>,
+}
+
+impl Input {
+    /// The scene, or the robot in URDF, as the file's ending says.
+    ///
+    /// # Errors
+    /// A file that cannot be read; `floating_base` for what is no robot.
+    pub fn read(path: &Path, floating_base: bool) -> Result<Self, Failure> {
+        let ending = path.extension().unwrap_or_default();
+        let is_robot = ending.eq_ignore_ascii_case("urdf");
+        if floating_base && !is_robot {
+            return Err(Failure::Options(format!(
+                "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
+                path.display()
+            )));
+        }
+        let (text, name) = read_file(path)?;
+        let label = path.file_name().unwrap_or_default().to_string_lossy();
+        Ok(Self {
+            text,
+            name,
+            label: label.into_owned(),
+            robot: is_robot.then(|| urdf::Options {
+                floating_base,
+                ..urdf::Options::default()
+            }),
+        })
+    }
+
+    /// Name of the file without its folder.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// The scene, with the joints of `registry`.
+    ///
+    /// # Errors
+    /// Mistakes in the text.
+    pub fn scene(&self, registry: &JointRegistry) -> Result<Scene, Failure> {
+        Ok(match &self.robot {
+            Some(options) => urdf::read(&self.text, &self.name, options)?.build(registry)?,
+            None => Scene::parse(&self.text, &self.name, registry)?,
+        })
+    }
+
+    /// For the scene compiler: what [`Input::scene`] is made of.
+    ///
+    /// # Errors
+    /// Mistakes in the text.
+    pub fn build(&self) -> Result<Build, Failure> {
+        let description: SceneDescription = match &self.robot {
+            Some(options) => urdf::read(&self.text, &self.name, options)?.scene,
+            None => Scene::from_toml(&self.text, &self.name)?,
         };
-        return Ok(urdf::load(path, &options)?.build(registry)?);
+        let build = hamel_codegen::scene_of(&self.label, description);
+        Ok(build.library(hamel_joints::specs()))
     }
-    if floating_base {
-        return Err(Failure::Options(format!(
-            "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
-            path.display()
-        )));
-    }
-    Ok(Scene::load(path, registry)?)
 }

@@ -1,15 +1,19 @@
 //! `hamel`: simulates and compiles scenes and robots, and explains joints, from the command line.
 //!
-//! Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood.
+//! Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood, 130 that it was interrupted.
 
+mod cells;
 mod compile;
 mod compiled;
+mod files;
 mod import;
 mod input;
+mod interrupt;
 mod joints;
 mod output;
 mod report;
 mod simulate;
+mod terminal;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -33,8 +37,16 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    interrupt::listen();
     let registry = hamel_joints::registry();
-    let result = match Cli::parse().command {
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(answer) => {
+            terminal::answer(&answer);
+            return ExitCode::from(if answer.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let result = match command {
         Command::Simulate(args) => simulate::run(&args, &registry),
         Command::Compile(args) => compile::run(&args, &registry),
         Command::Import(args) => import::run(&args, &registry),

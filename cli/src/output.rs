@@ -1,8 +1,13 @@
 //! What goes wrong, and how it is told: in plain words on stderr.
 
+use crate::interrupt;
+use crate::terminal::{self, Texts};
+use hamel_diagnostics::Report;
 use hamel_scene::Diagnostics;
-use std::io::{self, IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use hamel_scene::text::{is_visible, visible};
+use serde_json::Serializer;
+use std::io;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Why a command failed.
@@ -26,9 +31,15 @@ pub enum Failure {
     /// Options that contradict each other or the scene.
     #[error("{0}")]
     Options(String),
+    /// A scene that is refused before anything moves.
+    #[error("the scene cannot start: {0}")]
+    Start(#[from] hamel_scene::StartError),
     /// The simulation stopped before its end.
     #[error("the simulation stopped: {0}")]
     Simulation(String),
+    /// The user ended the command before it was done; what was done by then.
+    #[error("{0}")]
+    Interrupted(String),
     /// A file or stdout cannot be written.
     #[error("cannot write {target}: {error}")]
     Write {
@@ -39,44 +50,15 @@ pub enum Failure {
     },
 }
 
-/// Refuses files to be written that are those to be read, or each other.
-///
-/// # Errors
-/// The first of `written` that is met again, by its name.
-pub fn refuse_overwriting<'a>(
-    read: impl IntoIterator<Item = &'a PathBuf>,
-    written: impl IntoIterator<Item = &'a Path>,
-) -> Result<(), Failure> {
-    // A file that is not there yet has no canonical path, but its folder has.
-    let place = |path: &Path| {
-        path.canonicalize().unwrap_or_else(|_| {
-            let parent = path
-                .parent()
-                .filter(|parent| !parent.as_os_str().is_empty());
-            let folder = parent.unwrap_or(Path::new(".")).canonicalize();
-            folder
-                .unwrap_or_default()
-                .join(path.file_name().unwrap_or_default())
-        })
-    };
-    let mut known: Vec<(PathBuf, &str)> = read
-        .into_iter()
-        .map(|path| (place(path), "is read"))
-        .collect();
-    for path in written {
-        let own = place(path);
-        if let Some((_, why)) = known.iter().find(|(other, _)| *other == own) {
-            let shown = path.display();
-            return Err(Failure::Options(format!(
-                "{shown} would be overwritten: it {why} by the same command; name another file for the output"
-            )));
-        }
-        known.push((own, "is written"));
-    }
-    Ok(())
-}
-
 impl Failure {
+    /// The failure to write a file.
+    pub fn write(path: &Path, error: io::Error) -> Self {
+        Self::Write {
+            target: path.display().to_string(),
+            error,
+        }
+    }
+
     /// The failure to write to stdout.
     pub fn stdout(error: io::Error) -> Self {
         Self::Write {
@@ -85,10 +67,21 @@ impl Failure {
         }
     }
 
-    /// The exit code that tells the failure to the caller: 2 for the command line, 1 for everything else.
+    /// Everything that failed, ready to print.
+    fn reports(&self) -> Box<dyn Iterator<Item = Report<'_>> + '_> {
+        match self {
+            Self::Several(failures) => Box::new(failures.iter().flat_map(Self::reports)),
+            Self::Spec(diagnostics) => Box::new(diagnostics.reports()),
+            Self::Scene(diagnostics) => Box::new(diagnostics.reports()),
+            other => Box::new(std::iter::once(Report::bare(other.to_string()))),
+        }
+    }
+
+    /// The exit code that tells the failure to the caller: 2 for the command line, 130 for an interrupt, 1 for everything else.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Options(_) => ExitCode::from(2),
+            Self::Interrupted(_) => ExitCode::from(interrupt::EXIT_CODE),
             _ => ExitCode::FAILURE,
         }
     }
@@ -101,37 +94,35 @@ impl Failure {
 
 /// Tells a failure on stderr, with colours on a terminal. If stderr is gone nobody is left to tell.
 pub fn report(failure: &Failure) {
-    if let Failure::Several(failures) = failure {
-        return failures.iter().for_each(report);
-    }
-    let mut stderr = io::stderr().lock();
-    let told = match failure {
-        Failure::Spec(diagnostics) => {
-            let text = match colour(&stderr) {
-                true => diagnostics.render_coloured(),
-                false => diagnostics.render(),
-            };
-            writeln!(stderr, "{text}\n")
-        }
+    match failure {
+        Failure::Spec(_) | Failure::Several(_) => terminal::err_rendered(|colour| {
+            let text = shown(colour, |colour| {
+                hamel_diagnostics::render(failure.reports(), colour)
+            });
+            format!("{text}\n\n")
+        }),
         Failure::Scene(diagnostics) => {
-            let colour = colour(&stderr);
-            write!(stderr, "{}", diagnostics.render(colour))
+            terminal::err_rendered(|colour| diagnostics.render(colour));
         }
-        other => writeln!(stderr, "error: {other}"),
-    };
-    drop(told);
-}
-
-/// Tells on stderr what is not done. If stderr is gone nobody is left to tell.
-pub fn tell(notices: &[impl std::fmt::Display]) {
-    let mut stderr = io::stderr().lock();
-    for notice in notices {
-        drop(writeln!(stderr, "note: {notice}"));
+        Failure::Interrupted(done) => terminal::err(&format!("interrupted: {done}")),
+        other => terminal::err(&format!("error: {other}")),
     }
 }
 
-fn colour(stderr: &impl IsTerminal) -> bool {
-    stderr.is_terminal() && std::env::var_os("NO_COLOR").is_none()
+/// What is rendered; without colours, where something in it would not be seen.
+fn shown(colour: bool, render: impl Fn(bool) -> String) -> String {
+    let plain = render(false);
+    match colour && is_visible(&plain) {
+        true => render(true),
+        false => visible(&plain),
+    }
+}
+
+/// Tells on stderr what is not done, each with its severity.
+pub fn tell(notices: &[impl std::fmt::Display]) {
+    for notice in notices {
+        terminal::err(&notice.to_string());
+    }
 }
 
 /// Prints text on stdout.
@@ -139,10 +130,7 @@ fn colour(stderr: &impl IsTerminal) -> bool {
 /// # Errors
 /// A stdout that cannot be written.
 pub fn print(text: &str) -> Result<(), Failure> {
-    io::stdout()
-        .lock()
-        .write_all(text.as_bytes())
-        .map_err(Failure::stdout)
+    terminal::out(text).map_err(Failure::stdout)
 }
 
 /// Prints a value as one line of JSON on stdout.
@@ -150,7 +138,9 @@ pub fn print(text: &str) -> Result<(), Failure> {
 /// # Errors
 /// A stdout that cannot be written.
 pub fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    let mut text = serde_json::to_string(value).map_err(|error| Failure::stdout(error.into()))?;
-    text.push('\n');
-    print(&text)
+    let mut text = Vec::new();
+    let written = value.serialize(&mut Serializer::with_formatter(&mut text, Texts));
+    written.map_err(|error| Failure::stdout(error.into()))?;
+    text.push(b'\n');
+    print(&String::from_utf8_lossy(&text))
 }

@@ -169,7 +169,7 @@ fn predictive_control_says_where_it_finds_no_plan() {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{stderr}");
     for told in [
-        "at 0 s the controller `mpc` fails: no plan of inputs within the limits is found: in period 1 of 25 ahead, ",
+        "the scene cannot start: controller: no plan of inputs within the limits is found: in period 1 of 25 ahead, ",
         "the input of joint `slide_x` is at its limit of 8 N m or N",
     ] {
         assert!(stderr.contains(told), "{stderr}");

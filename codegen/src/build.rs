@@ -23,6 +23,7 @@ use crate::derived::Derived;
 use crate::emit::files::Files;
 use crate::emit::report::Accuracy;
 use crate::emit::rust::{Index, index};
+use crate::source;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::io::ErrorKind;
@@ -134,7 +135,7 @@ impl Build {
         // A file that does not exist would make cargo build again each time: its folder is watched until it does.
         let existing = path.ancestors().find(|path| path.exists());
         existing.into_iter().for_each(watch);
-        match std::fs::read_to_string(path) {
+        match source::read(path) {
             Ok(text) => Accuracy::parse(&text).map_err(|error| BuildError::Accuracy {
                 path: path.clone(),
                 error,
@@ -160,8 +161,7 @@ impl Build {
             watch(&path);
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let label = format!("{}/{name}", self.label());
-            let source =
-                std::fs::read_to_string(&path).map_err(|source| BuildError::read(&path, source))?;
+            let source = source::read(&path).map_err(|error| BuildError::read(&path, error))?;
             sources.push((label, source));
         }
         let derived = parallel::map(sources, |(label, source)| {
@@ -203,7 +203,11 @@ impl Build {
 
 /// Asks cargo to run the build script again when the file or folder changes.
 fn watch(path: &Path) {
-    println!("cargo::rerun-if-changed={}", path.display());
+    let shown = path.display().to_string();
+    // A second line would be an instruction of its own.
+    if !shown.contains(['\n', '\r']) {
+        println!("cargo::rerun-if-changed={shown}");
+    }
 }
 
 /// The `.joint` files of a folder, sorted by name.

@@ -198,8 +198,8 @@ pub enum Proof {
     NormalForm,
     /// A certificate: a minor or determinant whose normal form is a constant other than 0, or a polynomial inverse.
     Certificate,
-    /// Evaluation at random points of the manifold in high precision.
-    Numeric,
+    /// None: evaluated at points, where it holds, and accepted because the spec says `unproved`.
+    Checked,
 }
 
 impl Proof {
@@ -208,12 +208,12 @@ impl Proof {
         match self {
             Self::NormalForm => "normal_form",
             Self::Certificate => "certificate",
-            Self::Numeric => "numeric",
+            Self::Checked => "checked",
         }
     }
 }
 
-/// Something that was proved of a joint.
+/// Something that was proved of a joint, or checked where the spec says so.
 #[derive(Clone, Debug)]
 pub struct Claim {
     /// Stable name, `pose_in_se3` and the like.
@@ -222,14 +222,10 @@ pub struct Claim {
     pub statement: String,
     /// How it was proved.
     pub proof: Proof,
-    /// The certificate, where there is one, or what was evaluated.
+    /// The certificate, where there is one; the author's reason for a claim that is not proved.
     pub detail: String,
-    /// Largest residual met: 0 for symbolic proofs.
-    pub residual: f64,
-    /// Random points evaluated: 0 for symbolic proofs.
+    /// Points at which a claim that is not proved was evaluated: 0 for proofs.
     pub points: usize,
-    /// Precision of the evaluation in bits: 0 for symbolic proofs.
-    pub bits: usize,
 }
 
 /// A joint with all that follows from its spec.
@@ -251,7 +247,7 @@ pub struct Derived {
     pub velocity_map_series: (Matrix, Matrix),
     /// N_X: basis of the inertias that the joint cannot feel, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
     pub imperceptible: Vec<[Rational; 10]>,
-    /// All that was proved.
+    /// All that was proved, and what was checked instead.
     pub claims: Vec<Claim>,
     /// Formulas of kernels that were simplified already: Rust and pages are written from the same.
     pub(crate) programs: Programs,

@@ -1,6 +1,7 @@
 //! Errors of a spec: where, what, and what to do about it.
 
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use crate::emit::text::visible;
+use hamel_diagnostics::{Place, Report};
 use std::ops::Range;
 
 /// One error.
@@ -40,21 +41,50 @@ impl Diagnostic {
         self
     }
 
-    /// With a note below. Long lines of a residual are cut: their beginning says what is wrong.
+    /// With a note below. What is long is cut: its beginning says what is wrong.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         let note: String = note.into();
-        let lines: Vec<String> = note.lines().map(shortened).collect();
-        self.notes.push(lines.join("\n"));
+        self.notes.push(cut(note.lines().map(shortened)));
         self
+    }
+
+    fn report<'a>(&'a self, owner: &'a Diagnostics) -> Report<'a> {
+        Report {
+            code: Some(self.code),
+            message: self.message.as_str().into(),
+            place: Some(Place {
+                source_name: &owner.file,
+                source: &owner.source,
+                primary: (self.span.clone(), &self.label),
+                context: None,
+            }),
+            notes: &self.notes,
+            help: self.help.as_slice(),
+        }
     }
 
     /// With advice.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        let help: String = help.into();
+        self.help = Some(cut(help.lines().map(str::to_owned)));
         self
     }
+}
+
+/// Most lines of a note or of advice.
+const MOST_LINES: usize = 10;
+
+/// The first lines, and how many more there are.
+fn cut(lines: impl Iterator<Item = String>) -> String {
+    let mut lines: Vec<String> = lines.collect();
+    if lines.len() > MOST_LINES {
+        let more = lines.len() - (MOST_LINES - 1);
+        lines.truncate(MOST_LINES - 1);
+        lines.push(format!("… and {more} more lines"));
+    }
+    lines.join("\n")
 }
 
 /// Longest line of a note, in characters.
@@ -88,48 +118,14 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// The errors in plain text, as rustc shows them.
+    /// The first errors in plain text, as rustc shows them, and the number of the others; what would not be seen is written out.
     pub fn render(&self) -> String {
-        self.render_with(&Renderer::plain())
+        visible(&hamel_diagnostics::render(self.reports(), false))
     }
 
-    /// The errors with terminal colours.
-    pub fn render_coloured(&self) -> String {
-        self.render_with(&Renderer::styled())
-    }
-
-    fn render_with(&self, renderer: &Renderer) -> String {
-        let shown: Vec<String> = self
-            .errors
-            .iter()
-            .map(|error| self.render_one(error, renderer))
-            .collect();
-        shown.join("\n\n")
-    }
-
-    fn render_one(&self, error: &Diagnostic, renderer: &Renderer) -> String {
-        let end = self.source.len();
-        let span = error.span.start.min(end)..error.span.end.min(end);
-        let annotation = AnnotationKind::Primary
-            .span(span)
-            .label(error.label.as_str());
-        let snippet = Snippet::source(self.source.as_str())
-            .line_start(1)
-            .path(self.file.as_str())
-            .annotation(annotation);
-        let title = Level::ERROR
-            .primary_title(error.message.as_str())
-            .id(error.code);
-        let notes = error
-            .notes
-            .iter()
-            .map(|note| Level::NOTE.message(note.as_str()));
-        let help = error
-            .help
-            .iter()
-            .map(|help| Level::HELP.message(help.as_str()));
-        let group: Group<'_> = title.element(snippet).elements(notes.chain(help));
-        renderer.render(&[group]).to_string()
+    /// The errors, ready to print.
+    pub fn reports(&self) -> impl Iterator<Item = Report<'_>> {
+        self.errors.iter().map(|error| error.report(self))
     }
 }
 

@@ -21,6 +21,7 @@ pub mod precise;
 pub mod prove;
 #[cfg(feature = "scene")]
 pub mod scene;
+pub mod source;
 pub mod spec;
 
 pub use build::{Build, BuildError, GENERATE_VARIABLE};

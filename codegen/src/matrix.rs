@@ -263,7 +263,7 @@ impl Matrix {
 }
 
 impl Display for Matrix {
-    /// Rows on lines of their own, columns aligned.
+    /// As a spec writes it, rows on lines of their own, columns aligned.
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let texts: Vec<String> = self.entries.iter().map(Expr::to_string).collect();
         let width = |j: usize| {
@@ -273,15 +273,13 @@ impl Display for Matrix {
                 .unwrap_or(0)
         };
         for i in 0..self.rows {
-            f.write_str(if i == 0 { "[" } else { "\n " })?;
+            f.write_str(if i == 0 { "[" } else { ";\n " })?;
             for j in 0..self.columns {
                 let text = &texts[i * self.columns + j];
-                write!(
-                    f,
-                    "{}{text:>width$}",
-                    if j == 0 { "" } else { "  " },
-                    width = width(j)
-                )?;
+                // Not by a width of the format: that ends at 65535.
+                let gap = " ".repeat(width(j) - text.chars().count());
+                let comma = if j == 0 { "" } else { ", " };
+                write!(f, "{comma}{gap}{text}")?;
             }
         }
         f.write_str("]")

@@ -151,9 +151,28 @@ pub struct JointSpec {
     pub speed_basis: Option<Declared<Matrix>>,
     /// Names of the speeds, where declared.
     pub speed_names: Option<Declared<Vec<String>>>,
+    /// Claims that need no proof.
+    pub unproved: Vec<Declared<Unproved>>,
+}
+
+/// A claim that the author wants to rest on evaluation at points.
+#[derive(Clone, Debug)]
+pub struct Unproved {
+    /// The stable name of the claim, `speeds_meet_constraint` and the like.
+    pub claim: String,
+    /// Why it is true, in the author's words.
+    pub reason: String,
 }
 
 impl JointSpec {
+    /// Parameters and stored scalars, in order.
+    pub(crate) fn symbols(&self) -> Vec<Symbol> {
+        let parameters = self.parameters.iter().map(|p| p.symbol.clone());
+        parameters
+            .chain(self.manifold.value.coordinates())
+            .collect()
+    }
+
     /// Each stored scalar at home: as declared, else at the identity of each factor.
     pub(crate) fn home_values(&self) -> BTreeMap<Symbol, Expr> {
         let manifold = &self.manifold.value;

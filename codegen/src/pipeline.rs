@@ -67,10 +67,18 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     let positive = crate::domain::positive_parameters(&spec);
     let vanishing = crate::domain::vanishing_parameters(&spec);
     spec.manifold.value = spec.manifold.value.clone().with_signs(positive, vanishing);
+    let squares = crate::domain::squares(&spec);
+    spec.manifold.value = spec.manifold.value.clone().with_squares(&squares);
+    budget::begin(task::PROOF);
+    let mut claims = prove::prove_declared(&spec)?;
     prove::retract_is_smooth(&spec).map_err(|error| vec![*error])?;
     let expansion = expand::expand(&spec)?;
     budget::begin(task::PROOF);
-    let claims = prove::prove(&spec, &expansion)?;
+    claims.extend(prove::prove(&spec, &expansion)?);
+    let needless = prove::needlessly_unproved(&spec, &claims);
+    if !needless.is_empty() {
+        return Err(needless);
+    }
     name_sides(&mut spec, &expansion);
     budget::begin(task::KERNELS);
     let kernels = expand::kernels(&spec, &expansion)?;

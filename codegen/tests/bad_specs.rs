@@ -66,8 +66,8 @@ fn no_message_is_without_its_spec() {
     }
 }
 
-/// Every code but that of the size of a file, which would be a large file, and that of a group without closed form, of which no
-/// known manifold is one.
+/// Every code but that of the size of a file, which would be a large file, that of a group without closed form, of which no known
+/// manifold is one, and that of ∂S/∂ϕ, which fails only where a claim before it fails.
 #[test]
 fn every_code_occurs() {
     let messages: String = corpus()
@@ -79,5 +79,6 @@ fn every_code_occurs() {
         .map(|(code, _)| *code)
         .filter(|code| !messages.contains(&format!("[{code}]")))
         .collect();
-    assert_eq!(missing, BTreeSet::from([code::SIZE, code::NO_CLOSED_FORM]));
+    let unreachable = [code::SIZE, code::NO_CLOSED_FORM, code::TWIST_MAP_SLOPE];
+    assert_eq!(missing, BTreeSet::from(unreachable));
 }

@@ -22,7 +22,7 @@ fn every_spec_is_proved_in_symbols() {
             joint
                 .claims
                 .iter()
-                .all(|claim| claim.proof != Proof::Numeric),
+                .all(|claim| claim.proof != Proof::Checked),
             "{}",
             joint.spec.name.value
         );

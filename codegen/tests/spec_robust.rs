@@ -339,3 +339,38 @@ fn mutations_of_specs_are_survived() {
         }
     }
 }
+
+/// Advice that compares every unknown name with every known one would take the square of their number, and of their length.
+#[test]
+fn many_names_and_long_ones_are_compared_within_bounds() {
+    let joint = |statements: &str| {
+        format!("hamel = 1;\njoint j {{ config q: R1; {statements} H = rot_z(q); }}\n")
+    };
+    let many = (1..3000).map(|i| format!("let a{i} = a{}x;", i - 1));
+    let many: String = std::iter::once("let a0 = q;".into()).chain(many).collect();
+    let errors = spec::parse(&joint(&many), "j.joint").expect_err("names are missing");
+    let advised = |help: &Option<String>| {
+        help.as_deref()
+            .is_some_and(|h| h.starts_with("did you mean"))
+    };
+    assert_eq!(errors.errors.len(), 2999);
+    assert!(
+        errors
+            .errors
+            .iter()
+            .take(50)
+            .all(|error| advised(&error.help))
+    );
+    assert!(
+        !errors
+            .errors
+            .iter()
+            .skip(50)
+            .any(|error| advised(&error.help))
+    );
+
+    let (a, b) = ("a".repeat(30_000), "b".repeat(30_000));
+    let long = format!("let {a} = 1; let x = {b};");
+    let errors = spec::parse(&joint(&long), "j.joint").expect_err("a name is missing");
+    assert_eq!(errors.errors.len(), 1);
+}

@@ -136,7 +136,12 @@ fn expressions_have_their_values() {
         ("tan(q)", "sin(q) / cos(q)"),
         ("cos(2 * q)", "pow(cos(q), 2) - pow(sin(q), 2)"),
         ("sin(pi / 2)", "1"),
-        ("2 * sinh(q)", "exp(q) - 1 / exp(q)"),
+        ("exp(q) * exp(-q)", "1"),
+        ("1 / exp(q)", "exp(-q)"),
+        ("cosh(q) * cosh(q) - sinh(q) * sinh(q)", "1"),
+        ("tanh(-q) * cosh(q)", "-sinh(q)"),
+        ("sinh(q) / cosh(q)", "tanh(q)"),
+        ("1 - tanh(q) * tanh(q)", "1 / (cosh(q) * cosh(q))"),
         ("cosh(0) + tanh(0) + log(1)", "1"),
         ("atan2(0, 1)", "0"),
         ("dot([1, 2], [3; 4])", "11"),
@@ -187,5 +192,72 @@ fn poses_may_be_written_in_any_form() {
             Matrix::integers(&[[0], [0], [2]]),
             "{form}"
         );
+    }
+}
+
+/// What messages quote is text that the same spec could hold: names, quotients, functions and long numbers among it.
+#[test]
+fn expressions_are_shown_as_a_spec_writes_them() {
+    for (statements, expressions) in [
+        (
+            "config Turn: R1;",
+            &[
+                "Turn * Turn / 3 - 2 / 7",
+                "sqrt(Turn * Turn + 1) * log(2 + Turn * Turn) / (Turn * Turn + 2)",
+                "1 / (1 + Turn * Turn) / (2 + exp(Turn)) - cos(Turn) * sin(Turn) * pi",
+                "atan2(Turn, 2) * 123456789 + 1 / 30000000 * Turn - 5e-9",
+                "1e40 * Turn + 12000000",
+                "tan(Turn / 2) / tanh(Turn + 1)",
+            ][..],
+        ),
+        (
+            "config Q: SO3; basis a, b, c of so3; velocity in child;",
+            &["Q[1, 2] * Q[3, 3] - Q[2, 1] / 2", "sqrt(2 + Q[1, 3])"],
+        ),
+        (
+            "config Q: SE2; basis a, b, c of se2; velocity in child;",
+            &["Q[1, 3] - Q[2, 1] * Q.y"],
+        ),
+        (
+            "config Q: SE3; basis a, b, c, d, e, f of se3; velocity in child;",
+            &["Q[1, 4] * Q[3, 2] - Q.z"],
+        ),
+        (
+            "config u: S1; basis a of so2; velocity in child;",
+            &["u.c * u.s - u.c"],
+        ),
+        (
+            "config u: S3; basis a, b, c of so3; velocity in child;",
+            &["u.w * u.x - u.y - u.z"],
+        ),
+        (
+            "config R: SO2, p: R3, w: R2; basis a of so2; velocity in child;",
+            &["R[2, 1] * p.x - p.z * w.y + R.c"],
+        ),
+        ("config w: R5;", &["w[5] * w[1] - w[2]"]),
+    ] {
+        for expression in expressions {
+            let read = |text: &str| {
+                let spec = joint(&format!("{statements} H = trans_z({text});"));
+                spec.pose.value.translation.at(2, 0).clone()
+            };
+            let shown = read(expression).to_string();
+            assert_eq!(read(&shown), read(expression), "{expression}: {shown}");
+        }
+    }
+    let spec = joint("config q: R1; local slide; Phi = q + phi.slide; H = trans_z(q);");
+    assert_eq!(&*spec.freedoms.value[0].local.spelling, "phi.slide");
+}
+
+#[test]
+fn long_numbers_are_shown_with_exponents_and_all_their_digits() {
+    for (written, shown) in [
+        ("1000000", "1000000"),
+        ("12000000", "1.2e7"),
+        ("123456789", "1.23456789e8"),
+        ("1e-7", "1/1e7"),
+        ("2.5", "5/2"),
+    ] {
+        assert_eq!(scalar(written).to_string(), shown);
     }
 }

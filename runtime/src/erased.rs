@@ -1,7 +1,8 @@
 //! Joints behind one object-safe trait, so that a mechanism holds joints of any type.
 //!
 //! [`AnyJoint`] mirrors the kernels of [`Joint`] over slices of `f64`. Matrices are stored column by column, and the K
-//! slices of a derivative in ϕ one after the other. Nothing here allocates.
+//! slices of a derivative in ϕ one after the other. Nothing here allocates. What recursions do with a joint, on slices that they have cut
+//! themselves, is [`Kernels`], which nothing outside can call.
 
 use crate::chart::Chart;
 use crate::elements::ElementKernels;
@@ -28,8 +29,12 @@ pub struct Layout {
 /// A joint of any type, [`Joint`] over slices.
 ///
 /// With (N, K, S, C) of [`AnyJoint::layout`], shapes are as in [`Joint`]. The caller hands over slices of exactly these
-/// sizes; a method panics on any other, as an index out of bounds does.
-pub trait AnyJoint: Steps + ExtendedSteps + Chart + ElementKernels + Debug + Send + Sync {
+/// sizes; of any other every result is NaN, or an error where there can be one.
+pub trait AnyJoint: Debug + Send + Sync {
+    /// The same joint for recursions.
+    #[doc(hidden)]
+    fn kernels(self: Arc<Self>, _: Token) -> Arc<dyn Kernels>;
+
     /// Name of the spec.
     fn name(&self) -> &'static str;
     /// N, K, S and C.
@@ -123,11 +128,30 @@ pub trait AnyJoint: Steps + ExtendedSteps + Chart + ElementKernels + Debug + Sen
     fn bias_momentum_slope(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
 }
 
+/// A joint as recursions use it: their own slices always have the sizes that its type asks for.
+#[doc(hidden)]
+pub trait Kernels: AnyJoint + Steps + ExtendedSteps + Chart + ElementKernels {}
+
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Kernels
+    for (J, Sizes<N, K, S, C>)
+where
+    J: Joint<N, K, S, C>,
+{
+}
+
+/// What only this crate has, so that it alone can ask for [`Kernels`].
+#[derive(Clone, Copy, Debug)]
+pub struct Token(());
+
+impl Token {
+    pub(crate) const OWN: Self = Self(());
+}
+
 /// A finite map of a joint has no value: a Newton iteration does not converge, or its arguments are not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the {map} of joint type `{joint}` cannot be found: Newton's method does not converge here, or the configuration is not \
-     finite"
+     finite or of another size"
 )]
 pub struct FiniteMapError {
     /// Joint type.
@@ -136,12 +160,14 @@ pub struct FiniteMapError {
     pub map: &'static str,
 }
 
+/// Whether there are `size` values, all finite.
 fn check_finite(
     joint: &'static str,
     map: &'static str,
     values: &[f64],
+    size: usize,
 ) -> Result<(), FiniteMapError> {
-    match values.iter().all(|value| value.is_finite()) {
+    match values.len() == size && values.iter().all(|value| value.is_finite()) {
         true => Ok(()),
         false => Err(FiniteMapError { joint, map }),
     }
@@ -165,22 +191,30 @@ where
 #[derive(Debug)]
 pub(crate) struct Sizes<const N: usize, const K: usize, const S: usize, const C: usize>;
 
-/// Entry by entry: nalgebra's own way copies a number of bytes that is not known when it is compiled, by a call.
+/// Entry by entry: nalgebra's own way copies a number of bytes that is not known when it is compiled, by a call. NaN for a slice of another size.
 #[inline]
 pub(crate) fn vector<const D: usize>(slice: &[f64]) -> SVector<f64, D> {
-    let entries = &slice[..D];
-    SVector::from(core::array::from_fn(|i| entries[i]))
+    match <&[f64; D]>::try_from(slice) {
+        Ok(entries) => SVector::from(core::array::from_fn(|i| entries[i])),
+        Err(_) => SVector::from_element(f64::NAN),
+    }
 }
 
+/// The entries into `out`; NaN where that is of another size.
 fn store<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>, out: &mut [f64]) {
-    out.copy_from_slice(matrix.as_slice());
+    match out.len() == R * C {
+        true => out.copy_from_slice(matrix.as_slice()),
+        false => out.fill(f64::NAN),
+    }
 }
 
 fn store_slices<const R: usize, const C: usize, const K: usize>(
     slices: &[SMatrix<f64, R, C>; K],
     out: &mut [f64],
 ) {
-    assert_eq!(out.len(), R * C * K, "size of a derivative in phi");
+    if out.len() != R * C * K {
+        return out.fill(f64::NAN);
+    }
     // chunks_exact_mut refuses a chunk size of 0, which a joint without constraints can ask for.
     for (slice, chunk) in slices.iter().zip(out.chunks_exact_mut((R * C).max(1))) {
         store(slice, chunk);
@@ -192,6 +226,10 @@ impl<J, const N: usize, const K: usize, const S: usize, const C: usize> AnyJoint
 where
     J: Joint<N, K, S, C>,
 {
+    fn kernels(self: Arc<Self>, _: Token) -> Arc<dyn Kernels> {
+        self
+    }
+
     fn name(&self) -> &'static str {
         J::NAME
     }
@@ -301,7 +339,7 @@ where
 
     fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]) -> Result<(), FiniteMapError> {
         store(&self.0.local(&vector(q), &vector(target)), phi);
-        check_finite(J::NAME, "local coordinates", phi)
+        check_finite(J::NAME, "local coordinates", phi, K)
     }
 
     fn retract_differential(&self, q: &[f64], phi: &[f64], out: &mut [f64]) {
@@ -335,7 +373,7 @@ where
 
     fn project(&self, q: &mut [f64]) -> Result<(), FiniteMapError> {
         store(&self.0.project(&vector(q)), q);
-        check_finite(J::NAME, "projection", q)
+        check_finite(J::NAME, "projection", q, N)
     }
 
     fn residual(&self, q: &[f64]) -> f64 {

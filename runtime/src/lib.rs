@@ -40,6 +40,7 @@ mod lu;
 pub mod mechanism;
 pub mod registry;
 pub mod scalar;
+pub mod shown;
 pub mod spatial;
 #[cfg(feature = "alloc")]
 pub mod steps;

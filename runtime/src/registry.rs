@@ -1,6 +1,7 @@
 //! Joint types by name: what a scene file can ask for.
 
 use crate::erased::Shared;
+use crate::shown::Number;
 #[cfg(feature = "alloc")]
 use alloc::collections::BTreeMap;
 use core::fmt::{Display, Formatter};
@@ -94,7 +95,7 @@ pub enum ParameterError {
         found: usize,
     },
     /// A value is NaN or infinite.
-    #[error("parameter `{parameter}` of joint type `{joint}` is {value}, not a finite number")]
+    #[error("parameter `{parameter}` of joint type `{joint}` is {value}, not a finite number", value = Number(*.value))]
     NotFinite {
         /// Joint type.
         joint: &'static str,
@@ -105,8 +106,7 @@ pub enum ParameterError {
     },
     /// A value lies outside the range that the spec declares.
     #[error(
-        "parameter `{parameter}` of joint type `{joint}` is {value}: it must be {relation} {limit}"
-    )]
+        "parameter `{parameter}` of joint type `{joint}` is {value}: it must be {relation} {limit}", value = Number(*.value), limit = Number(*.limit))]
     Limit {
         /// Joint type.
         joint: &'static str,
@@ -121,8 +121,7 @@ pub enum ParameterError {
     },
     /// The values together break a requirement of the spec.
     #[error(
-        "joint type `{joint}` requires `{requirement}`: with {values} the two sides differ by {margin}"
-    )]
+        "joint type `{joint}` requires `{requirement}`: with {values} the two sides differ by {margin}", margin = Number(*.margin))]
     Requirement {
         /// Joint type.
         joint: &'static str,
@@ -134,7 +133,7 @@ pub enum ParameterError {
         margin: f64,
     },
     /// A value lies outside what the formulas allow.
-    #[error("parameter `{parameter}` of joint type `{joint}` is {value}: it must be {requirement}")]
+    #[error("parameter `{parameter}` of joint type `{joint}` is {value}: it must be {requirement}", value = Number(*.value))]
     OutOfRange {
         /// Joint type.
         joint: &'static str,
@@ -170,7 +169,7 @@ impl Display for ParameterValues {
     fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
         for (n, (info, value)) in self.parameters.iter().zip(self.values).enumerate() {
             let comma = if n == 0 { "" } else { ", " };
-            write!(f, "{comma}{} = {value}", info.name)?;
+            write!(f, "{comma}{} = {}", info.name, Number(value))?;
         }
         match self.parameters.len() > Self::MOST {
             true => f.write_str(", …"),

@@ -50,7 +50,9 @@ fn cases() -> Vec<Case> {
         // One joint between the world and a driven one may leave the edge nothing to determine.
         let mechanism = Arc::new(mechanism.with_constraints(vec![edge], &q).ok()?);
         let mut speeds = random.vec(mechanism.layout().speeds);
-        mechanism.set_driven_speeds(0.0, &mut speeds);
+        mechanism
+            .set_driven_speeds(0.0, &mut speeds)
+            .expect("their size");
         Recursive::new(Arc::clone(&mechanism))
             .complete_speeds(&q, &mut speeds)
             .expect("determined");
@@ -192,7 +194,8 @@ fn motions_in_both_forms_by_both_end_at_one_state() {
         }
         let (_, speeds) = first.split_at(case.q.len());
         let mut lawful = speeds.to_vec();
-        case.mechanism.set_driven_speeds(DURATION, &mut lawful);
+        let lawfully = case.mechanism.set_driven_speeds(DURATION, &mut lawful);
+        lawfully.expect("their size");
         assert_eq!(speeds, lawful, "case {number}: the drive");
     }
     assert!(finished >= 6, "only {finished} runs came to their end");

@@ -1,5 +1,5 @@
-//! Generates this crate's joints from `joints/*.joint`, those that the generator's tests hold out, and joints whose names and parameters
-//! are called like what emitted files use.
+//! Generates this crate's joints from `joints/*.joint`, those that the generator's tests hold out, joints with odd names and texts, and joints whose
+//! names and parameters are called like what emitted files use.
 
 use std::error::Error;
 use std::fs;
@@ -47,6 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .specs("../../codegen/tests/held-out")
         .out_dir(out.join("held_out"))
         .compile()?;
+    build().specs("odd").out_dir(out.join("odd")).compile()?;
     let specs = out.join("names");
     write_names(&specs)?;
     build().specs(&specs).out_dir(&specs).compile()?;

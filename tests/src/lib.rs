@@ -6,6 +6,7 @@ pub mod compiled;
 pub mod derivatives;
 pub mod differences;
 pub mod emitted;
+pub mod enclosure;
 pub mod extended;
 pub mod figures;
 pub mod fuzz;
@@ -57,8 +58,16 @@ pub fn spec_names() -> Vec<String> {
 /// # Panics
 /// Where the spec is missing or refused; the message shows the errors.
 pub fn derived(name: &str) -> Derived {
+    derived_in(&spec_folder(), name)
+}
+
+/// The joint of that name, derived anew from its spec in a folder.
+///
+/// # Panics
+/// Where the spec is missing or refused; the message shows the errors.
+pub fn derived_in(folder: &Path, name: &str) -> Derived {
     let file = format!("{name}.joint");
-    let source = std::fs::read_to_string(spec_folder().join(&file)).expect("the spec can be read");
+    let source = std::fs::read_to_string(folder.join(&file)).expect("the spec can be read");
     hamel_codegen::derive(&source, &file).unwrap_or_else(|errors| panic!("{errors}"))
 }
 

@@ -1,5 +1,6 @@
 //! The C compiler of the machine.
 
+use super::child::{self, Ended};
 use super::temporary;
 use crate::output::Failure;
 use hamel_codegen::scene::Module;
@@ -7,9 +8,19 @@ use std::ffi::OsString;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Duration;
 
 /// The variable that names a compiler, as for `make`: options may follow its name.
 const VARIABLE: &str = "CC";
+
+/// The variable that says how long a compiler may take, s.
+const LIMIT: &str = "HAMEL_CC_SECONDS";
+
+/// How long it may take where that is not set: functions that would take minutes are not written in the first place.
+const DEFAULT_LIMIT: Duration = Duration::from_secs(300);
+
+/// How long it may take to tell its version.
+const LIMIT_OF_ANSWER: Duration = Duration::from_secs(10);
 
 /// What is looked for on the PATH where the variable names none.
 const NAMES: [&str; 3] = ["cc", "gcc", "clang"];
@@ -23,6 +34,8 @@ pub struct Compiler {
     program: OsString,
     /// Options of its own, named with it.
     options: Vec<String>,
+    /// How long it may take.
+    limit: Duration,
 }
 
 impl fmt::Display for Compiler {
@@ -35,68 +48,114 @@ impl Compiler {
     /// The one that `CC` names, else the first of `cc`, `gcc` and `clang` that can be run.
     ///
     /// # Errors
-    /// There is none; the message says what was looked for.
+    /// There is none; the message says what was looked for. A time limit that is none; an interrupt.
     pub fn find() -> Result<Self, Failure> {
+        let limit = limit()?;
         let named = std::env::var(VARIABLE).unwrap_or_default();
         let mut words = named.split_whitespace();
         if let Some(program) = words.next() {
             let named = Self {
                 program: program.into(),
                 options: words.map(str::to_owned).collect(),
+                limit,
             };
-            return named.answers().map(|()| named.clone()).map_err(|error| {
-                Failure::Options(format!(
+            return match named.answers()? {
+                Ok(()) => Ok(named),
+                Err(error) => Err(Failure::Options(format!(
                     "compiled equations need a C compiler, and `{program}`, which the variable {VARIABLE} names, cannot be run: {error}"
-                ))
-            });
+                ))),
+            };
         }
-        let known = NAMES.iter().map(|&name| Self {
-            program: name.into(),
-            options: vec![],
-        });
-        let mut there = known.filter(|compiler| compiler.answers().is_ok());
-        there.next().ok_or_else(|| {
-            let names = NAMES.map(|name| format!("`{name}`")).join(", ");
-            Failure::Options(format!(
-                "compiled equations need a C compiler, and none of {names} can be run: install one, or name it in the variable {VARIABLE}"
-            ))
-        })
+        for name in NAMES {
+            let known = Self {
+                program: name.into(),
+                options: vec![],
+                limit,
+            };
+            if known.answers()?.is_ok() {
+                return Ok(known);
+            }
+        }
+        let names = NAMES.map(|name| format!("`{name}`")).join(", ");
+        Err(Failure::Options(format!(
+            "compiled equations need a C compiler, and none of {names} can be run: install one, or name it in the variable {VARIABLE}"
+        )))
     }
 
-    fn answers(&self) -> std::io::Result<()> {
+    /// Whether it can be run.
+    fn answers(&self) -> Result<std::io::Result<()>, Failure> {
         let mut command = Command::new(&self.program);
         command.args(&self.options).arg("--version");
-        command.output().map(|_| ())
+        let limit = LIMIT_OF_ANSWER.min(self.limit);
+        match child::run(&mut command, None, limit) {
+            Ok(Ended::Interrupted) => Err(interrupted()),
+            Ok(Ended::Late) => Ok(Err(std::io::Error::other(format!(
+                "it does not tell its version within {} s",
+                limit.as_secs_f64()
+            )))),
+            Ok(Ended::Itself(_)) => Ok(Ok(())),
+            Err(error) => Ok(Err(error)),
+        }
     }
 
     /// The module as a library in `folder`.
     ///
     /// # Errors
-    /// A folder that cannot be written; a compiler that fails, with what it says.
+    /// A folder that cannot be written; a compiler that fails, with what it says, or that takes too long; an interrupt.
     pub fn build(&self, folder: &Path, name: &str, module: &Module) -> Result<PathBuf, Failure> {
         let source = folder.join(format!("{name}.c"));
         let library = folder.join(format!("{name}{}", std::env::consts::DLL_SUFFIX));
         std::fs::write(&source, &module.text).map_err(temporary)?;
         let header = module.header.as_deref().unwrap_or_default();
         std::fs::write(source.with_extension("h"), header).map_err(temporary)?;
-        let output = Command::new(&self.program)
+        let said = folder.join("said");
+        let mut command = Command::new(&self.program);
+        command
             .args(&self.options)
             .args(OPTIONS)
             .arg(&source)
             .arg("-o")
             .arg(&library)
-            .arg("-lm")
-            .output();
+            .arg("-lm");
         let failed = |said: &str| {
             Failure::Refused(format!(
                 "the C compiler {self} failed:\n{}",
                 said.trim_end()
             ))
         };
-        let output = output.map_err(|error| failed(&error.to_string()))?;
-        match output.status.success() {
-            true => Ok(library),
-            false => Err(failed(&String::from_utf8_lossy(&output.stderr))),
+        match child::run(&mut command, Some(&said), self.limit) {
+            Ok(Ended::Itself(status)) if status.success() => Ok(library),
+            Ok(Ended::Itself(_)) => {
+                let said = std::fs::read(said).map_err(temporary)?;
+                Err(failed(&String::from_utf8_lossy(&said)))
+            }
+            Ok(Ended::Late) => Err(failed(&format!(
+                "it took more than {} s, and was ended; the variable {LIMIT} sets another limit",
+                self.limit.as_secs_f64()
+            ))),
+            Ok(Ended::Interrupted) => Err(interrupted()),
+            Err(error) => Err(failed(&error.to_string())),
         }
     }
+}
+
+fn interrupted() -> Failure {
+    Failure::Interrupted(String::from(
+        "the C compiler was ended; files are as they were",
+    ))
+}
+
+/// The time limit.
+fn limit() -> Result<Duration, Failure> {
+    let Some(text) = std::env::var_os(LIMIT) else {
+        return Ok(DEFAULT_LIMIT);
+    };
+    let text = text.to_string_lossy();
+    let seconds = text.parse().ok().filter(|seconds| *seconds > 0.0);
+    let limit = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    limit.ok_or_else(|| {
+        Failure::Options(format!(
+            "the variable {LIMIT} is {text:?}; it must be a number of seconds above 0"
+        ))
+    })
 }

@@ -4,9 +4,11 @@
 //! runtime; a C module needs no more than a C compiler, and takes it less than a second for most scenes. What the module does not have, the tree computes:
 //! the speeds that constraints make depend on others, and derivatives of the port-Hamiltonian form.
 
+mod child;
 mod compiler;
 mod library;
 
+use crate::files::private_folder;
 use crate::output::Failure;
 use hamel::compiled::Compiled;
 use hamel::dynamics::ForwardDerivatives;
@@ -14,7 +16,7 @@ use hamel::integrate::{Form, Scheme};
 use hamel::mechanism::Mechanism;
 use hamel_codegen::scene::functions::{Kind, TooLong};
 use hamel_codegen::scene::{Build, Error, Language, Module};
-use library::Library;
+use library::{Library, Sizes};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -85,24 +87,27 @@ pub fn compiled(
     mechanism: &Arc<Mechanism>,
 ) -> Result<Equations, Failure> {
     let start = Instant::now();
-    let build = build
-        .library(hamel_joints::specs())
-        .language(Language::C99)
-        .name(NAME);
+    let build = build.language(Language::C99).name(NAME);
     let written = module(&build, label, kinds)?;
     let generation = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let folder = tempfile::tempdir().map_err(temporary)?;
+    // A library that is loaded needs its file no more.
+    let folder = private_folder().map_err(temporary)?;
     let built = compiler.build(folder.path(), NAME, &written.module)?;
     let compilation = start.elapsed().as_secs_f64();
     let layout = mechanism.layout();
-    let sizes = [
-        layout.configuration,
-        layout.freedoms,
-        layout.speeds,
-        ForwardDerivatives::entries(mechanism),
-    ];
-    let library = Library::load(&built, NAME, sizes)?;
+    let sizes = Sizes {
+        bodies: mechanism.bodies().len(),
+        configuration: layout.configuration,
+        freedoms: layout.freedoms,
+        speeds: layout.speeds,
+        derivatives: ForwardDerivatives::entries(mechanism),
+    };
+    let names: Vec<&str> = written.functions.iter().map(|kind| kind.name()).collect();
+    let library = Library::load(&built, NAME, &names, sizes);
+    let library = library.map_err(|error| {
+        Failure::Refused(format!("the compiled scene cannot be loaded: {error}"))
+    })?;
     let dynamics = Compiled::new(Arc::clone(mechanism), library.equations());
     let dynamics = dynamics.map_err(|error| Failure::Refused(error.to_string()))?;
     Ok(Equations {

@@ -3,6 +3,7 @@
 use super::{Library, source};
 use crate::output::{self, Failure};
 use hamel_codegen::derived::{Claim, Derived};
+use hamel_codegen::emit::report::proof_in_words;
 use serde::Serialize;
 
 /// Derive joints anew and prove every claim.
@@ -14,7 +15,7 @@ pub struct Args {
     #[arg(value_name = "JOINT")]
     joints: Vec<String>,
 
-    /// Print `{joints: [{name, claims: [{claim, proof, residual, points, bits}]}]}` on stdout
+    /// Print `{joints: [{name, claims: [{claim, proof, points}]}]}` on stdout
     #[arg(long)]
     json: bool,
 }
@@ -29,9 +30,8 @@ struct Checked {
 struct Proved {
     claim: &'static str,
     proof: &'static str,
-    residual: f64,
+    /// Points at which a claim that is not proved was checked; 0 for proofs.
     points: usize,
-    bits: usize,
 }
 
 /// Checks the joints and prints what was proved.
@@ -63,9 +63,7 @@ fn checked(joint: &Derived) -> Checked {
     let proved = |claim: &Claim| Proved {
         claim: claim.name,
         proof: claim.proof.name(),
-        residual: claim.residual,
         points: claim.points,
-        bits: claim.bits,
     };
     Checked {
         name: joint.spec.name.value.clone(),
@@ -84,7 +82,7 @@ fn text(joint: &Derived) -> String {
         format!(
             "  {:width$}  {}: {}\n",
             claim.statement,
-            claim.proof.name().replace('_', " "),
+            proof_in_words(claim),
             claim.detail
         )
     };

@@ -1,9 +1,11 @@
 //! `hamel joints explain`.
 
 use super::source;
+use crate::files::{Force, admit, first_line};
 use crate::output::{self, Failure};
 use hamel_codegen::emit::{Accuracy, explain_text, html_page};
-use std::path::PathBuf;
+use std::fs::File;
+use std::path::{Path, PathBuf};
 
 /// Show what was derived from a joint's spec: kernels as formulas, claims with their proofs, operation counts.
 #[derive(Debug, clap::Args)]
@@ -19,6 +21,9 @@ pub struct Args {
     /// Write to FILE instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+
+    #[command(flatten)]
+    force: Force,
 }
 
 /// Prints or writes the page of the joint.
@@ -34,13 +39,19 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         false => explain_text(&joint, &accuracy),
     };
     let page = page.map_err(|error| Failure::Page(error.to_string()))?;
-    match &args.output {
+    let spec = source::is_file(&args.joint).then(|| Path::new(&args.joint));
+    let written = args.output.as_deref().map(|path| (path, is_own as _));
+    let outputs = admit(spec, written, args.force.force)?;
+    match outputs.first() {
         None => output::print(&page),
-        Some(path) => std::fs::write(path, page).map_err(|error| Failure::Write {
-            target: path.display().to_string(),
-            error,
-        }),
+        Some(output) => output.write(page),
     }
+}
+
+/// Whether a file is a page that was written before; templates of the generator have these marks.
+fn is_own(file: &File) -> bool {
+    let line = first_line(file);
+    line.ends_with(" (hamel joints explain)") || line.ends_with("<!-- hamel joints explain -->")
 }
 
 /// The errors of the library's kernels as they were measured when the program was built.

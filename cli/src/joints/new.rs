@@ -1,8 +1,7 @@
 //! `hamel joints new`.
 
+use crate::files::new_file;
 use crate::output::{self, Failure};
-use std::fs::OpenOptions;
-use std::io::Write;
 use std::path::PathBuf;
 
 /// Write a spec to start from.
@@ -25,16 +24,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let file = format!("{}.joint", args.name);
     hamel_codegen::spec::parse(&text, &file).map_err(|errors| Failure::Spec(Box::new(errors)))?;
     let path = args.folder.join(&file);
-    let failed = |error| Failure::Write {
-        target: path.display().to_string(),
-        error,
-    };
-    let mut created = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&path)
-        .map_err(failed)?;
-    created.write_all(text.as_bytes()).map_err(failed)?;
+    new_file(&path)?.write(text)?;
     let shown = path.display();
     output::print(&format!(
         "wrote {shown}\nnext: change it to your joint, `hamel joints check {shown}`, `cargo build`, `cargo test`\nthe language: joint-specs/README.md\n"

@@ -22,7 +22,7 @@ pub fn find(name: &str) -> Result<(String, String), Failure> {
 
 fn read(path: &Path) -> Result<(String, String), Failure> {
     let file = path.display().to_string();
-    match std::fs::read_to_string(path) {
+    match hamel_codegen::source::read(path) {
         Ok(text) => Ok((file, text)),
         Err(error) => Err(Failure::Options(format!("cannot read {file}: {error}"))),
     }

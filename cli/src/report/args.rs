@@ -1,5 +1,6 @@
 //! The options of `hamel report`.
 
+use crate::files::Force;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -25,9 +26,10 @@ C compiler of this machine (CC, else cc, gcc, clang); a short report has the lat
 Run times are those of the thread on its processor: what else the machine does is not in them. A measurement that was stopped, one with --fresh too, goes on
 where it was when the same is asked for without --fresh.
 
-work.csv, drift.csv, stability.csv and compiled.csv hold the figures; docs/report.md tells their columns.
+work.csv, drift.csv, stability.csv and compiled.csv hold the figures; docs/report.md tells their columns. Other files in the folder are left alone; an index.html
+that is no such page is replaced with --force only. One command writes a folder at a time. After Ctrl-C the figures measured by then are in the files.
 
-Exit codes: 0 success, also where runs failed; 1 a file that cannot be read or written; 2 wrong options.";
+Exit codes: 0 success, also where runs failed; 1 a file that cannot be read or written; 2 wrong options; 130 interrupted.";
 
 /// Measure error against run time on scenes whose motions are known, and make a page of it.
 #[derive(Debug, clap::Args)]
@@ -60,4 +62,7 @@ pub struct Args {
     /// No progress bar
     #[arg(long)]
     pub quiet: bool,
+
+    #[command(flatten)]
+    pub force: Force,
 }

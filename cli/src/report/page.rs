@@ -5,9 +5,11 @@ use super::figures::Figures;
 use super::plan::COMPARED;
 use super::plots;
 use super::row::{Build, Work};
+use crate::files::first_line;
 use crate::output::Failure;
 use itertools::Itertools;
 use serde::Serialize;
+use std::fs::File;
 use tera::{Context, Tera};
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -82,6 +84,11 @@ struct Cell {
     text: String,
     /// `reached` to 10 floors, `near` to 100, `far`, or `failed`.
     class: &'static str,
+}
+
+/// Whether a file is a page that was written before; the template has this mark.
+pub fn is_own(file: &File) -> bool {
+    first_line(file).ends_with("<!-- hamel report -->")
 }
 
 /// The whole page as text.

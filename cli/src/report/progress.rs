@@ -1,5 +1,6 @@
 //! The bar on stderr; nothing where stderr is no terminal.
 
+use hamel_scene::text::visible;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Counts curves.
@@ -23,7 +24,7 @@ impl Progress {
 
     /// A curve begins.
     pub fn at(&self, what: &str) {
-        self.0.set_message(what.to_owned());
+        self.0.set_message(visible(what));
         self.0.inc(1);
     }
 

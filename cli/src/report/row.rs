@@ -12,7 +12,7 @@ pub const fn form_name(form: Form) -> &'static str {
 }
 
 /// A line that one measurement makes.
-pub trait Row: Serialize + for<'a> Deserialize<'a> + Clone {
+pub trait Row: Serialize + for<'a> Deserialize<'a> + Clone + Default {
     /// The file's name without its ending.
     const FILE: &'static str;
 
@@ -37,7 +37,7 @@ pub const STOPPED: &str = "stopped";
 pub const NOT_RUN: &str = "not run";
 
 /// A point of a work–precision diagram.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Work {
     pub scene: String,
     pub form: String,
@@ -60,10 +60,12 @@ pub struct Work {
     pub seconds_least: Option<f64>,
     pub seconds_median: Option<f64>,
     pub seconds_spread: Option<f64>,
+    #[serde(with = "crate::cells::rows")]
     pub failure: String,
     /// `full` or `short`: how long a point was measured.
     pub budget: String,
     /// Processor, system, compiler, flags and version, in one line.
+    #[serde(with = "crate::cells::rows")]
     pub machine: String,
 }
 
@@ -111,7 +113,7 @@ impl Row for Work {
 }
 
 /// What a compiled scene cost, once.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Build {
     pub scene: String,
     pub representation: String,
@@ -123,8 +125,10 @@ pub struct Build {
     pub compilation_s: f64,
     pub text_bytes: usize,
     pub library_bytes: u64,
+    #[serde(with = "crate::cells::rows")]
     pub compiler: String,
     /// Processor, system, compiler of this program, flags and version, in one line.
+    #[serde(with = "crate::cells::rows")]
     pub machine: String,
 }
 
@@ -160,7 +164,7 @@ impl Row for Build {
 }
 
 /// The energy of a long run at one time.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Drift {
     pub scene: String,
     pub form: String,
@@ -170,9 +174,11 @@ pub struct Drift {
     pub time_s: f64,
     /// |E − E₀| / max(|E₀|, T₀).
     pub drift: f64,
+    #[serde(with = "crate::cells::rows")]
     pub failure: String,
     pub budget: String,
     /// Processor, system, compiler, flags and version, in one line.
+    #[serde(with = "crate::cells::rows")]
     pub machine: String,
 }
 
@@ -205,7 +211,7 @@ impl Row for Drift {
 }
 
 /// The largest step at which a method keeps a stiff scene bounded.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Stability {
     pub scene: String,
     pub form: String,
@@ -216,6 +222,7 @@ pub struct Stability {
     pub step_s: Option<f64>,
     pub largest_tried_s: f64,
     /// Processor, system, compiler, flags and version, in one line.
+    #[serde(with = "crate::cells::rows")]
     pub machine: String,
 }
 

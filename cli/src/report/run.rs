@@ -6,9 +6,10 @@ use super::machine::Machine;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::row::{Build, Drift, Stability, Work};
-use super::store::{Store, set_aside};
-use super::work::Stores;
+use super::store::{Store, Stores, set_aside};
 use super::{drift, page, stability, work};
+use crate::files::{Lock, Output, admit};
+use crate::interrupt::Heed;
 use crate::output::{self, Failure};
 use hamel::registry::JointRegistry;
 use std::path::Path;
@@ -19,26 +20,32 @@ use std::path::Path;
 /// Options that name what is not there; files that cannot be read or written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let plan = Plan::new(args)?;
-    let write = |error| Failure::Write {
-        target: args.output.display().to_string(),
-        error,
+    let folder = &args.output;
+    if !args.page_only {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::write(folder, error))?;
+    }
+    // Without the folder there are no figures, which is told below.
+    let lock = folder.is_dir().then(|| Lock::of(folder)).transpose()?;
+    let page = folder.join("index.html");
+    let admitted = || admit([], [(&*page, page::is_own as _)], args.force.force);
+    let output: Option<Output> = match &lock {
+        Some(_) => admitted()?.pop(),
+        None => None,
     };
     if !args.page_only {
-        std::fs::create_dir_all(&args.output).map_err(write)?;
         measure(args, &plan, registry, &Machine::this().line())?;
     }
-    let figures = Figures::read(&args.output)?;
+    let figures = Figures::read(folder)?;
     if args.page_only && figures.is_empty() {
         return Err(Failure::Options(format!(
             "{} holds no figures to make a page of, no work.csv, drift.csv or stability.csv with rows: measure first, or name another folder",
-            args.output.display()
+            folder.display()
         )));
     }
-    let page = args.output.join("index.html");
-    std::fs::write(&page, page::render(&figures)?).map_err(|error| Failure::Write {
-        target: page.display().to_string(),
-        error,
-    })?;
+    if let Some(output) = output {
+        output.write(page::render(&figures)?)?;
+    }
+    drop(lock);
     if args.quiet {
         return Ok(());
     }
@@ -78,12 +85,17 @@ fn measure(
     let mut stores = Stores {
         work: Store::open(folder, machine)?,
         build: Store::open(folder, machine)?,
+        stability: Store::open(folder, machine)?,
+        drift: Store::open(folder, machine)?,
     };
-    work::measure(plan, registry, machine, &mut stores, tick)?;
-    let mut store = Store::open(folder, machine)?;
-    stability::measure(plan, registry, machine, &mut store, tick)?;
-    let mut store = Store::open(folder, machine)?;
-    drift::measure(plan, registry, machine, &mut store, tick)?;
+    let heed = Heed::new();
+    let measured = work::measure(plan, registry, machine, &mut stores, tick)
+        .and_then(|()| stability::measure(plan, registry, machine, &mut stores.stability, tick))
+        .and_then(|()| drift::measure(plan, registry, machine, &mut stores.drift, tick));
+    // What was measured stays, whatever came then.
+    let saved = stores.save();
+    drop(heed);
+    measured.and(saved)?;
     progress.finish();
     Ok(())
 }

@@ -1,18 +1,59 @@
 //! CSV files that grow as figures are measured, and are read again when the command goes on.
 
-use super::row::Row;
+use super::row::{Build, Drift, Row, Stability, Work};
+use crate::files::{Output, admit, new_file};
+use crate::interrupt;
 use crate::output::Failure;
 use std::collections::HashMap;
-use std::fs::{self, OpenOptions};
-use std::io::Write;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Figures are written out no more often than this…
+const SELDOM: Duration = Duration::from_secs(1);
+/// …and so that it takes no more than this part of the time: a file is written as a whole.
+const SHARE: u32 = 100;
+
+/// More than the names of columns take, bytes.
+const LONGEST: u64 = 1 << 12;
+
+/// All that is measured.
+#[derive(Debug)]
+pub struct Stores {
+    pub work: Store<Work>,
+    pub build: Store<Build>,
+    pub stability: Store<Stability>,
+    pub drift: Store<Drift>,
+}
+
+impl Stores {
+    /// Writes what is not in the files yet.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn save(&mut self) -> Result<(), Failure> {
+        let saved = [
+            self.work.save(),
+            self.build.save(),
+            self.stability.save(),
+            self.drift.save(),
+        ];
+        saved.into_iter().collect()
+    }
+}
 
 /// The file of one kind of rows: those of all machines that it was measured on.
 #[derive(Debug)]
 pub struct Store<R> {
-    path: PathBuf,
+    output: Output,
+    /// What the file is to hold.
+    text: Vec<u8>,
     /// What this machine has measured, by its keys.
     measured: HashMap<String, R>,
+    is_saved: bool,
+    /// When the next rows are written out.
+    next: Instant,
 }
 
 impl<R: Row> Store<R> {
@@ -22,13 +63,15 @@ impl<R: Row> Store<R> {
     /// # Errors
     /// A file that holds other than such rows.
     pub fn open(folder: &Path, machine: &str) -> Result<Self, Failure> {
-        let rows = read::<R>(folder)?;
-        let path = path::<R>(folder);
-        mend(&path).map_err(|error| failure(&path, error))?;
+        let text = text::<R>(folder)?;
+        let rows = rows::<R>(folder, &text)?;
         let own = rows.into_iter().filter(|row| row.machine() == machine);
         Ok(Self {
             measured: own.map(|row| (row.key(), row)).collect(),
-            path,
+            output: output::<R>(folder)?,
+            text,
+            is_saved: true,
+            next: Instant::now(),
         })
     }
 
@@ -42,14 +85,39 @@ impl<R: Row> Store<R> {
         self.measured.values()
     }
 
-    /// Adds rows, which are in the file when this returns.
+    /// Adds rows, which are in the file soon, and when [`Store::save`] returns.
+    ///
+    /// # Errors
+    /// A file that cannot be written; an interrupt, after which nothing more is to be measured.
+    pub fn add(&mut self, rows: &[R]) -> Result<(), Failure> {
+        let written = append(&mut self.text, rows);
+        written.map_err(|error| Failure::write(self.output.path(), error.into()))?;
+        self.is_saved = false;
+        let rows = rows.iter().map(|row| (row.key(), row.clone()));
+        self.measured.extend(rows);
+        if interrupt::is_requested() {
+            return Err(Failure::Interrupted(String::from(
+                "what was measured is in the files; called again, the command goes on from there",
+            )));
+        }
+        match Instant::now() > self.next {
+            true => self.save(),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes what is not in the file yet.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn add(&mut self, rows: &[R]) -> Result<(), Failure> {
-        append(&self.path, rows).map_err(|error| failure(&self.path, error.into()))?;
-        let rows = rows.iter().map(|row| (row.key(), row.clone()));
-        self.measured.extend(rows);
+    pub fn save(&mut self) -> Result<(), Failure> {
+        if self.is_saved {
+            return Ok(());
+        }
+        let start = Instant::now();
+        self.output.write(&self.text)?;
+        self.is_saved = true;
+        self.next = Instant::now() + SELDOM.max(SHARE * start.elapsed());
         Ok(())
     }
 }
@@ -60,7 +128,8 @@ impl<R: Row> Store<R> {
 /// # Errors
 /// Files that cannot be read or written.
 pub fn set_aside<R: Row>(folder: &Path, is_old: impl Fn(&R) -> bool) -> Result<(), Failure> {
-    let mut rows = read::<R>(folder)?;
+    let before = text::<R>(folder)?;
+    let mut rows = rows::<R>(folder, &before)?;
     let count = rows.len();
     rows.retain(|row| !is_old(row));
     if rows.len() == count {
@@ -69,49 +138,11 @@ pub fn set_aside<R: Row>(folder: &Path, is_old: impl Fn(&R) -> bool) -> Result<(
     let path = path::<R>(folder);
     let mut copies = (1..).map(|number| path.with_extension(format!("{number}.csv")));
     let aside = copies.find(|copy| !copy.exists()).unwrap_or_default();
-    let rest = path.with_extension("new.csv");
-    let moved = || -> csv::Result<()> {
-        write(csv::Writer::from_path(&rest)?, &rows)?;
-        fs::copy(&path, &aside)?;
-        Ok(fs::rename(&rest, &path)?)
-    };
-    moved().map_err(|error| failure(&path, error.into()))
-}
-
-/// In one piece, so that what is stopped leaves a whole curve or none, as far as the system allows.
-fn append<R: Row>(path: &Path, rows: &[R]) -> csv::Result<()> {
-    let mut file = OpenOptions::new().create(true).append(true).open(path)?;
-    let is_empty = file.metadata()?.len() == 0;
-    let mut text = Vec::new();
-    let mut builder = csv::WriterBuilder::new();
-    write(builder.has_headers(is_empty).from_writer(&mut text), rows)?;
-    Ok(file.write_all(&text)?)
-}
-
-fn write<R: Row>(mut writer: csv::Writer<impl Write>, rows: &[R]) -> csv::Result<()> {
-    rows.iter().try_for_each(|row| writer.serialize(row))?;
-    Ok(writer.flush()?)
-}
-
-/// Cuts off a last line that was not written to its end.
-fn mend(path: &Path) -> std::io::Result<()> {
-    if !path.exists() {
-        return Ok(());
-    }
-    let text = fs::read(path)?;
-    match whole(&text).len() {
-        length if length < text.len() => {
-            let file = OpenOptions::new().write(true).open(path)?;
-            file.set_len(length as u64)
-        }
-        _ => Ok(()),
-    }
-}
-
-/// The lines that were written to their ends.
-fn whole(text: &[u8]) -> &[u8] {
-    let end = text.iter().rposition(|byte| *byte == b'\n');
-    &text[..end.map_or(0, |end| end + 1)]
+    // Also without a row: a file of no names would be nobody's.
+    let mut rest = names::<R>();
+    append(&mut rest, &rows).map_err(|error| Failure::write(&path, error.into()))?;
+    new_file(&aside)?.write(before)?;
+    output::<R>(folder)?.write(rest)
 }
 
 /// All rows of a file, without a last line that was not written to its end; none where it is not there.
@@ -119,29 +150,77 @@ fn whole(text: &[u8]) -> &[u8] {
 /// # Errors
 /// A file that holds other than such rows.
 pub fn read<R: Row>(folder: &Path) -> Result<Vec<R>, Failure> {
+    rows(folder, &text::<R>(folder)?)
+}
+
+/// Adds lines, under that of names where there is none yet.
+fn append<R: Row>(text: &mut Vec<u8>, rows: &[R]) -> csv::Result<()> {
+    let mut builder = csv::WriterBuilder::new();
+    let mut writer = builder.has_headers(text.is_empty()).from_writer(text);
+    rows.iter().try_for_each(|row| writer.serialize(row))?;
+    Ok(writer.flush()?)
+}
+
+/// The lines of a file that were written to their ends: versions before this one appended them, and could be stopped within.
+///
+/// # Errors
+/// A file that cannot be read, or has other columns.
+fn text<R: Row>(folder: &Path) -> Result<Vec<u8>, Failure> {
     let path = path::<R>(folder);
     if !path.exists() {
         return Ok(Vec::new());
     }
-    let text = fs::read(&path).map_err(|error| failure(&path, error))?;
-    let rows: csv::Result<Vec<R>> = csv::Reader::from_reader(whole(&text))
-        .deserialize()
-        .collect();
-    rows.map_err(|error| {
-        Failure::Page(format!(
-            "{}: {error}; move the file away, or name another folder",
-            path.display()
-        ))
-    })
+    let mut text = fs::read(&path).map_err(|error| Failure::write(&path, error))?;
+    if !has_columns::<R>(&text) {
+        return Err(foreign(&path, &"its columns are others"));
+    }
+    let end = text.iter().rposition(|byte| *byte == b'\n');
+    text.truncate(end.map_or(0, |end| end + 1));
+    Ok(text)
+}
+
+fn rows<R: Row>(folder: &Path, text: &[u8]) -> Result<Vec<R>, Failure> {
+    let rows: csv::Result<Vec<R>> = csv::Reader::from_reader(text).deserialize().collect();
+    rows.map_err(|error| foreign(&path::<R>(folder), &error))
+}
+
+/// Whether a file has the columns of these rows.
+fn is_own<R: Row>(file: &File) -> bool {
+    let mut begin = vec![];
+    let read = file.take(LONGEST).read_to_end(&mut begin);
+    read.is_ok() && has_columns::<R>(&begin)
+}
+
+/// Whether the first line has the names of these rows, or was stopped while they were written.
+fn has_columns<R: Row>(text: &[u8]) -> bool {
+    let names = names::<R>();
+    text.starts_with(&names) || names.starts_with(text)
+}
+
+/// The line of names.
+fn names<R: Row>() -> Vec<u8> {
+    let mut text = vec![];
+    let written = append(&mut text, &[R::default()]);
+    let end = text.iter().position(|byte| *byte == b'\n');
+    text.truncate(end.map_or(0, |end| end + 1));
+    // A vector takes all that is written.
+    debug_assert!(written.is_ok() && !text.is_empty());
+    text
+}
+
+fn output<R: Row>(folder: &Path) -> Result<Output, Failure> {
+    let path = path::<R>(folder);
+    let admitted = admit([], [(&*path, is_own::<R> as _)], false)?.pop();
+    admitted.ok_or_else(|| Failure::write(&path, std::io::ErrorKind::NotFound.into()))
+}
+
+fn foreign(path: &Path, error: &dyn std::fmt::Display) -> Failure {
+    Failure::Page(format!(
+        "{}: {error}; move the file away, or name another folder",
+        path.display()
+    ))
 }
 
 fn path<R: Row>(folder: &Path) -> PathBuf {
     folder.join(R::FILE).with_extension("csv")
-}
-
-fn failure(path: &Path, error: std::io::Error) -> Failure {
-    Failure::Write {
-        target: path.display().to_string(),
-        error,
-    }
 }

@@ -123,6 +123,7 @@ impl Subject {
             .unique_by(|kind| kind.name())
             .collect();
         let build = hamel_codegen::scene_of(self.name, self.description.clone());
+        let build = build.library(hamel_joints::specs());
         compiled(build, self.name, &kinds, compiler, &scene.mechanism)
     }
 

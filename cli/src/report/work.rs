@@ -4,8 +4,8 @@ use super::case::{Case, Reference, accuracy};
 use super::measure::{self, Failed, Point};
 use super::plan::{Plan, TOLERANCES};
 use super::representation::Representation;
-use super::row::{Build, NOT_RUN, Row, Work, form_name};
-use super::store::Store;
+use super::row::{NOT_RUN, Row, Work, form_name};
+use super::store::{Store, Stores};
 use super::subject::{Implementation, Subject};
 use crate::output::Failure;
 use hamel::integrate::{Form, Method, Scheme};
@@ -30,13 +30,6 @@ struct Curve {
     implementation: Implementation,
     scheme: Scheme,
     form: Form,
-}
-
-/// What the figures go to.
-#[derive(Debug)]
-pub struct Stores {
-    pub work: Store<Work>,
-    pub build: Store<Build>,
 }
 
 /// Measures what the stores have not.

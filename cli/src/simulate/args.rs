@@ -1,5 +1,6 @@
 //! The options of `hamel simulate`.
 
+use crate::files::Force;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, ValueEnum};
 use hamel::integrate::Scheme;
@@ -45,7 +46,10 @@ The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellip
 wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step.
 It holds at most 60 samples a second of the trajectory: for a smooth picture keep --sample-step at 0.02 or less.
 
-Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a file that cannot be written; 2 wrong options.";
+Files are written beside their names and take them when they are whole; one that this command did not write is replaced with --force only. Ctrl-C ends the simulation
+at the next sample and leaves whole files of what there is; a second one ends it at once and leaves files as they were.
+
+Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a file that cannot be written; 2 wrong options; 130 interrupted.";
 
 /// Simulate a scene: trajectory as CSV, final state as a table, energy and drift.
 ///
@@ -65,8 +69,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub controller: Option<PathBuf>,
 
-    /// Simulate with the scene's equations compiled to C, by the C compiler that the variable CC names, else cc, gcc or clang; what `hamel compile` refuses
-    /// is refused
+    /// Simulate with the scene's equations compiled to C, by the C compiler that the variable CC names, else cc, gcc or clang, within the 300 s that
+    /// HAMEL_CC_SECONDS can change; what `hamel compile` refuses is refused
     #[arg(long)]
     pub compiled: bool,
 
@@ -142,6 +146,9 @@ pub struct Args {
     /// Print nothing but errors; also what is not simulated is not told
     #[arg(long, conflicts_with = "json")]
     pub quiet: bool,
+
+    #[command(flatten)]
+    pub force: Force,
 }
 
 /// Names of the two forms.

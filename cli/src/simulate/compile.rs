@@ -19,13 +19,10 @@ pub fn equations(args: &Args, plan: &Plan) -> Result<Equations, Failure> {
     }
     let compiler = Compiler::find()?;
     let progress = progress::compiling(args.quiet, &compiler);
-    let mut build = hamel_codegen::scene(&args.scene);
-    if args.floating_base {
-        build = build.floating_base();
-    }
-    let label = args.scene.file_name().unwrap_or_default().to_string_lossy();
+    // Of the text that the mechanism was made of: what the file holds by now may be another scene.
+    let (build, label) = (plan.input.build()?, plan.input.label());
     let kinds = compiled::functions(plan.settings.form, *plan.settings.method.scheme());
-    let equations = compiled(build, &label, kinds, &compiler, &plan.scene.mechanism)?;
+    let equations = compiled(build, label, kinds, &compiler, &plan.scene.mechanism)?;
     progress.finish_and_clear();
     if !args.quiet {
         tell(&equations.left_out);

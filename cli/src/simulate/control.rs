@@ -4,6 +4,7 @@ use super::plan::Plan;
 use crate::output::Failure;
 use hamel::control::{Controller, Measure};
 use hamel::integrate::Step;
+use hamel::shown::Number;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::fmt;
@@ -196,7 +197,7 @@ impl fmt::Display for Outcome {
         let effort = self.largest_effort;
         match self.period_s {
             None => write!(f, "control     {} at every instant", self.kind)?,
-            Some(period) => write!(f, "control     {} each {period:?} s", self.kind)?,
+            Some(period) => write!(f, "control     {} each {:?} s", self.kind, Number(period))?,
         }
         writeln!(f, "; largest effort {effort:.4e} N m or N")?;
         for error in &self.errors {

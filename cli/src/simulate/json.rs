@@ -3,6 +3,7 @@
 use super::control::Outcome;
 use super::sample::Sample;
 use crate::output::Failure;
+use crate::terminal::fragment_of_json;
 use hamel::integrate::Crossing;
 use serde::Serialize;
 use serde_json::Serializer;
@@ -86,12 +87,20 @@ fn write(report: &Report<'_>, out: &mut impl Write) -> io::Result<()> {
     out.flush()
 }
 
-/// Writes every float with 17 significant digits, which decide an f64.
+/// Writes every float with 17 significant digits, which decide an f64, and texts so that all is seen.
 struct Digits17;
 
 impl Formatter for Digits17 {
     fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
         write!(writer, "{value:.16e}")
+    }
+
+    fn write_string_fragment<W: ?Sized + Write>(
+        &mut self,
+        writer: &mut W,
+        fragment: &str,
+    ) -> io::Result<()> {
+        fragment_of_json(writer, fragment)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::csv::columns;
 use super::plan::Plan;
 use super::sample::Sample;
+use crate::files::{Draft, Output};
 use crate::output::Failure;
 use hamel::integrate::Step;
 use hamel::mechanism::Kinematics;
@@ -11,38 +12,57 @@ use parquet::data_type::DoubleType;
 use parquet::errors::{ParquetError, Result as Written};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
+use parquet::file::reader::FileReader;
+use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::fs::File;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Numbers kept in memory before they are written as one group of rows: 32 MB.
 const MOST_NUMBERS: usize = 4_000_000;
 
+/// Name of the table.
+const TABLE: &str = "trajectory";
+
+/// What files tell of their run.
+const TOLD: [&str; 3] = ["scene", "form", "method"];
+
+/// Whether a file is a trajectory that was written before.
+pub fn is_own(file: &File) -> bool {
+    let reader = file.try_clone().ok().map(SerializedFileReader::new);
+    let Some(Ok(reader)) = reader else {
+        return false;
+    };
+    let told = reader.metadata().file_metadata();
+    let keys = told.key_value_metadata().into_iter().flatten();
+    let keys: Vec<&str> = keys.map(|entry| entry.key.as_str()).collect();
+    told.schema().name() == TABLE && TOLD.iter().all(|key| keys.contains(key))
+}
+
 /// A Parquet file being written.
-pub struct Parquet {
-    writer: SerializedFileWriter<File>,
-    target: String,
+pub struct Parquet<'a> {
+    writer: SerializedFileWriter<Draft>,
+    output: &'a Output,
     columns: Vec<Vec<f64>>,
 }
 
-impl Parquet {
-    /// Creates the file that `plan` asks for, if it asks for one.
+impl<'a> Parquet<'a> {
+    /// Begins the file that `plan` asks for, if it asks for one.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn create(plan: &Plan) -> Result<Option<Self>, Failure> {
-        let Some(path) = &plan.parquet else {
+    pub fn create(plan: &'a Plan) -> Result<Option<Self>, Failure> {
+        let Some(output) = &plan.parquet else {
             return Ok(None);
         };
-        let target = path.display().to_string();
         let names = names(plan);
         let columns = vec![Vec::new(); names.len()];
-        let writer = writer(path, plan, names).map_err(|error| refusal(&target, error))?;
+        let writer = writer(output.open()?, plan, names);
+        let writer = writer.map_err(|error| refusal(output, error))?;
         Ok(Some(Self {
             writer,
-            target,
+            output,
             columns,
         }))
     }
@@ -70,41 +90,38 @@ impl Parquet {
         Ok(())
     }
 
-    /// Writes what is still in memory, and the end of the file.
+    /// Writes what is still in memory, and the end of the file, and gives it its name.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn finish(mut self) -> Result<(), Failure> {
         self.flush()?;
-        let closed = self.writer.close();
-        closed.map_or_else(|error| Err(refusal(&self.target, error)), |_| Ok(()))
+        let draft = self.writer.into_inner();
+        draft.map_err(|error| refusal(self.output, error))?.finish()
     }
 
     fn flush(&mut self) -> Result<(), Failure> {
         let written = write_group(&mut self.writer, &mut self.columns);
-        written.map_err(|error| refusal(&self.target, error))
+        written.map_err(|error| refusal(self.output, error))
     }
 }
 
-fn writer(path: &Path, plan: &Plan, names: Vec<String>) -> Written<SerializedFileWriter<File>> {
+fn writer(file: Draft, plan: &Plan, names: Vec<String>) -> Written<SerializedFileWriter<Draft>> {
     let fields: Written<Vec<_>> = names.iter().map(|name| column(name)).collect();
-    let schema = Type::group_type_builder("trajectory").with_fields(fields?);
-    let told = [
-        ("scene", plan.scene.name.clone()),
-        ("form", plan.settings.form_name().to_owned()),
-        ("method", plan.method()),
+    let schema = Type::group_type_builder(TABLE).with_fields(fields?);
+    let values = [
+        plan.scene.name.clone(),
+        plan.settings.form_name().to_owned(),
+        plan.method(),
     ];
+    let told = TOLD.into_iter().zip(values);
     let told = told.map(|(key, value)| KeyValue::new(key.to_owned(), value));
     // Samples hardly repeat: dictionaries would only be tried in vain.
     let properties = WriterProperties::builder()
         .set_dictionary_enabled(false)
-        .set_key_value_metadata(Some(told.into()))
+        .set_key_value_metadata(Some(told.collect()))
         .build();
-    SerializedFileWriter::new(
-        File::create(path)?,
-        Arc::new(schema.build()?),
-        Arc::new(properties),
-    )
+    SerializedFileWriter::new(file, Arc::new(schema.build()?), Arc::new(properties))
 }
 
 fn column(name: &str) -> Written<Arc<Type>> {
@@ -114,7 +131,7 @@ fn column(name: &str) -> Written<Arc<Type>> {
     ))
 }
 
-fn write_group(writer: &mut SerializedFileWriter<File>, columns: &mut [Vec<f64>]) -> Written<()> {
+fn write_group(writer: &mut SerializedFileWriter<Draft>, columns: &mut [Vec<f64>]) -> Written<()> {
     let mut group = writer.next_row_group()?;
     for column in columns {
         if let Some(mut writer) = group.next_column()? {
@@ -145,9 +162,6 @@ fn names(plan: &Plan) -> Vec<String> {
     names
 }
 
-fn refusal(target: &str, error: ParquetError) -> Failure {
-    Failure::Write {
-        target: target.to_owned(),
-        error: std::io::Error::other(error),
-    }
+fn refusal(output: &Output, error: ParquetError) -> Failure {
+    Failure::write(output.path(), std::io::Error::other(error))
 }

@@ -1,17 +1,21 @@
 //! What one run of `hamel simulate` is to do: the scene, the settings, the times and the files.
 
 use super::args::Args;
-use super::{choose, settings, times};
-use crate::input;
-use crate::output::{Failure, refuse_overwriting, tell};
+use super::{choose, csv, page, parquet, settings, times};
+use crate::files::{Output, admit};
+use crate::input::Input;
+use crate::output::{Failure, tell};
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
+use hamel::shown::Number;
 use hamel_scene::{Control, Scene, Settings};
 use std::path::{Path, PathBuf};
 
 /// A run, decided in every respect.
 #[derive(Debug)]
 pub struct Plan {
+    /// What was read, of which the scene is made.
+    pub input: Input,
     /// The scene as loaded.
     pub scene: Scene,
     /// Its settings under the options given; `t_end` is the end of the simulation.
@@ -23,20 +27,21 @@ pub struct Plan {
     /// Sample times, s.
     pub times: Vec<f64>,
     /// Where the trajectory goes as CSV, if anywhere.
-    pub csv: Option<PathBuf>,
+    pub csv: Option<Output>,
     /// Where it goes as Parquet, if anywhere.
-    pub parquet: Option<PathBuf>,
+    pub parquet: Option<Output>,
     /// Where it goes as a page to look at, if anywhere.
-    pub html: Option<PathBuf>,
+    pub html: Option<Output>,
 }
 
 impl Plan {
     /// Loads the scene of `args` and lays the options over its settings.
     ///
     /// # Errors
-    /// Mistakes in the scene; options out of range; a first state to which no method can be chosen.
+    /// Mistakes in the scene; options out of range; a first state to which no method can be chosen; files that must not be written.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
-        let scene = input::scene(&args.scene, args.floating_base, registry)?;
+        let input = Input::read(&args.scene, args.floating_base)?;
+        let scene = input.scene(registry)?;
         let control = match &args.controller {
             Some(path) => Some(Control::load(path, &scene)?),
             None => scene.control.clone(),
@@ -53,24 +58,24 @@ impl Plan {
             settings.t_end = t_end;
             times
         };
+        scene.check_start(&settings, control.as_ref())?;
         let mut reason = None;
         if settings.chooses {
             let (method, why) = choose::choose(&scene, control.as_ref(), &settings)?;
             (settings.method, reason) = (method, Some(why));
         }
-        let plan = Self {
+        let [csv, parquet, html] = outputs(args)?;
+        Ok(Self {
+            input,
             scene,
             settings,
             reason,
             control,
             times,
-            csv: csv_path(args),
-            parquet: args.parquet.clone(),
-            html: args.html.clone(),
-        };
-        let read = [Some(&args.scene), args.controller.as_ref()];
-        refuse_overwriting(read.into_iter().flatten(), plan.files())?;
-        Ok(plan)
+            csv,
+            parquet,
+            html,
+        })
     }
 
     /// Whether anything but gravity can change the energy.
@@ -82,7 +87,12 @@ impl Plan {
     /// The files of the trajectory.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let files = [&self.csv, &self.parquet, &self.html];
-        files.into_iter().flatten().map(PathBuf::as_path)
+        files.into_iter().flatten().map(Output::path)
+    }
+
+    /// Whether the trajectory goes to any file.
+    pub fn has_files(&self) -> bool {
+        self.files().next().is_some()
     }
 
     /// The method of integration and its accuracy, in words.
@@ -97,7 +107,7 @@ impl Plan {
                 } else {
                     ""
                 };
-                format!("{name} with steps of {dt:?} s{note}")
+                format!("{name} with steps of {:?} s{note}", Number(dt))
             }
             Method::Controlled { control, .. } => format!("{name} to {:e}", control.tolerance),
         }
@@ -112,6 +122,20 @@ impl Plan {
             samples: self.times.clone(),
         }
     }
+}
+
+/// The files of the trajectory: as CSV, as Parquet and as a page.
+fn outputs(args: &Args) -> Result<[Option<Output>; 3], Failure> {
+    let csv = csv_path(args);
+    let paths = [&csv, &args.parquet, &args.html].map(Option::as_deref);
+    let known = [csv::is_own, parquet::is_own, page::is_own];
+    let written = paths.into_iter().zip(known);
+    let written = written.filter_map(|(path, is_own)| Some((path?, is_own as _)));
+    let read = [Some(&args.scene), args.controller.as_ref()];
+    let read = read.into_iter().flatten().map(PathBuf::as_path);
+    let mut admitted = admit(read, written, args.force.force)?.into_iter();
+    // Those that are asked for, in their order.
+    Ok(paths.map(|path| path.and_then(|_| admitted.next())))
 }
 
 /// The file asked for; else, unless something else is wanted, the scene's file name with `.csv` in the current folder.

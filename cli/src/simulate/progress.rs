@@ -1,6 +1,7 @@
 //! Progress on stderr; nothing where stderr is no terminal.
 
 use crate::compiled::Compiler;
+use hamel_scene::text::visible;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;
 
@@ -42,7 +43,7 @@ impl Progress {
 /// What is shown while a compiler works, which does not tell how far it is.
 pub fn compiling(quiet: bool, compiler: &Compiler) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, target(quiet));
-    bar.set_message(format!("compiling the scene, with {compiler}"));
+    bar.set_message(visible(&format!("compiling the scene, with {compiler}")));
     bar.enable_steady_tick(Duration::from_millis(100));
     bar
 }

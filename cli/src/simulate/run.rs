@@ -12,19 +12,22 @@ use super::plan::Plan;
 use super::progress::Progress;
 use super::sample::Sample;
 use super::table::Summary;
-use crate::output::Failure;
+use crate::interrupt::{self, Heed};
+use crate::output::{self, Failure};
 use hamel::dynamics::Dynamics;
 use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State, Step};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
-use std::io::Write;
 use std::ops::ControlFlow;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// An interrupted simulation ends at the next sample; where that takes longer, at the next step.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Simulates the scene of `args`.
 ///
 /// # Errors
-/// Mistakes in the scene or the options; a simulation that stops early; output that cannot be written.
+/// Mistakes in the scene or the options; a simulation that stops early or is interrupted; output that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let plan = Plan::new(args, registry)?;
     let run = match args.compiled {
@@ -41,13 +44,36 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
             simulate(&plan, &mut *tree, args.quiet)?
         }
     };
-    if args.json {
-        return print_json(&plan, &run);
+    match (args.json, args.quiet) {
+        (true, _) => print_json(&plan, &run)?,
+        (false, true) => {}
+        (false, false) => print_summary(&plan, &run)?,
     }
-    if args.quiet {
-        return Ok(());
+    match run.is_interrupted {
+        true => Err(interrupted(&plan, &run.solution)),
+        false => Ok(()),
     }
-    print_summary(&plan, &run)
+}
+
+/// What is told of a simulation that the user has ended.
+fn interrupted(plan: &Plan, solution: &Solution) -> Failure {
+    let (time, end) = (solution.state.time, plan.settings.t_end);
+    let files = match solution.samples.len() {
+        0 => String::from(", before the first sample: no file was written"),
+        count => match plan.files().map(|path| path.display().to_string()) {
+            files if plan.has_files() => {
+                let files: Vec<String> = files.collect();
+                format!(
+                    "; the {count} samples until then are in {}",
+                    files.join(", ")
+                )
+            }
+            _ => String::new(),
+        },
+    };
+    Failure::Interrupted(format!(
+        "the simulation ended at {time:?} s, not at {end:?} s{files}"
+    ))
 }
 
 /// What a simulation came to.
@@ -59,11 +85,14 @@ struct Run {
     outcome: Option<Outcome>,
     /// What the controller exerts at each sample; empty without one.
     efforts: Vec<Vec<f64>>,
+    /// Whether the user ended it.
+    is_interrupted: bool,
 }
 
 fn simulate(plan: &Plan, dynamics: &mut dyn Dynamics, quiet: bool) -> Result<Run, Failure> {
     let control = Loop::new(plan)?;
-    let mut recorder = Recorder::new(plan, quiet)?;
+    let mut recorder = Recorder::new(plan, quiet);
+    let heed = Heed::new();
     let mut efforts: Vec<Vec<f64>> = Vec::new();
     let start = Instant::now();
     let result = move_on(plan, dynamics, control.as_ref(), &mut |step| {
@@ -79,11 +108,12 @@ fn simulate(plan: &Plan, dynamics: &mut dyn Dynamics, quiet: bool) -> Result<Run
         recorder.see(step, &tau)
     });
     let run_time_s = start.elapsed().as_secs_f64();
-    recorder.finish()?;
+    let recorded = recorder.finish()?;
+    drop(heed);
     let failure = control.as_ref().and_then(Loop::failure);
     let solution = result.map_err(|error| match failure {
-        Some(cause) => stopped(plan, &cause),
-        None => stopped(plan, &error),
+        Some(cause) => stopped(plan, recorded, &cause),
+        None => stopped(plan, recorded, &error),
     })?;
     let statistics = Statistics {
         steps: solution.statistics.steps,
@@ -97,6 +127,7 @@ fn simulate(plan: &Plan, dynamics: &mut dyn Dynamics, quiet: bool) -> Result<Run
         statistics,
         outcome: control.map(Loop::finish),
         efforts,
+        is_interrupted: recorded.is_interrupted,
     })
 }
 
@@ -125,17 +156,17 @@ fn move_on(
     integration.run()
 }
 
-fn stopped(plan: &Plan, error: &dyn std::fmt::Display) -> Failure {
+fn stopped(plan: &Plan, recorded: Recorded, error: &dyn std::fmt::Display) -> Failure {
     let files: Vec<String> = plan
         .files()
         .map(|path| path.display().to_string())
         .collect();
     Failure::Simulation(match files.as_slice() {
-        [] => error.to_string(),
-        files => format!(
+        files if recorded.has_files && !files.is_empty() => format!(
             "{error} (the samples before that are in {})",
             files.join(", ")
         ),
+        _ => error.to_string(),
     })
 }
 
@@ -151,54 +182,55 @@ fn sample<'a>(
 
 /// Writes samples as they come, so that a simulation that stops leaves its trajectory up to there.
 struct Recorder<'a> {
+    plan: &'a Plan,
     mechanism: &'a Mechanism,
-    trajectory: Option<Trajectory>,
-    parquet: Option<Parquet>,
-    page: Option<Page<'a>>,
+    /// Absent before the first step is shown, by when options, scene, first state and method have been accepted.
+    files: Option<Files<'a>>,
+    has_samples: bool,
     progress: Progress,
     failure: Option<Failure>,
+    /// When an interrupt was seen.
+    interrupted: Option<Instant>,
+    is_interrupted: bool,
 }
 
-impl<'a> Recorder<'a> {
-    fn new(plan: &'a Plan, quiet: bool) -> Result<Self, Failure> {
-        let mechanism: &Mechanism = &plan.scene.mechanism;
+/// Those that are asked for.
+struct Files<'a> {
+    trajectory: Option<Trajectory<'a>>,
+    parquet: Option<Parquet<'a>>,
+    page: Option<Page<'a>>,
+}
+
+/// What a recorder leaves.
+#[derive(Clone, Copy)]
+struct Recorded {
+    /// Whether the files were written: there was a sample.
+    has_files: bool,
+    is_interrupted: bool,
+}
+
+impl<'a> Files<'a> {
+    fn create(plan: &'a Plan) -> Result<Self, Failure> {
         Ok(Self {
-            mechanism,
             trajectory: Trajectory::create(plan)?,
             parquet: Parquet::create(plan)?,
             page: Page::create(plan)?,
-            progress: Progress::new(plan.settings.t_end, quiet),
-            failure: None,
         })
     }
 
-    /// Takes the end of a step, where it is a sample; `efforts` are the controller's, empty without one.
-    fn see(&mut self, step: &Step<'_>, efforts: &[f64]) -> ControlFlow<()> {
-        self.progress.at(step.time);
-        if let Some(page) = &mut self.page
-            && !step.is_within
-        {
-            page.step(step.time);
-        }
-        if step.sample.is_none() {
-            return ControlFlow::Continue(());
-        }
-        match self.record(step, efforts) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(failure) => {
-                self.failure = Some(failure);
-                ControlFlow::Break(())
-            }
-        }
-    }
-
-    fn record(&mut self, step: &Step<'_>, efforts: &[f64]) -> Result<(), Failure> {
+    /// Takes a sample.
+    fn record(
+        &mut self,
+        mechanism: &Mechanism,
+        step: &Step<'_>,
+        efforts: &[f64],
+    ) -> Result<(), Failure> {
         if self.trajectory.is_none() && self.parquet.is_none() && self.page.is_none() {
             return Ok(());
         }
-        let kinematics = self.mechanism.kinematics(step.configuration, step.speeds);
+        let kinematics = mechanism.kinematics(step.configuration, step.speeds);
         let kinematics = kinematics.map_err(|error| Failure::Simulation(error.to_string()))?;
-        let sample = Sample::of(self.mechanism, step.time, &kinematics, efforts);
+        let sample = Sample::of(mechanism, step.time, &kinematics, efforts);
         if let Some(trajectory) = &mut self.trajectory {
             trajectory.write(&sample)?;
         }
@@ -212,11 +244,80 @@ impl<'a> Recorder<'a> {
     }
 
     fn finish(self) -> Result<(), Failure> {
-        self.progress.finish();
         let csv = self.trajectory.map_or(Ok(()), Trajectory::finish);
         let parquet = self.parquet.map_or(Ok(()), Parquet::finish);
         let page = self.page.map_or(Ok(()), Page::finish);
-        self.failure.map_or(csv.and(parquet).and(page), Err)
+        csv.and(parquet).and(page)
+    }
+}
+
+impl<'a> Recorder<'a> {
+    fn new(plan: &'a Plan, quiet: bool) -> Self {
+        Self {
+            plan,
+            mechanism: &plan.scene.mechanism,
+            files: None,
+            has_samples: false,
+            progress: Progress::new(plan.settings.t_end, quiet),
+            failure: None,
+            interrupted: None,
+            is_interrupted: false,
+        }
+    }
+
+    /// Takes the end of a step, where it is a sample; `efforts` are the controller's, empty without one.
+    fn see(&mut self, step: &Step<'_>, efforts: &[f64]) -> ControlFlow<()> {
+        self.progress.at(step.time);
+        let seen = self.take(step, efforts);
+        if let Err(failure) = seen {
+            self.failure = Some(failure);
+            return ControlFlow::Break(());
+        }
+        match self.is_to_end(step) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Takes it into the files, which the first step begins.
+    fn take(&mut self, step: &Step<'_>, efforts: &[f64]) -> Result<(), Failure> {
+        let files = match &mut self.files {
+            Some(files) => files,
+            none => none.insert(Files::create(self.plan)?),
+        };
+        if let Some(page) = &mut files.page
+            && !step.is_within
+        {
+            page.step(step.time);
+        }
+        if step.sample.is_some() {
+            files.record(self.mechanism, step, efforts)?;
+            self.has_samples = true;
+        }
+        Ok(())
+    }
+
+    /// Whether the user ends the simulation here.
+    fn is_to_end(&mut self, step: &Step<'_>) -> bool {
+        if !interrupt::is_requested() {
+            return false;
+        }
+        let since = *self.interrupted.get_or_insert_with(Instant::now);
+        self.is_interrupted = step.sample.is_some() || since.elapsed() > PATIENCE;
+        self.is_interrupted
+    }
+
+    /// Finishes the files, unless there is no sample or they cannot be written: then what they would replace stays.
+    fn finish(self) -> Result<Recorded, Failure> {
+        self.progress.finish();
+        let is_written = !matches!(self.failure, Some(Failure::Write { .. }));
+        let files = self.files.filter(|_| self.has_samples && is_written);
+        let recorded = Recorded {
+            has_files: files.is_some(),
+            is_interrupted: self.is_interrupted,
+        };
+        files.map_or(Ok(()), Files::finish)?;
+        self.failure.map_or(Ok(recorded), Err)
     }
 }
 
@@ -269,5 +370,5 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         approaches: &solution.approaches,
         events: &solution.events,
     };
-    write!(std::io::stdout().lock(), "{summary}").map_err(Failure::stdout)
+    output::print(&summary.to_string())
 }

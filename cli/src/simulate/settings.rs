@@ -3,6 +3,7 @@
 use super::args::{Args, ArithmeticName, FormName, MethodName, SamplingName};
 use crate::output::Failure;
 use hamel::integrate::{Control, Form, Method, Sampling, Scheme};
+use hamel::shown::Number;
 use hamel_scene::{Arithmetic, Settings};
 
 /// The settings that `args` and the scene's `settings` make together.
@@ -91,7 +92,7 @@ const fn accuracy(scene: Method) -> (Option<f64>, Option<f64>) {
 
 fn tolerance(tol: f64) -> Result<f64, Failure> {
     let (least, largest) = (Control::LEAST_TOLERANCE, Control::LARGEST_TOLERANCE);
-    let limit = format!("between {least:?} and {largest:?}");
+    let limit = format!("between {:?} and {:?}", Number(least), Number(largest));
     in_range("--tol", tol, (least..=largest).contains(&tol), &limit)
 }
 
@@ -106,7 +107,8 @@ fn in_range(option: &str, value: f64, holds: bool, limit: &str) -> Result<f64, F
         return Ok(value);
     }
     refuse(format!(
-        "{option} is {value:?}; it must be finite and {limit}"
+        "{option} is {:?}; it must be finite and {limit}",
+        Number(value)
     ))
 }
 

@@ -9,7 +9,7 @@ use hamel::integrate::{Approach, Crossing};
 use std::fmt;
 
 /// Numbers from here on are written with an exponent.
-const LARGEST_DECIMAL: f64 = 1e7;
+const LARGEST_DECIMAL: f64 = 1e6;
 
 /// As many events are told.
 const MOST_EVENTS: usize = 12;
@@ -66,7 +66,8 @@ impl fmt::Display for Summary<'_> {
         for approach in self.approaches {
             writeln!(f, "singular    {approach}")?;
         }
-        for path in self.plan.files() {
+        // Without a sample no file was written.
+        for path in self.plan.files().filter(|_| self.samples > 0) {
             writeln!(
                 f,
                 "trajectory  {} samples in {}",

@@ -1,6 +1,7 @@
 //! The times at which the trajectory is sampled.
 
 use crate::output::Failure;
+use hamel::shown::Number;
 
 /// More samples than this are taken for a mistake.
 const MOST_SAMPLES: f64 = 1e6;
@@ -13,8 +14,10 @@ pub fn regular(t_end: f64, step: f64) -> Result<Vec<f64>, Failure> {
     let count = t_end / step;
     if count > MOST_SAMPLES {
         return Err(Failure::Options(format!(
-            "a sample each {step:?} s until {t_end:?} s makes {count:.3e} samples, and the limit is {MOST_SAMPLES:e}: \
-             choose a larger --sample-step"
+            "a sample each {:?} s until {:?} s makes {count:.3e} samples, and the limit is {MOST_SAMPLES:e}: \
+             choose a larger --sample-step",
+            Number(step),
+            Number(t_end)
         )));
     }
     // Rounding must not add a sample just before the last one.

@@ -4,6 +4,7 @@ use crate::diagnostic::Diagnostics;
 use crate::emit::files::FileError;
 use crate::emit::report::AccuracyError;
 use crate::emit::rust::WriteError;
+use crate::emit::text::visible;
 use std::fmt::{Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
 
@@ -48,37 +49,34 @@ impl BuildError {
         })
     }
 
-    /// One line for each error, for cargo's own list.
+    /// One line for each of the first errors, for cargo's own list, and how many more there are.
     pub fn lines(&self) -> Vec<String> {
         match self {
             Self::Specs(files) => {
-                let of_file = |file: &Diagnostics| {
-                    let name = file.file.clone();
-                    file.errors
-                        .iter()
-                        .map(move |error| {
-                            format!("{name}: {}: {}", error.code, one_line(&error.message))
-                        })
-                        .collect::<Vec<_>>()
-                };
-                files.iter().flat_map(of_file).collect()
+                let errors = files.iter().flat_map(|file| {
+                    let errors = file.errors.iter();
+                    errors.map(|error| (&file.file, error))
+                });
+                hamel_diagnostics::first(errors, |(file, error)| {
+                    one_line(&format!("{file}: {}: {}", error.code, error.message))
+                })
             }
-            Self::NotFresh(lines) => lines.clone(),
+            Self::NotFresh(lines) => hamel_diagnostics::first(lines, String::clone),
             other => vec![one_line(&other.to_string())],
         }
     }
 }
 
 fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    visible(&text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 impl Display for BuildError {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Specs(files) => {
-                let shown: Vec<String> = files.iter().map(Diagnostics::render).collect();
-                write!(f, "{}", shown.join("\n\n"))
+                let reports = files.iter().flat_map(Diagnostics::reports);
+                f.write_str(&hamel_diagnostics::render(reports, false))
             }
             Self::Duplicate {
                 type_name,
@@ -95,7 +93,7 @@ impl Display for BuildError {
                 write!(
                     f,
                     "generated files differ from the specs; run `cargo build` and commit them:\n{}",
-                    lines.join("\n")
+                    hamel_diagnostics::first(lines, String::clone).join("\n")
                 )
             }
             Self::Unwritten(error) => write!(f, "{error}"),

@@ -1,67 +1,37 @@
-//! Factors that are never zero, because the spec says that they are positive: what is left without them vanishes in the same places.
+//! Factors that are never zero, because the spec says so: what is left without them vanishes in the same places.
 
-use crate::expr::{Atom, Expr, Monomial, Rational, Symbol};
-use num_traits::One;
+use crate::expr::{Expr, Monomial};
+use std::collections::BTreeMap;
 
-/// The expression without those factors that are powers of the conditions, functions of parameters that are never 0.
-pub fn without<'c>(expression: &Expr, conditions: impl IntoIterator<Item = &'c Expr>) -> Expr {
-    conditions
+/// The expression without those factors that are powers of functions that are never 0.
+pub fn without<'f>(expression: &Expr, never_zero: impl IntoIterator<Item = &'f Expr>) -> Expr {
+    never_zero
         .into_iter()
-        .fold(expression.clone(), |mut rest, condition| {
-            while let Some(quotient) = quotient(&rest, condition) {
+        .filter(|factor| !factor.is_constant() || factor.terms().len() > 1)
+        .fold(expression.clone(), |mut rest, factor| {
+            while let Some(quotient) = rest.exact_quotient(factor).filter(|_| !rest.is_zero()) {
                 rest = quotient;
             }
             rest
         })
 }
 
-/// The quotient of an expression, not 0, by a condition that is linear in some parameter, where it is a polynomial in that.
-fn quotient(expression: &Expr, condition: &Expr) -> Option<Expr> {
-    let (symbol, slope) = linear(condition)?;
-    let inverse = slope.recip()?;
-    if condition.terms().len() < 2 {
-        return None;
+/// The function of parameters by which all coefficients are multiples of it, where one of them is that, and what is left without it.
+pub fn content(expression: &Expr) -> Option<(Expr, Expr)> {
+    let mut coefficients: BTreeMap<Monomial, Expr> = BTreeMap::new();
+    for (monomial, coefficient) in expression.terms() {
+        let (main, units) = monomial.split();
+        *coefficients.entry(main).or_default() += &Expr::term(coefficient.clone(), units);
     }
-    let unit = Atom::Symbol(symbol);
-    let mut rest = expression.clone();
-    let mut quotient = Expr::zero();
-    loop {
-        let power = |(monomial, _): &(&Monomial, &Rational)| power_of(monomial, &unit);
-        let Some((monomial, coefficient)) = rest.terms().max_by_key(power) else {
-            return (!quotient.is_zero()).then_some(quotient);
-        };
-        if power_of(monomial, &unit) < 1 {
-            return None;
-        }
-        let term = Expr::term(coefficient.clone(), monomial.times(&inverse));
-        rest -= &(&term * condition);
-        quotient += &term;
-    }
-}
-
-/// A parameter that occurs in one term alone, to the first power and with coefficient 1; and that term.
-fn linear(condition: &Expr) -> Option<(Symbol, Monomial)> {
-    let candidates = condition.symbols().into_iter();
-    let mut found = candidates.filter_map(|symbol| {
-        let unit = Atom::Symbol(symbol.clone());
-        let mut with = condition.terms().filter(|(m, _)| power_of(m, &unit) != 0);
-        let (monomial, coefficient) = with.next()?;
-        let alone = with.next().is_none() && power_of(monomial, &unit) == 1;
-        (alone && coefficient.is_one()).then(|| (symbol, monomial.clone()))
-    });
-    found.next()
-}
-
-fn power_of(monomial: &Monomial, unit: &Atom) -> i32 {
-    let mut factors = monomial.units().iter();
-    factors
-        .find(|(atom, _)| atom == unit)
-        .map_or(0, |(_, power)| *power)
+    let shortest = coefficients.into_values().min_by_key(|c| c.terms().len());
+    let content = shortest.filter(|c| c.terms().len() > 1)?;
+    let rest = expression.exact_quotient(&content)?;
+    Some((content, rest))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::without;
+    use super::{content, without};
     use crate::expr::{Expr, Role, Symbol};
 
     #[test]
@@ -78,5 +48,16 @@ mod tests {
         let sum = &a + &b;
         assert_eq!(without(&sum, [&condition]), sum);
         assert_eq!(without(&Expr::zero(), [&condition]), Expr::zero());
+    }
+
+    #[test]
+    fn functions_of_parameters_that_all_terms_share_are_found() {
+        let parameter = |n: usize, name: &str| Expr::symbol(&Symbol::new(Role::Parameter, n, name));
+        let (a, b) = (parameter(0, "a"), parameter(1, "b"));
+        let x = Expr::symbol(&Symbol::new(Role::Coordinate, 0, "x"));
+        let (sum, rest) = (&a + &b, &(&x.square() * &a) + &Expr::one());
+        assert_eq!(content(&(&sum * &rest)), Some((sum.clone(), rest)));
+        assert_eq!(content(&(&(&sum * &x) + &a)), None);
+        assert_eq!(content(&Expr::zero()), None);
     }
 }

@@ -4,13 +4,19 @@
 //! parameters, away from the loci that the spec excepts. Random points never show that. A certificate does: a constant, a sum of
 //! positive terms, or 1 as a combination of the functions and the relations.
 
+mod constant;
 mod critical;
 mod factors;
 mod roots;
 mod sign;
+mod squares;
+mod subdivision;
+mod unit_vectors;
 
+pub use self::constant::{ConstantSign, LAST_PRECISION, sign as sign_of_constant};
 pub use self::critical::{Critical, Smooth};
 pub use self::sign::{positive_parameters, vanishing_parameters};
+pub use self::squares::squares;
 
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
@@ -125,13 +131,24 @@ impl<'a> Domain<'a> {
     /// Whether the expression is positive everywhere.
     pub fn is_positive(&self, expression: &Expr) -> bool {
         let normal = self.ideal.normal_form(expression);
-        self.signs.is_positive(expression) || self.signs.is_positive(&normal)
+        let quickly = self.signs.is_positive(expression) || self.signs.is_positive(&normal);
+        quickly || self.signs.is_positive_on_cells(&normal)
+    }
+
+    /// Constants of which no number of bits decided the sign.
+    pub fn undecided(&self) -> Vec<Expr> {
+        let mut constants = self.signs.undecided();
+        // What is 0 by the laws of its functions needs no sign.
+        constants.retain(|constant| !self.ideal.vanishes(constant));
+        constants
     }
 
     /// Whether the expression is negative nowhere.
     pub fn is_not_negative(&self, expression: &Expr) -> bool {
         let normal = self.ideal.normal_form(expression);
-        self.signs.is_not_negative(expression) || self.signs.is_not_negative(&normal)
+        let by_terms =
+            self.signs.is_not_negative(expression) || self.signs.is_not_negative(&normal);
+        by_terms || self.ideal.known_root(&normal).is_some()
     }
 
     /// Whether no parameter that may be 0 is a factor of the only term.
@@ -158,8 +175,25 @@ impl<'a> Domain<'a> {
         }
         let functions = all.len();
         let conditions = || self.signs.positive_conditions();
-        let essential = |e: &Expr| factors::without(e, conditions());
+        let essential = |e: &Expr| {
+            let rest = factors::without(e, conditions());
+            match factors::content(&rest) {
+                Some((content, rest)) if of_one_sign(&&content) => rest,
+                _ => rest,
+            }
+        };
         let mut generators: Vec<Expr> = all.iter().map(essential).collect();
+        let never_zero = |e: &&Expr| self.is_unit(e) || of_one_sign(e);
+        if let Some(found) = generators.iter().position(|e| never_zero(&e)) {
+            return Some(Certificate::Positive(all[found].clone()));
+        }
+        let beside_loci = |e: &Expr| factors::without(e, &self.loci);
+        if generators.iter().any(|e| never_zero(&&beside_loci(e))) {
+            return Some(Certificate::NoCommonZero {
+                functions,
+                except: true,
+            });
+        }
         let under_root = |e: &Expr| under_root(e).filter(|_| self.has_unit_factor(e));
         let under_roots: Vec<Expr> = expressions.iter().filter_map(under_root).collect();
         generators.extend(under_roots.iter().cloned());
@@ -177,10 +211,15 @@ impl<'a> Domain<'a> {
             return found(false);
         }
         generators.extend(self.loci.iter().enumerate().map(away_from));
-        match !self.loci.is_empty() && has_no_zero(&generators) {
-            true => found(true),
-            false => None,
+        if !self.loci.is_empty() && has_no_zero(&generators) {
+            return found(true);
         }
+        let on_cells =
+            |e: &&Expr| self.signs.is_positive_on_cells(e) || self.signs.is_positive_on_cells(&-*e);
+        all.iter()
+            .find(on_cells)
+            .cloned()
+            .map(Certificate::Positive)
     }
 }
 

@@ -1,11 +1,15 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
+use super::constant::{self, ConstantSign};
+use super::subdivision;
+use super::unit_vectors;
 use super::{of_monomial, roots};
-use crate::expr::{
-    Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget, evaluate_f64,
-};
+use crate::expr::Number;
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::manifold::Kind;
 use crate::model::{Interval, JointSpec};
+use crate::precise::Interval as Enclosed;
+use crate::precise::Precise;
 use num_traits::Zero;
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
@@ -16,6 +20,11 @@ use std::sync::Arc;
 const MOST_CONDITIONS: usize = 8;
 /// Most combinations of conditions that are tried.
 const MOST_TRIES: usize = 400;
+
+/// How many bounds by unit vectors are nested: each squares what is left.
+const DEEPEST_BOUND: usize = 2;
+/// Bits of the ends of ranges.
+const BOUND_BITS: usize = 64;
 
 /// What is known of signs and bounds.
 #[derive(Clone, Debug)]
@@ -29,6 +38,14 @@ pub struct Signs {
     conditions: Vec<(Expr, bool)>,
     /// Coordinates whose absolute value is at most 1.
     bounded: BTreeSet<Symbol>,
+    /// Scalars that form vectors of length 1.
+    unit_vectors: Vec<Vec<Atom>>,
+    /// Scalars (c, s) of unit complex numbers.
+    circles: Vec<(Symbol, Symbol)>,
+    /// Enclosures of what is bounded on both sides.
+    bounds: BTreeMap<Symbol, Enclosed>,
+    /// Constants of which the sign was asked for and not found.
+    undecided: RefCell<BTreeSet<Expr>>,
     /// Signs of functions, each found once.
     functions: RefCell<FxHashMap<Arc<Application>, Sign>>,
 }
@@ -59,6 +76,10 @@ impl Signs {
         let parameters = spec.parameters.iter();
         let required = spec.requirements.iter();
         let required = required.map(|r| (r.value.value.clone(), true));
+        let bounded: BTreeSet<Symbol> = factors
+            .iter()
+            .flat_map(|f| bounded_coordinates(f.kind, &f.coordinates))
+            .collect();
         Self {
             positive_parameters: positive_parameters(spec),
             ranges: parameters
@@ -69,10 +90,11 @@ impl Signs {
             conditions: required
                 .chain(parameters.flat_map(|p| conditions_of(&p.symbol, &p.range)))
                 .collect(),
-            bounded: factors
-                .iter()
-                .flat_map(|f| bounded_coordinates(f.kind, &f.coordinates))
-                .collect(),
+            bounds: bounds(spec, &bounded),
+            bounded,
+            unit_vectors: unit_vectors::of_factors(factors),
+            circles: unit_vectors::circles(factors),
+            undecided: RefCell::default(),
             functions: RefCell::default(),
         }
     }
@@ -86,9 +108,35 @@ impl Signs {
     /// Whether the expression is positive wherever it is defined: a sum of terms that are not negative, one of them positive, or of which
     /// the constant ones outweigh the bounds of all that may be negative; or a polynomial in one unknown without roots.
     pub fn is_positive(&self, expression: &Expr) -> bool {
-        self.exceeds(expression, false)
-            || is_positive_number(expression)
-            || roots::is_positive(expression)
+        match constant::sign(expression) {
+            Some(sign) => self.noted(expression, sign) == ConstantSign::Positive,
+            None => {
+                self.exceeds(expression, false)
+                    || roots::is_positive(expression)
+                    || self.outweighs_unit_vectors(expression, DEEPEST_BOUND)
+            }
+        }
+    }
+
+    /// Whether it is positive on every cell of a partition; dearer than other means.
+    pub fn is_positive_on_cells(&self, expression: &Expr) -> bool {
+        subdivision::is_positive(expression, &self.bounds, &self.circles)
+    }
+
+    /// Constants of which no number of bits decided the sign.
+    pub fn undecided(&self) -> Vec<Expr> {
+        self.undecided.borrow().iter().cloned().collect()
+    }
+
+    fn noted(&self, expression: &Expr, sign: ConstantSign) -> ConstantSign {
+        if sign == ConstantSign::Undecided && !expression.is_zero() {
+            let size = match expression.leads_negative() {
+                true => -expression,
+                false => expression.clone(),
+            };
+            self.undecided.borrow_mut().insert(size);
+        }
+        sign
     }
 
     /// Whether the expression is negative nowhere, by the same means.
@@ -115,6 +163,24 @@ impl Signs {
             }
         }
         self.exceeds_zero(&constant, strict, MOST_CONDITIONS, &mut 0)
+    }
+
+    /// Whether the expression is `D + a · n` with a unit vector n and D > |a|: then D and D² − |a|² are positive.
+    fn outweighs_unit_vectors(&self, expression: &Expr, deepest: usize) -> bool {
+        let positive = |e: &Expr| {
+            self.exceeds(e, false)
+                || constant::sign(e) == Some(ConstantSign::Positive)
+                || roots::is_positive(e)
+                || deepest > 1 && self.outweighs_unit_vectors(e, deepest - 1)
+        };
+        let of_angles = unit_vectors::of_angles(expression);
+        let mut vectors = self.unit_vectors.iter().chain(&of_angles);
+        vectors.any(|vector| {
+            unit_vectors::split(expression, vector).is_some_and(|(rest, factors)| {
+                let squares: Expr = factors.iter().map(Expr::square).sum();
+                positive(&rest) && positive(&(&rest.square() - &squares))
+            })
+        })
     }
 
     /// Where no term of the expression is ever negative: functions that all vanish where it does.
@@ -198,7 +264,8 @@ impl Signs {
     /// Wherever the function is defined.
     fn sign_of_function(&self, application: &Application) -> Sign {
         match (application.function, application.arguments.as_slice()) {
-            (Function::Exp | Function::Pi, _) => Sign::Positive,
+            (Function::Exp | Function::Pi | Function::Cosh | Function::Sech, _) => Sign::Positive,
+            (Function::LnCosh, _) => Sign::NotNegative,
             (Function::Sqrt, [x]) if self.is_positive(x) => Sign::Positive,
             (Function::Sqrt, _) => Sign::NotNegative,
             // A reciprocal is not 0, nor what it is of.
@@ -239,7 +306,8 @@ impl Signs {
         let is_bounded = |(atom, _): &(Atom, u32)| match atom {
             Atom::Symbol(symbol) => self.bounded.contains(symbol),
             Atom::Apply(application) => {
-                matches!(application.function, Function::Cos | Function::Sin)
+                use Function::{Cos, Sech, Sin, Tanh};
+                matches!(application.function, Cos | Sin | Tanh | Sech)
             }
         };
         let (_, units) = monomial.split();
@@ -285,9 +353,21 @@ impl Signs {
     }
 }
 
-/// Whether the expression is a number, such as `pi - 3`, and positive: 1e-9 is far above rounding in sums of a few functions.
-fn is_positive_number(expression: &Expr) -> bool {
-    expression.symbols().is_empty() && evaluate_f64(expression, &|_| f64::NAN) > 1e-9
+/// Enclosures of the parameters with two ends, and of scalars of at most 1.
+fn bounds(spec: &JointSpec, bounded: &BTreeSet<Symbol>) -> BTreeMap<Symbol, Enclosed> {
+    let unit = Enclosed::point(Precise::integer(1, BOUND_BITS));
+    let end = |value: &Rational| unit.rational(value);
+    let ranges = spec.parameters.iter().filter_map(|p| {
+        let (lower, upper) = (p.range.lower.as_ref()?, p.range.upper.as_ref()?);
+        let (lower, upper) = (end(&lower.value), end(&upper.value));
+        let range = Enclosed::between(lower.low().clone(), upper.high().clone());
+        Some((p.symbol.clone(), range))
+    });
+    let one = Precise::integer(1, BOUND_BITS);
+    let scalars = bounded
+        .iter()
+        .map(|symbol| (symbol.clone(), Enclosed::between(-&one, one.clone())));
+    ranges.chain(scalars).collect()
 }
 
 /// A number below π, and near it.

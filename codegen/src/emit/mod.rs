@@ -7,6 +7,7 @@ pub mod names;
 pub mod page;
 pub mod report;
 pub mod rust;
+pub mod text;
 
 pub use page::{drawing_file, explain_text, html_page, overview, page};
 pub use report::{Accuracy, Report};

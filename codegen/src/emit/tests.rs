@@ -179,7 +179,7 @@ fn the_series_of_the_ball_joint_is_that_of_the_paper() {
 fn a_joint_explains_itself() {
     let text = explain_text(&derived(BALL), &Accuracy::default()).expect("the template holds");
     for part in [
-        "ball\n\n  Ball joint.",
+        "ball (hamel joints explain)\n\n  Ball joint.",
         "J₂₂ = −p~ = ",
         "pose_in_se3",
         "18 multiplications",

@@ -4,11 +4,22 @@ use super::{Expansion, finite, general, hamel};
 use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
-use crate::expr::{Role, Symbol};
+use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use crate::spec::code;
+
+/// Most terms of Ẋ̄^c that are multiplied out: a little more than the longest of the library, that of the ellipsoid.
+const LONGEST_RATE: usize = 250;
+
+fn terms_of(matrix: &Matrix) -> usize {
+    matrix
+        .entries()
+        .iter()
+        .map(|entry| entry.terms().len())
+        .sum()
+}
 
 /// All kernels of a joint.
 pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
@@ -226,6 +237,10 @@ impl Maker<'_> {
                 sum.plus(&child.times(basis).plus(&moved).scale(rates.at(k, 0)))
             });
         let rate = self.short(&rate);
+        let rate = match terms_of(&rate) > LONGEST_RATE {
+            true => self.grouped_rate(&rates),
+            false => rate,
+        };
         let acceleration = rate.times(&speeds);
         let momentum = rate
             .transpose()
@@ -239,16 +254,31 @@ impl Maker<'_> {
         kernels
     }
 
+    /// Ẋ̄^c from derivatives of X̄^c, with sums kept together: multiplied out, products of long ones would be longer than anything
+    /// can be made of.
+    fn grouped_rate(&self, rates: &Matrix) -> Matrix {
+        let map = self.speed_map();
+        let grouped = |k: usize| {
+            let slope = self.short(&self.x.motion.along_each(&map, k));
+            slope.map(Expr::grouped).scale(&rates.at(k, 0).grouped())
+        };
+        let zero = Matrix::zeros(map.rows(), map.columns());
+        let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| sum.plus(&grouped(k)));
+        rate.map(Expr::grouped)
+    }
+
+    /// X̄^c = X^c S̄.
+    fn speed_map(&self) -> Matrix {
+        let basis = &self.x.nonholonomic.speed_basis;
+        self.short(&self.x.twist_map_child.times(basis))
+    }
+
     /// What derivatives of the dynamics need of a joint, from Ẋ̄^c, `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`.
     fn slopes(&self, rate: &Matrix, acceleration: &Matrix, momentum: &Matrix) -> Vec<Kernel> {
         let arguments = &self.x.arguments;
         let speeds = Matrix::symbols(&arguments.speeds);
         let wrench = Matrix::symbols(&arguments.wrench);
-        let map = self
-            .x
-            .twist_map_child
-            .times(&self.x.nonholonomic.speed_basis);
-        let map = self.short(&map);
+        let map = self.speed_map();
         // Column k along ϕ_k, of a column.
         let gradient = |column: &Matrix| {
             let along = |k| self.x.motion.along_each(column, k).entries().to_vec();

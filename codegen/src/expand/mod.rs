@@ -5,6 +5,7 @@
 mod complement;
 pub(crate) mod dimension;
 mod directions;
+mod elimination;
 mod finite;
 mod general;
 mod hamel;

@@ -43,6 +43,9 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
     if minors.is_empty() {
         return Err(gram);
     }
+    if minors.iter().all(|minor| domain.ideal().vanishes(minor)) {
+        return Err(Expr::zero());
+    }
     match domain.no_common_zero(&minors) {
         Some(certificate) => Ok(format!("minors: {certificate}")),
         None if domain.is_positive(&gram) => Ok(format!("det(MᵀM) = {gram}, which is of one sign")),

@@ -1,7 +1,7 @@
 //! The paper's step: J, X and S to first order in ϕ, (23).
 
 use super::motion::Motion;
-use super::{directions, rank};
+use super::{directions, elimination, rank};
 use crate::domain::Domain;
 use crate::expr::{Expr, budget};
 use crate::manifold::Ideal;
@@ -211,11 +211,16 @@ impl Solver<'_, '_> {
     }
 
     /// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
-    /// constant of one term; from rows whose determinant is short and never 0; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
+    /// constant of one term; from rows whose determinant is short and never 0; by elimination; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
     fn left_inverse(&self) -> Option<LeftInverse> {
         let whole = || pseudo_inverse(self.twist_map, self.domain.ideal(), usize::MAX);
-        let short = self.short_left_inverse();
-        short.or_else(|| whole().map(LeftInverse::of_twist_map))
+        let eliminated = || {
+            let in_parent = elimination::left_inverse(self.twist_map, self.domain);
+            let in_child = || elimination::left_inverse(self.child, self.domain);
+            in_parent.or_else(|| Some(in_child()?.times(self.to_child)))
+        };
+        let rest = || eliminated().or_else(whole).map(LeftInverse::of_twist_map);
+        self.short_left_inverse().or_else(rest)
     }
 
     /// Any of these but the last.

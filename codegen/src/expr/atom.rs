@@ -43,16 +43,29 @@ pub struct Symbol {
     pub index: u16,
     /// Name, an ASCII Rust identifier.
     pub name: Arc<str>,
+    /// How the spec writes it: `Q[1, 2]`, `phi.turn`. The name for what no spec writes.
+    pub spelling: Arc<str>,
 }
 
 impl Symbol {
     /// The symbol `name`, number `index` of its role.
     pub fn new(role: Role, index: usize, name: &str) -> Self {
         let index = u16::try_from(index).unwrap_or(u16::MAX);
+        let name: Arc<str> = name.into();
         Self {
             role,
             index,
-            name: name.into(),
+            spelling: Arc::clone(&name),
+            name,
+        }
+    }
+
+    /// The same symbol, which the spec writes so.
+    #[must_use]
+    pub fn spelled(self, spelling: &str) -> Self {
+        Self {
+            spelling: spelling.into(),
+            ..self
         }
     }
 
@@ -107,8 +120,23 @@ pub enum Function {
     Sin,
     /// Exponential function.
     Exp,
+    /// Hyperbolic sine.
+    Sinh,
+    /// Hyperbolic cosine.
+    Cosh,
+    /// Hyperbolic secant, the reciprocal of the hyperbolic cosine.
+    Sech,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// Logarithm of the hyperbolic cosine.
+    LnCosh,
     /// Natural logarithm.
     Ln,
+    /// `ln(1 + x e^m)` of x and m ≥ 0: in formulas as they are written only, where a sum would lose the digits of a small x, or overflow.
+    Ln1p,
+    /// The larger of two numbers: in formulas as they are written only, as a scale on which the value does not depend, so that its rate
+    /// counts as 0.
+    Larger,
     /// `atan2(y, x)`.
     Atan2,
     /// Square root.

@@ -161,7 +161,13 @@ fn slope_of_function(
         (Function::Sin, [x], [dx]) => &x.cos() * dx,
         (Function::Group, _, [dx]) => dx.clone(),
         (Function::Exp, _, [dx]) => &itself * dx,
+        (Function::Sinh, [x], [dx]) => &x.cosh() * dx,
+        (Function::Cosh, [x], [dx]) => &x.sinh() * dx,
+        (Function::Sech, [x], [dx]) => -(&(&x.tanh() * &itself) * dx),
+        (Function::Tanh, [x], [dx]) => &x.sech().square() * dx,
+        (Function::LnCosh, [x], [dx]) => &x.tanh() * dx,
         (Function::Ln, [x], [dx]) => &x.recip().unwrap_or_default() * dx,
+        (Function::Ln1p, [x, m], [dx, _]) => &(x + &(-m).exp()).recip().unwrap_or_default() * dx,
         (Function::Sqrt, _, [dx]) => {
             let half = Expr::fraction(1, 2);
             &(&half * &itself.recip().unwrap_or_default()) * dx

@@ -1,8 +1,14 @@
-//! Expressions as text in the notation of the spec language.
+//! Expressions as text that a spec could hold: messages quote them, and what they quote can be pasted.
+//!
+//! Functions that arise in derivations alone have names of their own: `stumpff2`, `dexp_inverse1`.
 
-use super::{Atom, Expr, Function, Monomial};
+use super::{Application, Atom, Expr, Function, Monomial, Rational};
+use num_bigint::BigInt;
 use num_traits::One;
 use std::fmt::{Display, Formatter, Result};
+
+/// Digits of the largest integers that are written out; above, they have exponents.
+const LONGEST_INTEGER: usize = 7;
 
 impl Display for Expr {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
@@ -19,12 +25,33 @@ impl Display for Expr {
             f.write_str(sign)?;
             let size = coefficient.abs();
             match (monomial.is_one(), size.is_one()) {
-                (true, _) => write!(f, "{size}")?,
+                (true, _) => f.write_str(&number(&size))?,
                 (false, true) => write!(f, "{monomial}")?,
-                (false, false) => write!(f, "{size}*{monomial}")?,
+                (false, false) => write!(f, "{}*{monomial}", number(&size))?,
             }
         }
         Ok(())
+    }
+}
+
+/// A positive number, with exponents where it or a part of it is long. All digits are there: numbers of specs are exact.
+fn number(value: &Rational) -> String {
+    match value.is_integer() {
+        true => integer(&value.numer()),
+        false => format!("{}/{}", integer(&value.numer()), integer(&value.denom())),
+    }
+}
+
+fn integer(value: &BigInt) -> String {
+    let digits = value.to_string();
+    if digits.len() <= LONGEST_INTEGER {
+        return digits;
+    }
+    let exponent = digits.len() - 1;
+    let (first, rest) = digits.split_at(1);
+    match rest.trim_end_matches('0') {
+        "" => format!("{first}e{exponent}"),
+        rest => format!("{first}.{rest}e{exponent}"),
     }
 }
 
@@ -33,32 +60,63 @@ impl Display for Monomial {
         let mut divisors = vec![];
         let mut first = true;
         for (atom, power) in self.factors() {
-            if power < 0 {
-                divisors.push((atom, -power));
-                continue;
-            }
-            for _ in 0..power {
-                f.write_str(if first { "" } else { "*" })?;
-                write!(f, "{atom}")?;
-                first = false;
+            match (divisor(atom), power < 0) {
+                (Some(of), false) if is_atom(of) => divisors.push((of.to_string(), power)),
+                (Some(of), false) => divisors.push((format!("({of})"), power)),
+                (_, true) => divisors.push((atom.to_string(), -power)),
+                (None, false) => {
+                    for _ in 0..power {
+                        f.write_str(if first { "" } else { "*" })?;
+                        write!(f, "{atom}")?;
+                        first = false;
+                    }
+                }
             }
         }
         if first {
             f.write_str("1")?;
         }
-        for (atom, power) in divisors {
+        for (divisor, power) in divisors {
             for _ in 0..power {
-                write!(f, "/{atom}")?;
+                write!(f, "/{divisor}")?;
             }
         }
         Ok(())
     }
 }
 
+/// Whether it can be divided by without brackets.
+fn is_atom(expression: &Expr) -> bool {
+    let mut terms = expression.terms();
+    let (Some((monomial, coefficient)), None) = (terms.next(), terms.next()) else {
+        return false;
+    };
+    let mut factors = monomial.factors();
+    let only = factors
+        .next()
+        .is_some_and(|(atom, power)| power == 1 && divisor(atom).is_none());
+    only && factors.next().is_none() && coefficient.is_one()
+}
+
+/// What a reciprocal divides by: the language has quotients alone.
+fn divisor(atom: &Atom) -> Option<&Expr> {
+    match atom {
+        Atom::Apply(application) => match application.as_ref() {
+            Application {
+                function: Function::Recip,
+                arguments,
+                ..
+            } => arguments.first(),
+            _ => None,
+        },
+        Atom::Symbol(_) => None,
+    }
+}
+
 impl Display for Atom {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
-            Self::Symbol(symbol) => f.write_str(&symbol.name),
+            Self::Symbol(symbol) => f.write_str(&symbol.spelling),
             Self::Apply(application) => {
                 write!(f, "{}", application.function)?;
                 if application.arguments.is_empty() {
@@ -82,7 +140,14 @@ impl Display for Function {
             Self::Cos => f.write_str("cos"),
             Self::Sin => f.write_str("sin"),
             Self::Exp => f.write_str("exp"),
+            Self::Sinh => f.write_str("sinh"),
+            Self::Cosh => f.write_str("cosh"),
+            Self::Sech => f.write_str("sech"),
+            Self::Tanh => f.write_str("tanh"),
+            Self::LnCosh => f.write_str("log_cosh"),
             Self::Ln => f.write_str("log"),
+            Self::Ln1p => f.write_str("log_1p"),
+            Self::Larger => f.write_str("max"),
             Self::Atan2 => f.write_str("atan2"),
             Self::Sqrt => f.write_str("sqrt"),
             Self::Stumpff(order) => write!(f, "stumpff{order}"),

@@ -87,7 +87,21 @@ impl Number for f64 {
             (Function::Cos, [x]) => x.cos(),
             (Function::Sin, [x]) => x.sin(),
             (Function::Exp, [x]) => x.exp(),
+            (Function::Sinh, [x]) => x.sinh(),
+            (Function::Cosh, [x]) => x.cosh(),
+            (Function::Sech, [x]) => {
+                let faded = (-x.abs()).exp();
+                2.0 * faded / (1.0 + faded * faded)
+            }
+            (Function::Tanh, [x]) => x.tanh(),
+            (Function::LnCosh, [x]) if x.abs() < 1.0 => 0.5 * x.sinh().powi(2).ln_1p(),
+            (Function::LnCosh, [x]) => {
+                x.abs() - std::f64::consts::LN_2 + (-2.0 * x.abs()).exp().ln_1p()
+            }
             (Function::Ln, [x]) => x.ln(),
+            (Function::Ln1p, [x, m]) if *m > 0.0 => m + (x + (-m).exp()).ln(),
+            (Function::Ln1p, [x, _]) => x.ln_1p(),
+            (Function::Larger, [x, y]) => x.max(*y),
             (Function::Sqrt, [x]) => x.sqrt(),
             (Function::Atan2, [y, x]) => y.atan2(*x),
             (Function::Stumpff(order), [x]) => stumpff_series(order.into(), *x),

@@ -1,13 +1,13 @@
 //! Functions of expressions, folded where their value is known, and the relations between them.
 
-use super::{Atom, Expr, Function, Monomial, Rational, intern};
+use super::{Atom, Expr, Function, Monomial, Rational, hyperbolic, intern};
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 
 /// Largest integer multiple of an angle that is expanded by the addition theorems.
 const LARGEST_MULTIPLE: i64 = 16;
 
-fn apply(function: Function, arguments: Vec<Expr>) -> Expr {
+pub(super) fn apply(function: Function, arguments: Vec<Expr>) -> Expr {
     Expr::atom(Atom::Apply(intern::application(function, arguments)))
 }
 
@@ -50,9 +50,23 @@ impl Expr {
 
     /// Natural logarithm.
     pub fn ln(&self) -> Self {
-        match self.is_one() {
-            true => Self::zero(),
-            false => apply(Function::Ln, vec![self.clone()]),
+        match self.applied_alone() {
+            Some((Function::Cosh, [x])) => x.ln_cosh(),
+            _ if self.is_one() => Self::zero(),
+            _ => apply(Function::Ln, vec![self.clone()]),
+        }
+    }
+
+    /// Function and arguments, if this is nothing but a function.
+    fn applied_alone(&self) -> Option<(Function, &[Self])> {
+        let (monomial, coefficient) = self.single_term()?;
+        match monomial.main() {
+            [(Atom::Apply(application), 1)]
+                if coefficient.is_one() && monomial.units().is_empty() =>
+            {
+                Some((application.function, &application.arguments))
+            }
+            _ => None,
         }
     }
 
@@ -66,7 +80,7 @@ impl Expr {
 
     /// Square root; squares of rationals are taken.
     pub fn sqrt(&self) -> Self {
-        match self.as_rational().as_ref().and_then(rational_root) {
+        match self.as_rational().and_then(|value| value.square_root()) {
             Some(root) => Self::rational(root),
             None => apply(Function::Sqrt, vec![self.clone()]),
         }
@@ -124,6 +138,11 @@ impl Expr {
             (Function::Cos, [x]) => x.cos(),
             (Function::Sin, [x]) => x.sin(),
             (Function::Exp, [x]) => x.exp(),
+            (Function::Sinh, [x]) => x.sinh(),
+            (Function::Cosh, [x]) => x.cosh(),
+            (Function::Sech, [x]) => x.sech(),
+            (Function::Tanh, [x]) => x.tanh(),
+            (Function::LnCosh, [x]) => x.ln_cosh(),
             (Function::Ln, [x]) => x.ln(),
             (Function::Sqrt, [x]) => x.sqrt(),
             (Function::Atan2, [y, x]) => y.atan2(x),
@@ -137,13 +156,13 @@ impl Expr {
 
     /// The polynomials that vanish because of what the functions in `self` are: `c² + s² − 1`, `r² − u`, `u/u − 1`.
     pub fn atom_relations(&self) -> Vec<Self> {
-        self.atoms().iter().filter_map(relation_of_atom).collect()
+        self.atoms().iter().flat_map(relations_of_atom).collect()
     }
 }
 
-fn relation_of_atom(atom: &Atom) -> Option<Expr> {
+fn relations_of_atom(atom: &Atom) -> Vec<Expr> {
     let Atom::Apply(application) = atom else {
-        return None;
+        return vec![];
     };
     let itself = Expr::atom(atom.clone());
     match (application.function, application.arguments.as_slice()) {
@@ -152,20 +171,29 @@ fn relation_of_atom(atom: &Atom) -> Option<Expr> {
                 apply(Function::Cos, vec![x.clone()]),
                 apply(Function::Sin, vec![x.clone()]),
             );
-            Some(&(&cos.square() + &sin.square()) - &Expr::one())
+            vec![&(&cos.square() + &sin.square()) - &Expr::one()]
         }
-        (Function::Sqrt, [x]) => Some(&itself.square() - x),
+        (Function::Exp, [x]) => vec![&(&itself * &(-x).exp()) - &Expr::one()],
+        (Function::Sinh | Function::Cosh | Function::Sech | Function::Tanh, [x]) => {
+            hyperbolic::relations(x)
+        }
+        (Function::Sqrt, [x]) => vec![&itself.square() - x],
         // Nothing times 0 is 1: the reciprocal of 0 would make every expression 0.
-        (Function::Recip, [x]) if !x.is_zero() => Some(&(&itself * x) - &Expr::one()),
-        _ => None,
+        (Function::Recip, [x]) if !x.is_zero() => vec![&(&itself * x) - &Expr::one()],
+        _ => vec![],
     }
 }
 
 fn recip_of_atom(atom: &Atom) -> Expr {
-    match atom {
-        Atom::Apply(application) if application.function == Function::Recip => {
-            application.arguments.first().cloned().unwrap_or_default()
-        }
+    let known = match atom {
+        Atom::Apply(application) => (application.function, application.arguments.as_slice()),
+        Atom::Symbol(_) => (Function::Recip, [].as_slice()),
+    };
+    match known {
+        (Function::Recip, [x]) => x.clone(),
+        (Function::Exp, [x]) => (-x).exp(),
+        (Function::Cosh, [x]) => x.sech(),
+        (Function::Sech, [x]) => x.cosh(),
         _ => apply(Function::Recip, vec![Expr::atom(atom.clone())]),
     }
 }
@@ -212,14 +240,6 @@ fn quarter_turns(monomial: &Monomial, coefficient: &Rational) -> Option<(Expr, E
         2 => (Expr::integer(-1), Expr::zero()),
         _ => (Expr::zero(), Expr::integer(-1)),
     })
-}
-
-fn rational_root(value: &Rational) -> Option<Rational> {
-    if value.is_negative() {
-        return None;
-    }
-    let root = Rational::new(value.numer().sqrt(), value.denom().sqrt());
-    (&root * &root == *value).then_some(root)
 }
 
 pub(super) fn factorial(n: u32) -> BigInt {

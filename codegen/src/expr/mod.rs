@@ -8,8 +8,10 @@ mod atom;
 pub mod budget;
 mod derivative;
 mod display;
+mod division;
 mod evaluate;
 mod function;
+mod hyperbolic;
 mod intern;
 mod monomial;
 mod rational;
@@ -168,7 +170,13 @@ impl Expr {
                 continue;
             };
             match application.function {
-                Function::Cos | Function::Sin => {
+                Function::Cos
+                | Function::Sin
+                | Function::Exp
+                | Function::Sinh
+                | Function::Cosh
+                | Function::Sech
+                | Function::Tanh => {
                     found.insert(atom);
                 }
                 Function::Sqrt | Function::Recip | Function::Group => {

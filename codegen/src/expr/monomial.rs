@@ -89,7 +89,7 @@ impl Monomial {
     }
 
     /// The product of some of the factors of a monomial, in their order.
-    pub(super) fn of_factors<'a>(factors: impl IntoIterator<Item = (&'a Atom, i32)>) -> Self {
+    pub(crate) fn of_factors<'a>(factors: impl IntoIterator<Item = (&'a Atom, i32)>) -> Self {
         let mut product = Self::one();
         for (atom, power) in factors {
             match atom.is_unit() {

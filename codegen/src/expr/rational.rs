@@ -117,6 +117,23 @@ impl Rational {
         self.to_big().to_integer()
     }
 
+    /// The largest number of which both are whole multiples; the other one where one is 0.
+    #[must_use]
+    pub fn common_part(&self, other: &Self) -> Self {
+        let denominator = self.denom().lcm(&other.denom());
+        let scaled = |x: &Self| x.numer().abs() * (&denominator / x.denom());
+        Self::new(scaled(self).gcd(&scaled(other)), denominator.clone())
+    }
+
+    /// The square root, where it is rational.
+    pub fn square_root(&self) -> Option<Self> {
+        if self.is_negative() {
+            return None;
+        }
+        let root = Self::new(self.numer().sqrt(), self.denom().sqrt());
+        (&root * &root == *self).then_some(root)
+    }
+
     /// The reciprocal; that of zero is a programming error of the caller.
     #[must_use]
     pub fn recip(&self) -> Self {

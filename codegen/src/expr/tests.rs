@@ -37,6 +37,11 @@ fn derivatives_agree_with_differences() {
     let candidates = [
         x.sin(),
         (&x * &y).exp(),
+        s.sinh(),
+        s.cosh(),
+        s.sech(),
+        s.tanh(),
+        s.cosh().ln(),
         s.sqrt(),
         s.recip().expect("not zero"),
         y.atan2(&x),

@@ -1,9 +1,7 @@
 //! Sines and cosines of several multiples of one angle, written by those of their common part, so that they can be compared.
 
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational};
-use num_bigint::BigInt;
-use num_integer::Integer;
-use num_traits::{Signed, ToPrimitive, Zero};
+use num_traits::{ToPrimitive, Zero};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest multiple that is expanded: cos 16x has 17 terms.
@@ -59,7 +57,8 @@ fn trigonometric(atom: &Atom) -> Option<&Application> {
 
 fn by_common_part(atom: &Atom, angles: &BTreeMap<Monomial, BTreeSet<Rational>>) -> Option<Expr> {
     let (monomial, coefficient) = angle(atom)?;
-    let part = common_part(angles.get(&monomial)?);
+    let parts = angles.get(&monomial)?.iter();
+    let part = parts.fold(Rational::zero(), |common, c| common.common_part(c));
     let multiple = (&coefficient / &part).to_integer().to_u32()?;
     if multiple > LARGEST_MULTIPLE {
         return None;
@@ -74,17 +73,4 @@ fn by_common_part(atom: &Atom, angles: &BTreeMap<Monomial, BTreeSet<Rational>>) 
         Function::Cos => Some(c),
         _ => Some(s),
     }
-}
-
-/// The largest number of which all are multiples.
-fn common_part(coefficients: &BTreeSet<Rational>) -> Rational {
-    coefficients.iter().fold(Rational::zero(), |common, c| {
-        let denominator: BigInt = common.denom().lcm(&c.denom());
-        let scaled = |x: &Rational| {
-            (x * Rational::from_integer(denominator.clone()))
-                .to_integer()
-                .abs()
-        };
-        Rational::new(scaled(&common).gcd(&scaled(c)), denominator.clone())
-    })
 }

@@ -93,6 +93,25 @@ impl Kind {
         }
     }
 
+    /// How the spec writes stored scalar `n` of the factor `name`: `q`, `n.x`, `Q[2, 3]`.
+    fn spelling(self, name: &str, n: usize) -> String {
+        let part = |letters: &str| {
+            let letter = letters.get(n..=n).unwrap_or_default();
+            format!("{name}.{letter}")
+        };
+        let entry = |columns: usize| format!("{name}[{}, {}]", n / columns + 1, n % columns + 1);
+        match self {
+            Self::Real(1) => name.to_owned(),
+            Self::Real(2 | 3) | Self::S2 => part("xyz"),
+            Self::Real(_) => format!("{name}[{}]", n + 1),
+            Self::S1 => part("cs"),
+            Self::S3 => part("wxyz"),
+            Self::So2 => entry(2),
+            Self::Se2 | Self::So3 => entry(3),
+            Self::Se3 => entry(4),
+        }
+    }
+
     /// Names of the stored scalars, in storage order.
     fn coordinate_names(self) -> Vec<String> {
         let rows = |rows: usize, columns: usize| {
@@ -137,7 +156,10 @@ impl Factor {
             (_, true) => local.clone(),
             (_, false) => format!("{prefix}_{local}"),
         };
-        let symbol = |(n, local): (usize, &String)| Symbol::new(role, first + n, &full(local));
+        let symbol = |(n, local): (usize, &String)| {
+            let symbol = Symbol::new(role, first + n, &full(local));
+            symbol.spelled(&kind.spelling(name, n))
+        };
         Self {
             name: name.into(),
             kind,

@@ -1,7 +1,7 @@
 //! Equality on a manifold: normal forms modulo its relations and those of the functions that occur.
 
-use super::angles;
 use super::reduction::Reduction;
+use super::{angles, canonical};
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
 use crate::matrix::Matrix;
 use rustc_hash::FxHashMap;
@@ -28,6 +28,8 @@ pub struct Ideal {
     positive: BTreeSet<Symbol>,
     /// Parameters that may be 0, by which nothing is divided.
     vanishing: BTreeSet<Symbol>,
+    /// Arguments of roots, in normal form, that are squares on the manifold, with what they are squares of, nowhere negative.
+    squares: Vec<(Expr, Expr)>,
     /// Bases extended by the relations of the functions that an expression holds, by those functions.
     extended: RefCell<BTreeMap<BTreeSet<Atom>, Arc<Reduction>>>,
     /// Functions with their arguments in normal form.
@@ -70,6 +72,16 @@ impl Ideal {
     pub fn with_signs(mut self, positive: BTreeSet<Symbol>, vanishing: BTreeSet<Symbol>) -> Self {
         self.positive = positive;
         self.vanishing = vanishing;
+        self.extended = RefCell::default();
+        self.settled = RefCell::default();
+        self
+    }
+
+    /// The same ideal where arguments of roots are squares: each with what it is the square of, which is nowhere negative.
+    #[must_use]
+    pub fn with_squares(mut self, squares: &[(Expr, Expr)]) -> Self {
+        let normal = |(argument, root): &(Expr, Expr)| (self.normal_form(argument), root.clone());
+        self.squares = squares.iter().map(normal).collect();
         self.extended = RefCell::default();
         self.settled = RefCell::default();
         self
@@ -145,8 +157,48 @@ impl Ideal {
         let normal = self.normal_form(expression);
         normal.is_zero() || {
             let numerator = self.numerator(&normal);
-            self.normal_form(&numerator).is_zero()
+            let normal = self.normal_form(&numerator);
+            normal.is_zero() || self.vanishes_by_laws(&normal)
         }
+    }
+
+    /// The same by laws between several functions.
+    fn vanishes_by_laws(&self, numerator: &Expr) -> bool {
+        let applies = |atom: &Atom| matches!(atom, Atom::Apply(application) if application.function != Function::Pi);
+        if numerator
+            .atoms()
+            .iter()
+            .filter(|atom| applies(atom))
+            .count()
+            == 0
+        {
+            return false;
+        }
+        let by_exponentials = self.numerator(&canonical::by_exponentials(numerator));
+        let (rewritten, relations) = canonical::rewritten(&by_exponentials, self);
+        if rewritten == *numerator && relations.is_empty() {
+            return false;
+        }
+        // New quotients come from exponents and logarithms.
+        let rewritten = self.numerator(&rewritten);
+        match relations.is_empty() {
+            true => self.normal_form(&rewritten).is_zero(),
+            false => {
+                let functions = rewritten.related_functions();
+                let known = relations_of(&functions, |function| function != Function::Recip);
+                let all = [known, relations].concat();
+                let reduction = self.own.with(&all, &[], &self.vanishing);
+                reduction.normal_form(&rewritten).is_zero()
+            }
+        }
+    }
+
+    /// What the expression is the square of, nowhere negative, where that is known.
+    pub fn known_root(&self, expression: &Expr) -> Option<Expr> {
+        let normal = self.normal_form(expression);
+        let number = || Some(Expr::rational(normal.as_rational()?.square_root()?));
+        let known = self.squares.iter().find(|(known, _)| *known == normal);
+        known.map(|(_, root)| root.clone()).or_else(number)
     }
 
     /// The expression times all its denominators: it vanishes where the expression does.
@@ -161,8 +213,11 @@ impl Ideal {
         numerator
     }
 
-    /// The square root: taken where the argument is the square of positive parameters.
+    /// The square root: taken where the argument is a known square, or that of positive parameters.
     fn root(&self, argument: &Expr) -> Expr {
+        if let Some((_, root)) = self.squares.iter().find(|(known, _)| known == argument) {
+            return root.clone();
+        }
         let of_square = || {
             let (monomial, coefficient) =
                 argument.leading().filter(|_| argument.terms().len() == 1)?;

@@ -1,6 +1,7 @@
 //! Configuration manifolds: products of known factors, and equality modulo their relations.
 
 mod angles;
+mod canonical;
 mod factor;
 mod groebner;
 mod ideal;
@@ -62,6 +63,13 @@ impl Manifold {
     #[must_use]
     pub fn with_signs(mut self, positive: BTreeSet<Symbol>, vanishing: BTreeSet<Symbol>) -> Self {
         self.ideal = self.ideal.with_signs(positive, vanishing);
+        self
+    }
+
+    /// The same manifold where arguments of roots are squares: see [`Ideal::with_squares`].
+    #[must_use]
+    pub fn with_squares(mut self, squares: &[(Expr, Expr)]) -> Self {
+        self.ideal = self.ideal.with_squares(squares);
         self
     }
 

@@ -1,4 +1,4 @@
-//! The functions of [`Function`](crate::expr::Function) that are made of others: `atan2`, Stumpff functions, `dexp⁻¹`.
+//! The functions of [`Function`](crate::expr::Function) that are made of others: `atan2`, hyperbolic functions, Stumpff functions, `dexp⁻¹`.
 
 use super::Precise;
 
@@ -28,6 +28,49 @@ impl Precise {
             (false, false) => (&y / &x).atan(),
         };
         angle.to_bits(self.bits())
+    }
+
+    /// Hyperbolic tangent, by `e^(−2|x|)`, which does not overflow.
+    pub fn tanh(&self) -> Self {
+        let size = self.to_bits(self.bits() + self.lost_below_one()).abs();
+        let faded = size.halved(-1).negative().exp();
+        let one = faded.same(1);
+        let tangent = &(&one - &faded) / &(&one + &faded);
+        let signed = if self.is_negative() {
+            -tangent
+        } else {
+            tangent
+        };
+        signed.to_bits(self.bits())
+    }
+
+    /// Logarithm of the hyperbolic cosine: `|x| + ln(1 + e^(−2|x|)) − ln 2`.
+    pub fn ln_cosh(&self) -> Self {
+        // Near 0 it is x²/2, and its parts are of order 1.
+        let size = self.to_bits(self.bits() + 2 * self.lost_below_one()).abs();
+        let faded = size.halved(-1).negative().exp();
+        let half = (&faded.same(1) + &faded).halved(1);
+        (&size + &half.ln()).to_bits(self.bits())
+    }
+
+    /// `ln(1 + x)`.
+    pub fn ln_1p(&self) -> Self {
+        let wide = self.to_bits(self.bits() + self.lost_below_one());
+        (&wide.same(1) + &wide).ln().to_bits(self.bits())
+    }
+
+    /// The larger of two numbers.
+    pub fn larger(&self, other: &Self) -> Self {
+        match self.compare(other) {
+            Some(std::cmp::Ordering::Less) => other.clone(),
+            _ => self.clone(),
+        }
+    }
+
+    /// Bits that sums of numbers of order 1 lose where a number of this size is left, and some to spare.
+    fn lost_below_one(&self) -> usize {
+        let size = self.to_f64().abs();
+        GUARD + size.max(f64::MIN_POSITIVE).log2().min(0.0).abs() as usize
     }
 
     /// Stumpff function `c_order(s) = Σ_j (−s)^j / (order + 2j)!` of `s = self`.

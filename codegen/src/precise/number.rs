@@ -1,7 +1,7 @@
 //! Binary floating-point numbers of any number of bits.
 
 use crate::expr::{Function, Number, Rational};
-use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
+use astro_float_num::{BigFloat, Consts, EXPONENT_MIN, INF_POS, RoundingMode, Sign};
 use num_bigint::{BigInt, Sign as IntegerSign};
 use std::cell::RefCell;
 use std::cmp::Ordering;
@@ -126,7 +126,7 @@ impl Precise {
     pub fn halved(&self, n: i32) -> Self {
         let mut value = self.value.clone();
         if let Some(exponent) = value.exponent().filter(|_| !value.is_zero()) {
-            value.set_exponent(exponent - n);
+            value.set_exponent(exponent.saturating_sub(n));
         }
         self.with(value)
     }
@@ -179,6 +179,51 @@ impl Precise {
     /// Whether this is below 0.
     pub fn is_negative(&self) -> bool {
         self.value.is_negative() && !self.is_zero()
+    }
+
+    /// The number beyond all others.
+    pub(super) fn infinity(bits: usize) -> Self {
+        Self::wrap(INF_POS, bits)
+    }
+
+    /// The largest number.
+    pub(super) fn largest(bits: usize) -> Self {
+        Self::wrap(BigFloat::max_value(bits), bits)
+    }
+
+    /// The smallest number above 0.
+    pub(super) fn smallest(bits: usize) -> Self {
+        Self::wrap(BigFloat::min_positive(bits), bits)
+    }
+
+    /// The distance to the next number; `None` for 0, NaN and infinity.
+    pub(super) fn unit_in_last_place(&self) -> Option<Self> {
+        let exponent = self.value.exponent().filter(|_| !self.is_zero())?;
+        let bits = i32::try_from(self.bits).ok()?;
+        let one = Self::integer(1, self.bits);
+        Some(match exponent.checked_sub(bits) {
+            Some(place) if place > EXPONENT_MIN + bits => {
+                let mut unit = one.value;
+                unit.set_exponent(place + 1);
+                Self::wrap(unit, self.bits)
+            }
+            // Subnormal numbers are apart by the smallest one.
+            _ => Self::smallest(self.bits),
+        })
+    }
+
+    /// The binary logarithm of its size, to within 1; −∞ for 0 and +∞ for what is no number.
+    pub fn log2(&self) -> f64 {
+        match self.value.exponent() {
+            _ if self.is_zero() => f64::NEG_INFINITY,
+            Some(exponent) if self.is_finite() => f64::from(exponent),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Whether this has no value.
+    pub(super) fn is_nan(&self) -> bool {
+        self.value.is_nan()
     }
 
     /// Whether this is a number, neither NaN nor infinite.
@@ -270,7 +315,14 @@ impl Number for Precise {
             (Function::Cos, [x]) => x.cos(),
             (Function::Sin, [x]) => x.sin(),
             (Function::Exp, [x]) => x.exp(),
+            (Function::Sinh, [x]) => x.sinh(),
+            (Function::Cosh, [x]) => x.cosh(),
+            (Function::Sech, [x]) => self.same(1).quotient(&x.cosh()),
+            (Function::Tanh, [x]) => x.tanh(),
+            (Function::LnCosh, [x]) => x.ln_cosh(),
             (Function::Ln, [x]) => x.ln(),
+            (Function::Ln1p, [x, m]) => (x * &m.exp()).ln_1p(),
+            (Function::Larger, [x, y]) => x.larger(y),
             (Function::Sqrt, [x]) => x.sqrt(),
             (Function::Recip, [x]) => self.same(1).quotient(x),
             (Function::Group, [x]) => x.clone(),

@@ -104,6 +104,19 @@ impl<'a> Sampler<'a> {
         (0..ATTEMPTS).find_map(|_| self.attempt())
     }
 
+    /// A point on the manifold with parameters within their ranges, whatever it misses of requirements and loci: for who moves some
+    /// of its values, and looks at these then.
+    pub fn anywhere(&mut self) -> Option<Point> {
+        let mut free = self.spec.clone();
+        free.requirements.clear();
+        free.loci.clear();
+        let mut sampler = Sampler::new(&free, self.draw.bits).single();
+        sampler.draw.random = self.draw.random.clone();
+        let point = sampler.point();
+        self.draw.random = sampler.draw.random.clone();
+        point
+    }
+
     fn attempt(&mut self) -> Option<Point> {
         if self.far.is_some() {
             self.draw.reach = REACHES[self.index(REACHES.len())];

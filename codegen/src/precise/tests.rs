@@ -117,6 +117,23 @@ fn angles_are_known() {
     assert!(agree(&(&sin * &sin + &cos * &cos), &angle.same(1), 250));
 }
 
+/// tanh = sinh / cosh, and ln cosh = ln(1 + 2 sinh²(x/2)), in bits enough for the smallest.
+#[test]
+fn hyperbolic_functions_keep_their_digits_at_every_size() {
+    for size in [1e-200, 1e-9, 0.3, 1.0, 7.2, 720.0, 1e4, -7.2, -1e-9] {
+        let x = Precise::from_f64(size, BITS);
+        let quotient = &x.sinh() / &x.cosh();
+        assert!(agree(&x.tanh(), &quotient, 250), "tanh {size}");
+        let small = x.ln_cosh();
+        let u = (x.halved(1).sinh() * &x.halved(1).sinh()).halved(-1);
+        let wide = &u.to_bits(2048).same(1) + &u.to_bits(2048);
+        assert!(
+            agree(&small, &wide.ln().to_bits(BITS), 240),
+            "ln cosh {size}"
+        );
+    }
+}
+
 /// Arguments of both signs, small, of a turn, of many turns; on both sides of where the method changes.
 fn arguments() -> Vec<Precise> {
     let sizes = [

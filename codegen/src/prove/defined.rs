@@ -1,6 +1,6 @@
 //! The claim that everything is defined: no quotient divides by zero, no root or logarithm leaves the positive numbers, no angle jumps.
 
-use super::{Attempt, Prover, certified, refuted};
+use super::{Attempt, Identities, Prover, certified, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expand;
@@ -29,10 +29,20 @@ pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Box<Diagnostic>> {
 }
 
 impl Prover<'_> {
+    /// What is declared is smooth; that what is derived from it is so, too, comes after the claims that this rests on.
+    pub(super) fn declared_is_defined(&self) -> Attempt {
+        let declared = Critical::declared(self.spec, self.exponential);
+        let open = declared.iter().find(|f| self.domain.smooth(f).is_none());
+        match open {
+            Some(open) => Err(Box::new(refusal(open, &self.spec.pose.span))),
+            None => Ok(None),
+        }
+    }
+
     /// Every quotient, root, logarithm and angle in what is evaluated at Q is smooth there.
     pub(super) fn is_defined(&self) -> Attempt {
         let (declared, derived) = (
-            Critical::declared(self.spec, self.x.exponential),
+            Critical::declared(self.spec, self.exponential),
             self.derived_functions(),
         );
         let count = declared.union(&derived).count();
@@ -60,12 +70,6 @@ impl Prover<'_> {
                 "quotients, roots, logarithms and angles in them: {count}; all are smooth at their arguments"
             ),
         )))
-    }
-
-    /// What is positive wherever the joint lives, beside the loci.
-    pub(super) fn sides(&self) -> Vec<Expr> {
-        let declared = Critical::declared(self.spec, self.x.exponential);
-        self.domain.sides(&declared)
     }
 
     /// Functions with a singular argument in what is derived and evaluated at a configuration.
@@ -101,6 +105,14 @@ impl Prover<'_> {
                     _ => vec![],
                 });
         known.any(|x| x == *argument || self.ideal.vanishes(&(&x - argument)))
+    }
+}
+
+impl Identities<'_> {
+    /// What is positive wherever the joint lives, beside the loci.
+    pub(super) fn sides(&self) -> Vec<Expr> {
+        let declared = Critical::declared(self.spec, self.exponential);
+        self.domain.sides(&declared)
     }
 }
 

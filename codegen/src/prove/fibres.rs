@@ -15,9 +15,7 @@ pub fn claim(spec: &JointSpec, domain: &Domain<'_>) -> Option<Claim> {
         statement,
         proof: Proof::Certificate,
         detail,
-        residual: 0.0,
         points: 0,
-        bits: 0,
     })
 }
 

@@ -3,84 +3,199 @@
 //! The kernels that follow from these by products and derivatives (∂S̄/∂ϕ, γ, J22, c and its slopes, the finite maps, N_X) are not
 //! proved again: the law suite measures them on compiled joints.
 //!
-//! Identities hold when their difference has normal form 0 modulo the manifold's relations, or, where functions without such
-//! relations remain, by evaluation in high precision. Ranks and invertibility need a
-//! certificate that holds at every configuration; random points never serve for them.
+//! Identities hold when their difference has normal form 0 modulo the manifold's relations and the laws of the functions in it. Where
+//! algebra does not decide, a search looks for a place where an identity fails. If it finds none the spec is refused all the same, as
+//! undecided, unless it says `unproved` for that claim. Ranks, signs and invertibility need a certificate that holds at every
+//! configuration.
 
 mod defined;
 mod fibres;
 mod nonholonomic;
-mod numeric;
 mod retract;
+mod search;
 mod twist;
 
 pub use defined::retract_is_smooth;
 
 use crate::derived::{Claim, Proof};
 use crate::diagnostic::Diagnostic;
-use crate::domain::Domain;
-use crate::expand::Expansion;
+use crate::domain::{Domain, LAST_PRECISION};
+use crate::expand::{self, Expansion};
 use crate::expr::Expr;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::model::{Declared, JointSpec, Unproved};
 use crate::spec::code;
-use numeric::{Evaluation, Points};
-use std::ops::Range;
+use search::{Points, Verdict};
+use std::ops::{Deref, Range};
 
-/// All claims, or every one that fails.
+/// The claims that a spec may leave unproved: identities.
+pub const CHECKABLE: &[&str] = &[
+    "pose_in_se3",
+    "retract_at_zero",
+    "retract_on_manifold",
+    "twist_map_in_frame",
+    "twist_map_matches_pose",
+    "velocity_map_first_order",
+    "velocity_map_inverse",
+    "twist_map_child",
+    "speeds_meet_constraint",
+];
+
+/// The claims about what is declared, which need no derivation; an error of these makes errors of all others.
+pub fn prove_declared(spec: &JointSpec) -> Result<Vec<Claim>, Vec<Diagnostic>> {
+    let declared = Identities::new(spec);
+    declared.settled([declared.pose_is_rigid(), declared.retract_starts_at_q()])
+}
+
+/// All other claims. What rests on a claim that fails is not looked at: the first cause is told, and what does not hang on it.
 pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<Diagnostic>> {
     let prover = Prover {
-        spec,
+        identities: Identities::new(spec),
         x: expansion,
-        ideal: spec.manifold.value.ideal(),
-        domain: Domain::new(spec),
-        points: Points::default(),
     };
-    let attempts = [
-        prover.is_defined(),
-        prover.has_dimension(),
-        prover.pose_is_rigid(),
-        prover.retract_starts_at_q(),
+    let mut claims = prover.settled([prover.declared_is_defined(), prover.has_dimension()])?;
+    claims.extend(prover.settled([
         prover.retract_stays_on_manifold(),
         prover.declared_retract(),
-        prover.declared_twist_map(),
-        prover.twists_agree(),
-        prover.slopes_agree(),
+    ])?);
+    claims.extend(prover.settled([prover.declared_twist_map(), prover.twists_agree()])?);
+    claims.extend(prover.settled([
         prover.velocity_map_is_invertible(),
-        prover.velocity_map_is_inverted(),
-        prover.child_twist_map_agrees(),
         prover.twist_map_has_full_rank(),
         prover.constraint_is_met(),
         prover.speed_basis_has_full_rank(),
         prover.constraint_has_full_rank(),
-    ];
-    let (mut claims, mut errors) = (vec![], vec![]);
-    for attempt in attempts {
-        match attempt {
-            Ok(claim) => claims.extend(claim),
-            Err(error) => errors.push(*error),
-        }
-    }
+    ])?);
+    claims.extend(prover.settled([
+        prover.is_defined(),
+        prover.slopes_agree(),
+        prover.velocity_map_is_inverted(),
+        prover.child_twist_map_agrees(),
+    ])?);
+    claims.sort_by_key(|claim| place(claim.name));
     claims.extend(fibres::claim(spec, &prover.domain));
-    if errors.is_empty() {
-        Ok(claims)
-    } else {
-        Err(errors)
-    }
+    Ok(claims)
 }
+
+/// The order in which pages list claims: from what is declared to what is derived.
+fn place(name: &str) -> usize {
+    let order = [
+        "defined",
+        "manifold_dimension",
+        "manifold_orbit",
+        "retract_on_manifold",
+        "retract_is_exponential",
+        "retract_local_diffeomorphism",
+        "twist_map_in_frame",
+        "twist_map_matches_pose",
+        "velocity_map_first_order",
+        "velocity_map_invertible",
+        "velocity_map_inverse",
+        "twist_map_child",
+        "twist_map_rank",
+        "speeds_meet_constraint",
+        "speed_basis_rank",
+        "constraint_rank",
+    ];
+    let found = order.iter().position(|other| *other == name);
+    found.unwrap_or(order.len())
+}
+
+/// An error for each claim that is said to be unproved and is proved.
+pub fn needlessly_unproved(spec: &JointSpec, claims: &[Claim]) -> Vec<Diagnostic> {
+    let needless = |unproved: &&Declared<Unproved>| {
+        let checked =
+            |claim: &Claim| claim.name == unproved.value.claim && claim.proof == Proof::Checked;
+        !claims.iter().any(checked)
+    };
+    let error = |unproved: &Declared<Unproved>| {
+        let name = &unproved.value.claim;
+        let proved = claims.iter().any(|claim| claim.name == name);
+        let (message, label) = match proved {
+            true => (format!("the claim `{name}` is proved"), "not unproved"),
+            false => (
+                format!("this joint makes no claim `{name}`"),
+                "nothing to prove",
+            ),
+        };
+        Diagnostic::new(code::UNPROVED, unproved.span.clone(), message)
+            .label(label)
+            .help("remove this statement")
+    };
+    spec.unproved.iter().filter(needless).map(error).collect()
+}
+
+/// Most undecided constants that one error names.
+const MOST_UNDECIDED: usize = 3;
 
 type Attempt = Result<Option<Claim>, Box<Diagnostic>>;
 
-struct Prover<'a> {
+/// What identities are decided with.
+struct Identities<'a> {
     spec: &'a JointSpec,
-    x: &'a Expansion,
+    /// Whether Φ is Q exp(ϕ).
+    exponential: bool,
     ideal: &'a Ideal,
     domain: Domain<'a>,
     points: Points,
 }
 
-impl Prover<'_> {
+/// The same with what was derived.
+struct Prover<'a> {
+    identities: Identities<'a>,
+    x: &'a Expansion,
+}
+
+impl<'a> Deref for Prover<'a> {
+    type Target = Identities<'a>;
+    fn deref(&self) -> &Identities<'a> {
+        &self.identities
+    }
+}
+
+impl<'a> Identities<'a> {
+    fn new(spec: &'a JointSpec) -> Self {
+        Self {
+            spec,
+            exponential: expand::is_exponential(spec),
+            ideal: spec.manifold.value.ideal(),
+            domain: Domain::new(spec),
+            points: Points::default(),
+        }
+    }
+
+    /// The claims that hold, or the errors of those that do not.
+    fn settled<const N: usize>(
+        &self,
+        attempts: [Attempt; N],
+    ) -> Result<Vec<Claim>, Vec<Diagnostic>> {
+        let (mut claims, mut errors) = (vec![], vec![]);
+        for attempt in attempts {
+            match attempt {
+                Ok(claim) => claims.extend(claim),
+                Err(error) => errors.push(self.with_undecided(*error)),
+            }
+        }
+        match errors.is_empty() {
+            true => Ok(claims),
+            false => Err(errors),
+        }
+    }
+
+    /// The error, with the constants of which no number of bits decided the sign.
+    fn with_undecided(&self, error: Diagnostic) -> Diagnostic {
+        let undecided = self.domain.undecided();
+        undecided
+            .iter()
+            .take(MOST_UNDECIDED)
+            .fold(error, |error, constant| {
+                error.note(format!(
+                    "undecided: in {LAST_PRECISION} bits {constant} is neither above nor below 0"
+                ))
+            })
+    }
+
     /// The statement with the places where it is not claimed.
     fn where_it_holds(&self, statement: &str) -> String {
         let loci: Vec<String> = self
@@ -114,20 +229,41 @@ impl Prover<'_> {
                 "the difference of both sides has normal form 0",
             )));
         }
-        match self.evaluate(difference, &residual) {
-            Evaluation::Agrees { residual } => Ok(Some(Claim {
-                residual,
-                points: numeric::EFFORT.0,
-                bits: numeric::EFFORT.1,
-                ..symbolic(name, statement, Proof::Numeric, numeric::DETAIL)
-            })),
-            Evaluation::Differs { value } => {
-                let error = refuted(residual);
-                Err(Box::new(error.note(format!(
-                    "at a random configuration the difference is {value:.3e}"
-                ))))
+        let open: Vec<(Expr, Expr)> = difference
+            .entries()
+            .iter()
+            .zip(residual.entries())
+            .filter(|(_, normal)| !normal.is_zero())
+            .map(|(entry, normal)| (entry.clone(), normal.clone()))
+            .collect();
+        let said = self
+            .spec
+            .unproved
+            .iter()
+            .find(|said| said.value.claim == name);
+        let undecided = |refuted: Diagnostic, why: &str| {
+            let message = format!("undecided: {statement}");
+            Diagnostic::new(code::NOT_PROVED, refuted.span, message)
+                .label(format!("the claim `{name}` is neither proved nor refuted"))
+                .note(why.to_owned())
+        };
+        match (search::search(self, &open), said) {
+            (Verdict::Refuted(place), _) => {
+                Err(Box::new(refuted(residual).note(place.to_string())))
             }
-            Evaluation::Undecided => Err(Box::new(refuted(residual))),
+            (Verdict::Agrees { points }, Some(said)) => Ok(Some(Claim {
+                points,
+                ..symbolic(name, statement, Proof::Checked, &said.value.reason)
+            })),
+            (Verdict::Agrees { points }, None) => {
+                let why = format!("it holds at {points} points, which proves nothing");
+                let help = format!(
+                    "write it by functions of which the algebra knows the relations; or accept that it is checked, not proved: \
+                     `unproved {name} because \"…\";`"
+                );
+                Err(Box::new(undecided(refuted(residual), &why).help(help)))
+            }
+            (Verdict::Undecided(why), _) => Err(Box::new(undecided(refuted(residual), &why))),
         }
     }
 
@@ -162,9 +298,7 @@ fn symbolic(name: &'static str, statement: &str, proof: Proof, detail: &str) -> 
         statement: statement.into(),
         proof,
         detail: detail.into(),
-        residual: 0.0,
         points: 0,
-        bits: 0,
     }
 }
 

@@ -1,7 +1,6 @@
 //! Claims about Φ: it starts at Q, stays on the manifold, and is what the generator can invert.
 
-use super::numeric::{BITS, TOLERANCE};
-use super::{Attempt, Prover, certified, refuted, symbolic};
+use super::{Attempt, Identities, Prover, certified, refuted, symbolic};
 use crate::derived::Proof;
 use crate::diagnostic::Diagnostic;
 use crate::expand::{Confinement, Motion, dimension, exponential};
@@ -13,6 +12,10 @@ use num_traits::ToPrimitive;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+/// Bits of the numbers in which a Φ that leaves the manifold is looked for.
+const BITS: usize = 256;
+/// Largest residual beside its terms: 200 bits agree. Rounding of some thousand operations takes less than 20 of the 256.
+const TOLERANCE: f64 = 6.2e-61;
 /// Most term operations for the normal forms of the relations at Φ(Q, ϕ).
 const FINITE_LIMIT: u64 = 60_000;
 /// Random points at which a Φ that leaves the manifold is looked for: an expression that is not 0 hardly ever vanishes at one.
@@ -26,7 +29,7 @@ const FLOW: &str = "at every Q the derivatives of the relations along Q exp(tξ)
 /// What one point costs, in term operations.
 const POINT_COST: u64 = 500;
 
-impl Prover<'_> {
+impl Identities<'_> {
     /// Φ as it is used: declared, else Q exp(ϕ).
     pub(super) fn retract(&self) -> Option<(Vec<Expr>, Range<usize>)> {
         let declared = self.spec.retract.as_ref();
@@ -41,10 +44,9 @@ impl Prover<'_> {
                 self.spec.freedoms.span.clone(),
             )
         });
-        let base: Vec<Expr> = moved
-            .iter()
-            .map(|entry| entry.at_zero(&self.x.arguments.local))
-            .collect();
+        let freedoms = self.spec.freedoms.value.iter();
+        let local: Vec<Symbol> = freedoms.map(|freedom| freedom.local.clone()).collect();
+        let base: Vec<Expr> = moved.iter().map(|entry| entry.at_zero(&local)).collect();
         let difference =
             Matrix::column_vector(base).minus(&Matrix::symbols(&manifold.coordinates()));
         self.identity("retract_at_zero", "Φ(Q, 0) = Q", &difference, |residual| {
@@ -57,7 +59,9 @@ impl Prover<'_> {
             .note(format!("Φ(Q, 0) − Q =\n{residual}"))
         })
     }
+}
 
+impl Prover<'_> {
     pub(super) fn retract_stays_on_manifold(&self) -> Attempt {
         let relations = self.spec.manifold.value.relations();
         let declared = self.retract();
@@ -99,7 +103,7 @@ impl Prover<'_> {
                 ))
             },
         );
-        let moved = moved.filter(|_| !self.x.exponential);
+        let moved = moved.filter(|_| !self.exponential);
         match (attempt, moved) {
             // Its relations g have derivatives Σ a g along the flow t ↦ Q exp(tξ), so that they stay 0.
             (Ok(Some(claim)), None) if claim.proof == Proof::NormalForm => Ok(Some(symbolic(
@@ -174,7 +178,7 @@ impl Prover<'_> {
 
     /// How the finite maps of Φ are evaluated.
     pub(super) fn declared_retract(&self) -> Attempt {
-        match (&self.spec.retract, self.x.exponential) {
+        match (&self.spec.retract, self.exponential) {
             (None, _) => Ok(None),
             (Some(_), true) => Ok(Some(symbolic(
                 "retract_is_exponential",
@@ -192,7 +196,7 @@ impl Prover<'_> {
 
     /// The manifold has as many dimensions as there are freedoms.
     pub(super) fn has_dimension(&self) -> Attempt {
-        let found = dimension::confinement(self.spec, &self.domain, self.x.exponential);
+        let found = dimension::confinement(self.spec, &self.domain, self.exponential);
         match found {
             Ok(Confinement::Known) => Ok(None),
             Ok(Confinement::Relations(certificate)) => Ok(Some(certified(

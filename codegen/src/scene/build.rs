@@ -9,12 +9,15 @@
 //!
 //! and in the crate `mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`. With [`Language::C99`] it is `arm.c` and `arm.h`, for the crate `cc`.
 
+use super::check;
 use super::describe::Refused;
 use super::emit;
 use super::functions::{self, Kind, Loops, TooLong};
 use super::model::Model;
 use crate::derived::Derived;
 use crate::emit::rust::WriteError;
+use crate::emit::text::is_visible;
+use crate::source;
 use hamel_scene::{Scene, SceneDescription, urdf};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -118,7 +121,7 @@ impl std::fmt::Display for Error {
             Self::Template(error) => write!(f, "{error}"),
             Self::Name(name) => write!(
                 f,
-                "the module is named {name:?}, and C cannot include `{name}.h`: quotes, backslashes and control characters must not be in a name"
+                "the module is named {name:?}, and C cannot include `{name}.h`: quotes, backslashes and characters that are not seen must not be in a name"
             ),
             Self::Lanes => f.write_str(
                 "lanes are of modules in Rust, whose functions are generic over scalars: a module in C takes one state at a time",
@@ -252,12 +255,22 @@ impl Build {
         let model = self.model()?;
         let kinds = self.functions.as_deref().unwrap_or(&Kind::BY_DEFAULT);
         let (mut functions, mut left_out) = (vec![], vec![]);
+        let mut reasons: Vec<String> = vec![];
         for &kind in kinds {
             match functions::compile(&model, kind, self.loops(kind)) {
-                Ok(chosen) => functions.push(chosen.function),
+                Ok(chosen) => {
+                    let found = check::of_function(&model, &chosen.function).into_iter();
+                    let new = found.filter(|reason| !reasons.contains(reason));
+                    reasons.extend(new.collect::<Vec<_>>());
+                    functions.push(chosen.function);
+                }
                 Err(long) if self.functions.is_none() => left_out.push(long),
                 Err(long) => return Err(Error::TooLong(long)),
             }
+        }
+        if !reasons.is_empty() {
+            let scene = model.name;
+            return Err(Error::Refused(Refused { scene, reasons }));
         }
         let (text, header) = self.texts(&model, &functions, label)?;
         Ok(Module {
@@ -282,7 +295,7 @@ impl Build {
             Language::C99 if self.lanes => Err(Error::Lanes),
             Language::C99 => {
                 let name = self.module_name();
-                if name.contains(|c: char| c.is_control() || matches!(c, '"' | '\\')) {
+                if name.contains(['"', '\\']) || !is_visible(&name) {
                     return Err(Error::Name(name));
                 }
                 let texts = emit::c99::module(model, functions, label, &name);
@@ -364,5 +377,5 @@ fn write(path: &Path, text: &str) -> Result<(), Error> {
 }
 
 fn read(path: &Path) -> Result<String, Error> {
-    std::fs::read_to_string(path).map_err(|error| Error::File(path.to_owned(), error))
+    source::read(path).map_err(|error| Error::File(path.to_owned(), error))
 }

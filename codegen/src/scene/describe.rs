@@ -1,6 +1,7 @@
 //! From what a scene file says to what is compiled, with all that cannot be compiled named at once.
 
 use super::acting::Held;
+use super::check;
 use super::model::{Body, Coupling, Elements, Model};
 use crate::derived::Derived;
 use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
@@ -36,10 +37,17 @@ impl Model {
         scene: &SceneDescription,
         joints: impl Fn(&str) -> Option<Rc<Derived>>,
     ) -> Result<Self, Refused> {
-        let mut reasons = vec![];
+        let refused = |reasons| Refused {
+            scene: scene.name.clone(),
+            reasons,
+        };
+        let mut reasons = check::of_scene(scene);
+        if !reasons.is_empty() {
+            return Err(refused(reasons));
+        }
         let mut elements = Elements {
-            springs: scene.springs.iter().map(spring).collect(),
-            wrenches: scene.wrenches.iter().map(wrench).collect(),
+            springs: scene.springs.iter().enumerate().map(spring).collect(),
+            wrenches: scene.wrenches.iter().enumerate().map(wrench).collect(),
             ..Elements::default()
         };
         let bodies = scene.bodies.iter().enumerate();
@@ -67,10 +75,6 @@ impl Model {
                 compiled.map_err(|more| reasons.extend(more)).ok()
             })
             .collect();
-        let refused = |reasons| Refused {
-            scene: scene.name.clone(),
-            reasons,
-        };
         let Some(bodies) = bodies.into_iter().collect::<Option<Vec<Body>>>() else {
             return Err(refused(reasons));
         };
@@ -89,9 +93,9 @@ impl Model {
     }
 }
 
-fn spring(spring: &PointSpring) -> BodySpring {
+fn spring((index, spring): (usize, &PointSpring)) -> BodySpring {
     BodySpring {
-        name: String::new(),
+        name: format!("spring {}", index + 1),
         bodies: [spring.from.body, spring.to.body],
         points: [spring.from.point, spring.to.point],
         stiffness: spring.stiffness,
@@ -100,9 +104,9 @@ fn spring(spring: &PointSpring) -> BodySpring {
     }
 }
 
-fn wrench(wrench: &WrenchDescription) -> BodyWrench {
+fn wrench((index, wrench): (usize, &WrenchDescription)) -> BodyWrench {
     BodyWrench {
-        name: String::new(),
+        name: format!("wrench {}", index + 1),
         body: wrench.body,
         point: wrench.point,
         force: wrench.force,

@@ -1,6 +1,6 @@
 //! The kernels of one joint of a scene, on the graph.
 
-use super::graph::{Sym, atan2, call, primitive, sin_cos};
+use super::graph::{Sym, call, call_two, primitive, sin_cos};
 use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
 use crate::derived::{Derived, KernelKind};
 use crate::emit::formula::{Binding, Node, Program};
@@ -272,8 +272,8 @@ fn evaluate(node: &Node, values: &BTreeMap<Symbol, Sym>) -> Sym {
             (Function::Group, [inner]) => of(inner),
             (Function::Recip, [inner]) => Sym::Number(1.0) / of(inner),
             (Function::Pi, []) => std::f64::consts::PI.into(),
-            (Function::Atan2, [y, x]) => atan2(of(y), of(x)),
             (function, [argument]) => call(*function, of(argument)),
+            (function, [first, second]) => call_two(*function, of(first), of(second)),
             _ => Sym::Number(f64::NAN),
         },
     }

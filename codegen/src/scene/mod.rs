@@ -24,6 +24,7 @@
 mod acting;
 pub mod alike;
 mod build;
+mod check;
 mod couple;
 mod describe;
 pub mod emit;

@@ -104,6 +104,8 @@ pub(super) enum StatementKind {
     Except(Equation),
     /// `require a > b;`
     Require(Requirement),
+    /// `unproved claim because "…";`
+    Unproved(Name, Name),
     /// `H = …;` and its like; Phi and home have one value for each factor.
     Assign(Target, Vec<Node>),
 }

@@ -62,6 +62,7 @@ codes! {
     REQUIREMENT "E0320" "A requirement that is not about parameters, or always or never true."
     FILE_NAME "E0321" "The file is not named after its joint."
     MAY_VANISH "E0322" "Division by a parameter that may be zero."
+    UNPROVED "E0323" "An `unproved` of something that is no such claim, or that is proved."
 
     DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."
@@ -82,6 +83,7 @@ codes! {
     WORK "E0418" "The derivation takes more work than the bound allows."
     TWIST_MAP_FRAME "E0419" "X is not the velocity in the declared frame."
     NOT_DEFINED "E0420" "A quotient, root, logarithm or angle that is not smooth everywhere."
+    NOT_PROVED "E0421" "A claim that algebra does not decide: not proved, or undecided."
 }
 
 /// What a code means: a title, why that is an error, a wrong and a right spec. `e305` and `305` are other spellings.

@@ -7,6 +7,7 @@
 
 mod ast;
 pub mod code;
+pub(crate) mod comments;
 mod declare;
 mod evaluate;
 mod limits;

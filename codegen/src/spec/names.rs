@@ -8,7 +8,7 @@ use proc_macro2::{Ident, Span, TokenTree};
 /// Words that begin the statements of the language.
 pub const STATEMENTS: &[&str] = &[
     "config", "relation", "home", "except", "require", "basis", "local", "velocity", "speeds",
-    "let", "Phi", "H", "X", "A", "S_bar",
+    "let", "Phi", "H", "X", "A", "S_bar", "unproved",
 ];
 
 /// Words that belong to the language.
@@ -21,6 +21,9 @@ const SCENE_KEYS: &[&str] = &["name"];
 
 /// Most names that a suggestion lists.
 const MOST_SUGGESTIONS: usize = 3;
+
+/// Longest name that is compared with others, in bytes: the work grows with the square.
+const LONGEST_COMPARED: usize = 64;
 
 /// How a name is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,19 +57,21 @@ fn form_error(name: &Name, form: Form) -> Option<Diagnostic> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let starts = text.starts_with(|c: char| c.is_ascii_alphabetic());
     let lower = form == Form::Any || !text.contains(|c: char| c.is_ascii_uppercase());
-    let tidy = form == Form::Any || !(text.contains("__") || text.ends_with('_'));
+    // Stored scalars are called after their factor, with an underscore between.
+    let tidy = !(text.contains("__") || text.ends_with('_'));
     if starts && lower && tidy && text.chars().all(allowed) {
         return None;
     }
     let message = match form {
         Form::Snake => format!("`{text}` is not in snake case"),
+        Form::Any if !tidy => format!("`{text}` has two underscores in a row, or one at its end"),
         Form::Any => format!("`{text}` is not a name of ASCII letters, digits and underscores"),
     };
     let error = Diagnostic::new(code::FORM, name.span.clone(), message)
         .label("this name is taken over into Rust");
     let suggestion = snake_case(text);
     Some(
-        match form == Form::Snake && !suggestion.is_empty() && suggestion != text {
+        match (form == Form::Snake || !tidy) && !suggestion.is_empty() && suggestion != text {
             true => error.help(format!("write `{suggestion}`")),
             false => error.help("begin with an ASCII letter"),
         },
@@ -127,6 +132,9 @@ pub(super) fn suggestion<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<String> {
+    if name.len() > LONGEST_COMPARED {
+        return None;
+    }
     let distance =
         |candidate: &str| strsim::damerau_levenshtein(&lookalike(name), &lookalike(candidate));
     let near = |distance: usize, candidate: &str| {
@@ -134,6 +142,7 @@ pub(super) fn suggestion<'a>(
     };
     let mut close: Vec<(usize, &str)> = candidates
         .into_iter()
+        .filter(|candidate| candidate.len() <= LONGEST_COMPARED)
         .map(|candidate| (distance(candidate), candidate))
         .filter(|(distance, candidate)| near(*distance, candidate))
         .collect();

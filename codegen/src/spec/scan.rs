@@ -55,6 +55,7 @@ impl Scanner<'_> {
                     self.at += self.rest().find('\n').unwrap_or(self.rest().len())
                 }
                 '/' if self.rest().starts_with("/*") => self.block_comment()?,
+                '"' => self.text()?,
                 _ => {
                     self.at = here.end;
                     self.character(character, here)?;
@@ -131,6 +132,29 @@ impl Scanner<'_> {
         }
     }
 
+    /// A text stands on one line and knows no escapes.
+    fn text(&mut self) -> super::Fallible<()> {
+        let start = self.at;
+        let line = self.rest()[1..].lines().next().unwrap_or_default();
+        let refused = |range: Range<usize>, message: &str| {
+            let error = Diagnostic::new(code::CHARACTER, range, message);
+            Err(Box::new(
+                error.help("a text is written \"…\" on one line, without `\\`"),
+            ))
+        };
+        let Some(length) = line.find('"') else {
+            return refused(start..start + 1, "the text is never closed");
+        };
+        let text = &line[..length];
+        if let Some(place) = text.find(|c: char| c == '\\' || c.is_control()) {
+            let at = start + 1 + place;
+            let end = at + text[place..].chars().next().map_or(1, char::len_utf8);
+            return refused(at..end, "a character that a text cannot have");
+        }
+        self.at += length + 2;
+        Ok(())
+    }
+
     /// Block comments nest, as in Rust.
     fn block_comment(&mut self) -> super::Fallible<()> {
         let start = self.at;
@@ -178,7 +202,7 @@ fn unreadable(character: char, here: Range<usize>) -> Diagnostic {
     );
     let error = error.label("outside a comment");
     match character {
-        '"' | '\'' => error.help("the language has no texts; names stand without quotes"),
+        '\'' => error.help("names stand without quotes"),
         '²' | '³' => error.help("write pow(x, 2)"),
         '·' | '×' => error.help("a product is written `*`"),
         '−' => error.help("minus is the ASCII `-`"),

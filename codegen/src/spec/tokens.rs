@@ -151,6 +151,25 @@ impl<'a> Tokens<'a> {
         Some((literal, span))
     }
 
+    /// A text between quotes.
+    pub fn expect_text(&mut self, what: &str) -> Fallible<Name> {
+        let here = self.span();
+        let quoted = self
+            .cursor
+            .literal()
+            .map(|(literal, _)| literal.to_string());
+        let text = quoted
+            .as_deref()
+            .and_then(|text| text.strip_prefix('"')?.strip_suffix('"'));
+        match text.map(str::to_owned) {
+            Some(text) => {
+                self.literal();
+                Ok(Name { text, span: here })
+            }
+            None => Err(self.expected(what)),
+        }
+    }
+
     /// The tokens of a bracketed group, and its bytes.
     pub fn group(&mut self, delimiter: Delimiter) -> Option<(Self, Range<usize>)> {
         let (inside, span, rest) = self.cursor.group(delimiter)?;

@@ -25,9 +25,9 @@
 //! ```
 //!
 //! Proved when this file was generated:
-//! - `defined`: H, Φ, X, S, A and S̄ are smooth at Q (certificate)
 //! - `pose_in_se3`: H(Q) ∈ SE(3) (normal form)
 //! - `retract_at_zero`: Φ(Q, 0) = Q (normal form)
+//! - `defined`: H, Φ, X, S, A and S̄ are smooth at Q (certificate)
 //! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold (normal form)
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)

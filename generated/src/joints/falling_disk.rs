@@ -32,19 +32,19 @@
 //! ```
 //!
 //! Proved when this file was generated:
-//! - `defined`: H, Φ, X, S, A and S̄ are smooth at Q where -r_q33*r_q33 + 1 ≠ 0 (certificate)
 //! - `pose_in_se3`: H(Q) ∈ SE(3) (normal form)
 //! - `retract_at_zero`: Φ(Q, 0) = Q (normal form)
+//! - `defined`: H, Φ, X, S, A and S̄ are smooth at Q where -R\[3, 3]*R\[3, 3] + 1 ≠ 0 (certificate)
 //! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold (normal form)
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
-//! - `velocity_map_invertible`: S₀ is invertible where -r_q33*r_q33 + 1 ≠ 0 (certificate)
+//! - `velocity_map_invertible`: S₀ is invertible where -R\[3, 3]*R\[3, 3] + 1 ≠ 0 (certificate)
 //! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
 //! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
-//! - `twist_map_rank`: rank X = k where -r_q33*r_q33 + 1 ≠ 0 (certificate)
+//! - `twist_map_rank`: rank X = k where -R\[3, 3]*R\[3, 3] + 1 ≠ 0 (certificate)
 //! - `speeds_meet_constraint`: Aᵀ S̄ = 0 (normal form)
-//! - `speed_basis_rank`: rank S̄ = k̄ where -r_q33*r_q33 + 1 ≠ 0 (certificate)
-//! - `constraint_rank`: rank A = k − k̄ where -r_q33*r_q33 + 1 ≠ 0 (certificate)
+//! - `speed_basis_rank`: rank S̄ = k̄ where -R\[3, 3]*R\[3, 3] + 1 ≠ 0 (certificate)
+//! - `constraint_rank`: rank A = k − k̄ where -R\[3, 3]*R\[3, 3] + 1 ≠ 0 (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};

@@ -83,7 +83,7 @@ pub const ENTRIES: &[::hamel::registry::JointEntry] = &[
 ];
 
 /// Name and text of every spec, in alphabetic order.
-pub const SPECS: &[(&str, &str)] = &[
+pub const SPECS: &[(&::core::primitive::str, &::core::primitive::str)] = &[
     ("ball", self::ball::SPEC),
     ("ball_child", self::ball_child::SPEC),
     ("ball_on_plane", self::ball_on_plane::SPEC),

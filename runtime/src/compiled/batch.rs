@@ -226,9 +226,10 @@ impl Batch {
                 found: v.len(),
             });
         }
+        // What no vector can hold is no size of one.
         let sizes = [
-            ("configuration", rows * configuration, q.len()),
-            (inputs, rows * width, u.len()),
+            ("configuration", rows.saturating_mul(configuration), q.len()),
+            (inputs, rows.saturating_mul(width), u.len()),
             (outputs, rows * speeds, results.len()),
         ];
         if let Some(mistakes) = mistakes(sizes) {

@@ -67,6 +67,7 @@ impl Lanes {
     /// The numbers of eight states, each `width` long and one after the other, side by side: [`Batch`](super::Batch) takes rows of these. The last state
     /// is repeated where there are no eight.
     pub fn side_by_side(states: &[f64], width: usize) -> Vec<Self> {
+        // A width of 0, and one beyond all numbers, make no state.
         let count = states.len().checked_div(width).unwrap_or(0);
         let entry = |group: usize, entry: usize| {
             let number =

@@ -5,6 +5,10 @@ use super::LANES;
 /// Eight rows of eight.
 pub(super) type Block = [[f64; LANES]; LANES];
 
+/// What a register of four takes of a row.
+#[cfg(all(feature = "levels", target_arch = "x86_64"))]
+const HALF: usize = LANES / 2;
+
 /// What is done in a function of its own.
 pub(super) trait Work {
     /// What comes of it.
@@ -47,115 +51,148 @@ impl Instructions for Plain {
 
 #[cfg(all(feature = "levels", target_arch = "x86_64"))]
 mod x86 {
-    use super::{Block, Instructions, Work};
-    use core::arch::x86_64::{__m256d, __m512d};
-    use pulp::x86::{V3, V4};
-    use pulp::{NullaryFnOnce, cast};
+    use super::{Block, HALF, Instructions, Work};
+    use core::arch::x86_64::{
+        __m256d, __m512d, _mm256_permute2f128_pd, _mm256_setzero_pd, _mm256_unpackhi_pd,
+        _mm256_unpacklo_pd, _mm512_shuffle_f64x2, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
+    };
+    use fearless_simd::prelude::*;
+    use fearless_simd::{Avx2, Avx512, kernel};
+    use safe_unaligned_simd::x86_64::{
+        _mm256_loadu_pd, _mm256_storeu_pd, _mm512_loadu_pd, _mm512_storeu_pd,
+    };
 
-    /// Work as pulp takes it.
-    struct Inside<W>(W);
-
-    impl<W: Work> NullaryFnOnce for Inside<W> {
-        type Output = W::Output;
-
-        // Inlined, as all that it calls, into a function that may use the instructions of the level.
-        #[inline(always)]
-        fn call(self) -> W::Output {
-            self.0.run()
-        }
-    }
-
-    impl Instructions for V3 {
+    impl Instructions for Avx2 {
         fn run<W: Work>(self, work: W) -> W::Output {
-            self.vectorize(Inside(work))
+            // Inlined, as all that it calls, into a function that may use the instructions of the level.
+            self.vectorize(
+                #[inline(always)]
+                || work.run(),
+            )
         }
 
         #[inline(always)]
         fn transpose(self, rows: Block) -> Block {
-            let rows: [[__m256d; 2]; 8] = cast(rows);
             let mut columns = rows;
-            for side in 0..2 {
-                for top in 0..2 {
-                    let quarter = quarters(
-                        self,
-                        [
-                            rows[4 * top][side],
-                            rows[4 * top + 1][side],
-                            rows[4 * top + 2][side],
-                            rows[4 * top + 3][side],
-                        ],
-                    );
-                    columns[4 * side][top] = quarter[0];
-                    columns[4 * side + 1][top] = quarter[1];
-                    columns[4 * side + 2][top] = quarter[2];
-                    columns[4 * side + 3][top] = quarter[3];
+            by_quarters(self, &rows, &mut columns);
+            columns
+        }
+    }
+
+    kernel!(
+        /// Eight by eight, in quarters.
+        #[inline(always)]
+        fn by_quarters(level: Avx2, rows: &Block, columns: &mut Block) {
+            quarter(level, rows, columns, 0, 0);
+            quarter(level, rows, columns, 0, HALF);
+            quarter(level, rows, columns, HALF, 0);
+            quarter(level, rows, columns, HALF, HALF);
+        }
+    );
+
+    kernel!(
+        /// Four by four: rows from `top`, their entries from `left`.
+        #[inline(always)]
+        fn quarter(level: Avx2, rows: &Block, columns: &mut Block, top: usize, left: usize) {
+            let _ = level;
+            let entries = |row: usize| -> __m256d {
+                match rows[top + row][left..].first_chunk() {
+                    Some(entries) => _mm256_loadu_pd(entries),
+                    None => _mm256_setzero_pd(),
+                }
+            };
+            let (a, b, c, d) = (entries(0), entries(1), entries(2), entries(3));
+            let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+            let (even_below, odd_below) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+            let turned = [
+                _mm256_permute2f128_pd::<0x20>(even, even_below),
+                _mm256_permute2f128_pd::<0x20>(odd, odd_below),
+                _mm256_permute2f128_pd::<0x31>(even, even_below),
+                _mm256_permute2f128_pd::<0x31>(odd, odd_below),
+            ];
+            for (column, numbers) in columns[left..].iter_mut().zip(turned) {
+                if let Some(place) = column[top..].first_chunk_mut() {
+                    _mm256_storeu_pd(place, numbers);
                 }
             }
-            cast(columns)
         }
-    }
+    );
 
-    /// Four by four.
-    #[inline(always)]
-    fn quarters(simd: V3, [a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
-        let avx = simd.avx;
-        let (even, odd) = (avx._mm256_unpacklo_pd(a, b), avx._mm256_unpackhi_pd(a, b));
-        let (even_below, odd_below) = (avx._mm256_unpacklo_pd(c, d), avx._mm256_unpackhi_pd(c, d));
-        [
-            avx._mm256_permute2f128_pd::<0x20>(even, even_below),
-            avx._mm256_permute2f128_pd::<0x20>(odd, odd_below),
-            avx._mm256_permute2f128_pd::<0x31>(even, even_below),
-            avx._mm256_permute2f128_pd::<0x31>(odd, odd_below),
-        ]
-    }
-
-    impl Instructions for V4 {
+    impl Instructions for Avx512 {
         fn run<W: Work>(self, work: W) -> W::Output {
-            self.vectorize(Inside(work))
+            self.vectorize(
+                #[inline(always)]
+                || work.run(),
+            )
         }
 
         #[inline(always)]
         fn transpose(self, rows: Block) -> Block {
-            let [a, b, c, d, e, f, g, h]: [__m512d; 8] = cast(rows);
-            let avx = self.avx512f;
-            // Pairs of rows: entries of even columns, and of odd ones.
-            let even = [
-                avx._mm512_unpacklo_pd(a, b),
-                avx._mm512_unpacklo_pd(c, d),
-                avx._mm512_unpacklo_pd(e, f),
-                avx._mm512_unpacklo_pd(g, h),
-            ];
-            let odd = [
-                avx._mm512_unpackhi_pd(a, b),
-                avx._mm512_unpackhi_pd(c, d),
-                avx._mm512_unpackhi_pd(e, f),
-                avx._mm512_unpackhi_pd(g, h),
-            ];
-            let [[c0, c2, c4, c6], [c1, c3, c5, c7]] = [pairs(self, even), pairs(self, odd)];
-            cast([c0, c1, c2, c3, c4, c5, c6, c7])
+            let mut columns = rows;
+            by_pairs(self, &rows, &mut columns);
+            columns
         }
     }
 
-    /// Four by four pairs of numbers.
-    #[inline(always)]
-    fn pairs(simd: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
-        // The first and third pair of both, or the second and fourth.
-        const FIRST: i32 = 0x88;
-        const SECOND: i32 = 0xdd;
-        let avx = simd.avx512f;
-        let (above, above_later) = (
-            avx._mm512_shuffle_f64x2::<FIRST>(a, b),
-            avx._mm512_shuffle_f64x2::<SECOND>(a, b),
-        );
-        let (below, below_later) = (
-            avx._mm512_shuffle_f64x2::<FIRST>(c, d),
-            avx._mm512_shuffle_f64x2::<SECOND>(c, d),
-        );
-        [
-            avx._mm512_shuffle_f64x2::<FIRST>(above, below),
-            avx._mm512_shuffle_f64x2::<FIRST>(above_later, below_later),
-            avx._mm512_shuffle_f64x2::<SECOND>(above, below),
-            avx._mm512_shuffle_f64x2::<SECOND>(above_later, below_later),
-        ]
-    }
+    kernel!(
+        /// Eight by eight.
+        #[inline(always)]
+        fn by_pairs(level: Avx512, rows: &Block, columns: &mut Block) {
+            let [a, b, c, d, e, f, g, h] = [
+                _mm512_loadu_pd(&rows[0]),
+                _mm512_loadu_pd(&rows[1]),
+                _mm512_loadu_pd(&rows[2]),
+                _mm512_loadu_pd(&rows[3]),
+                _mm512_loadu_pd(&rows[4]),
+                _mm512_loadu_pd(&rows[5]),
+                _mm512_loadu_pd(&rows[6]),
+                _mm512_loadu_pd(&rows[7]),
+            ];
+            // Pairs of rows: entries of even columns, and of odd ones.
+            let [c0, c2, c4, c6] = pairs(
+                level,
+                _mm512_unpacklo_pd(a, b),
+                _mm512_unpacklo_pd(c, d),
+                _mm512_unpacklo_pd(e, f),
+                _mm512_unpacklo_pd(g, h),
+            );
+            let [c1, c3, c5, c7] = pairs(
+                level,
+                _mm512_unpackhi_pd(a, b),
+                _mm512_unpackhi_pd(c, d),
+                _mm512_unpackhi_pd(e, f),
+                _mm512_unpackhi_pd(g, h),
+            );
+            let turned = [c0, c1, c2, c3, c4, c5, c6, c7];
+            for (column, numbers) in columns.iter_mut().zip(turned) {
+                _mm512_storeu_pd(column, numbers);
+            }
+        }
+    );
+
+    /// The first and third pair of both, or the second and fourth.
+    const FIRST: i32 = 0x88;
+    const SECOND: i32 = 0xdd;
+
+    kernel!(
+        /// Four by four pairs of numbers.
+        #[inline(always)]
+        fn pairs(level: Avx512, a: __m512d, b: __m512d, c: __m512d, d: __m512d) -> [__m512d; 4] {
+            let _ = level;
+            let (above, above_later) = (
+                _mm512_shuffle_f64x2::<FIRST>(a, b),
+                _mm512_shuffle_f64x2::<SECOND>(a, b),
+            );
+            let (below, below_later) = (
+                _mm512_shuffle_f64x2::<FIRST>(c, d),
+                _mm512_shuffle_f64x2::<SECOND>(c, d),
+            );
+            [
+                _mm512_shuffle_f64x2::<FIRST>(above, below),
+                _mm512_shuffle_f64x2::<FIRST>(above_later, below_later),
+                _mm512_shuffle_f64x2::<SECOND>(above, below),
+                _mm512_shuffle_f64x2::<SECOND>(above_later, below_later),
+            ]
+        }
+    );
 }

@@ -13,6 +13,8 @@ use crate::unrolled::unrolled;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use core::slice;
+#[cfg(all(feature = "levels", target_arch = "x86_64"))]
+use fearless_simd::Level as Detected;
 
 /// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
 pub const LANES: usize = 8;
@@ -34,7 +36,7 @@ pub enum Level {
     Baseline,
     /// x86-64 with AVX2 and FMA: four doubles a register.
     Avx2,
-    /// x86-64 with AVX-512: eight doubles a register.
+    /// x86-64 with the AVX-512 of Ice Lake and later: eight doubles a register.
     Avx512,
 }
 
@@ -47,9 +49,9 @@ impl Level {
         match self {
             Self::Baseline => true,
             #[cfg(all(feature = "levels", target_arch = "x86_64"))]
-            Self::Avx2 => pulp::x86::V3::try_new().is_some(),
+            Self::Avx2 => Detected::new().as_avx2().is_some(),
             #[cfg(all(feature = "levels", target_arch = "x86_64"))]
-            Self::Avx512 => pulp::x86::V4::try_new().is_some(),
+            Self::Avx512 => Detected::new().as_avx512().is_some(),
             #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
             _ => false,
         }
@@ -78,12 +80,12 @@ where
     match level {
         Level::Baseline => {}
         Level::Avx2 => {
-            if let Some(simd) = pulp::x86::V3::try_new() {
+            if let Some(simd) = Detected::new().as_avx2() {
                 return at::<Loop<F, true>, Q, V, U>(simd, states);
             }
         }
         Level::Avx512 => {
-            if let Some(simd) = pulp::x86::V4::try_new() {
+            if let Some(simd) = Detected::new().as_avx512() {
                 return at::<Loop<F, true>, Q, V, U>(simd, states);
             }
         }

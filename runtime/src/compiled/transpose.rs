@@ -139,8 +139,9 @@ mod tests {
         check_all(Plain);
         #[cfg(all(feature = "levels", target_arch = "x86_64"))]
         {
-            pulp::x86::V3::try_new().into_iter().for_each(check_all);
-            pulp::x86::V4::try_new().into_iter().for_each(check_all);
+            let level = fearless_simd::Level::new();
+            level.as_avx2().into_iter().for_each(check_all);
+            level.as_avx512().into_iter().for_each(check_all);
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::dynamics::{
     Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
     Recursive,
 };
-use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
+use crate::mechanism::{Mechanism, Space, StateError};
+use crate::scalar::all_finite;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -236,15 +237,11 @@ impl Compiled {
         out: &mut InverseDerivatives,
     ) -> Result<(), DynamicsError> {
         if let Some(inverse) = self.equations.inverse_dynamics_derivatives {
-            let given = [
-                ("speeds", speeds.len()),
-                ("accelerations", accelerations.len()),
-            ];
-            self.check_state(q, given)?;
+            self.check(q, [("speeds", speeds), ("accelerations", accelerations)])?;
             let count = speeds.len() * (self.equations.freedoms + speeds.len());
             let rows = &mut self.rows[..count];
             inverse(q, speeds, accelerations, rows);
-            if rows.iter().all(|entry| entry.is_finite()) {
+            if all_finite(rows) {
                 return out.read(rows);
             }
         }
@@ -252,15 +249,28 @@ impl Compiled {
             .inverse_dynamics_derivatives(q, speeds, accelerations, out)
     }
 
-    fn check_state(&self, q: &[f64], speeds: [(&'static str, usize); 2]) -> Result<(), StateError> {
-        let Equations {
-            configuration,
-            speeds: count,
-            ..
-        } = *self.equations;
-        check_size(WHOLE, "configuration", configuration, q.len())?;
-        let mut speeds = speeds.into_iter();
-        speeds.try_for_each(|(quantity, found)| check_size(WHOLE, quantity, count, found))
+    /// Whether `q` and vectors with one entry a speed have their sizes, and are finite.
+    fn check<const N: usize>(
+        &self,
+        q: &[f64],
+        vectors: [(&'static str, &[f64]); N],
+    ) -> Result<(), StateError> {
+        let mechanism = self.tree.mechanism();
+        mechanism.check_vector("configuration", Space::Configuration, q)?;
+        let mut vectors = vectors.into_iter();
+        vectors.try_for_each(|(quantity, own)| mechanism.check_vector(quantity, Space::Speeds, own))
+    }
+
+    /// Whether `room` for results has one entry a speed.
+    fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
+        let mechanism = self.tree.mechanism();
+        mechanism.check_room(quantity, Space::Speeds, room)
+    }
+
+    /// Whether τ has one entry a freedom, and is finite.
+    fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
+        let mechanism = self.tree.mechanism();
+        mechanism.check_vector("efforts", Space::Freedoms, efforts)
     }
 
     /// `p̄̇ += S̄ᵀτ`: they are affine in τ, which depends on the v̄ that come with them.
@@ -274,24 +284,12 @@ impl Compiled {
                 rates[ranges.speeds.clone()].copy_from_slice(&tau[..ranges.speeds.len()]);
                 continue;
             }
-            body.joint()
+            body.kernels()
                 .reduce_efforts(body.configuration(q), tau, reduced);
             for (rate, effort) in rates[ranges.speeds.clone()].iter_mut().zip(&*reduced) {
                 *rate += effort;
             }
         }
-    }
-
-    fn check_inputs(&self, q: &[f64], speeds: &[f64], efforts: &[f64]) -> Result<(), StateError> {
-        let Equations {
-            configuration,
-            freedoms,
-            speeds: count,
-            ..
-        } = *self.equations;
-        check_size(WHOLE, "configuration", configuration, q.len())?;
-        check_size(WHOLE, "speeds", count, speeds.len())?;
-        check_size(WHOLE, "efforts", freedoms, efforts.len())
     }
 }
 
@@ -314,10 +312,11 @@ impl Dynamics for Compiled {
         let Some(forward) = self.equations.forward_dynamics else {
             return self.tree.accelerations(q, speeds, efforts, rates);
         };
-        self.check_inputs(q, speeds, efforts)?;
-        check_size(WHOLE, "rates", self.equations.speeds, rates.len())?;
+        self.check(q, [("speeds", speeds)])?;
+        self.check_efforts(efforts)?;
+        self.check_room("rates", rates)?;
         forward(q, speeds, efforts, rates);
-        if rates.iter().all(|rate| rate.is_finite()) {
+        if all_finite(rates) {
             return Ok(());
         }
         // The tree says which joint it is, and why.
@@ -333,9 +332,13 @@ impl Dynamics for Compiled {
         let Some(map) = self.equations.momenta else {
             return self.tree.momenta(q, speeds, momenta);
         };
-        self.check_state(q, [("speeds", speeds.len()), ("momenta", momenta.len())])?;
+        self.check(q, [("speeds", speeds)])?;
+        self.check_room("momenta", momenta)?;
         map(q, speeds, momenta);
-        Ok(())
+        if all_finite(momenta) {
+            return Ok(());
+        }
+        self.tree.momenta(q, speeds, momenta)
     }
 
     fn speeds(
@@ -347,9 +350,10 @@ impl Dynamics for Compiled {
         let Some(map) = self.equations.speeds_from_momenta else {
             return self.tree.speeds(q, momenta, speeds);
         };
-        self.check_state(q, [("momenta", momenta.len()), ("speeds", speeds.len())])?;
+        self.check(q, [("momenta", momenta)])?;
+        self.check_room("speeds", speeds)?;
         map(q, momenta, speeds);
-        if speeds.iter().all(|speed| speed.is_finite()) {
+        if all_finite(speeds) {
             return Ok(());
         }
         self.tree.speeds(q, momenta, speeds)
@@ -366,15 +370,18 @@ impl Dynamics for Compiled {
         let Some(momentum_rates) = self.equations.momentum_rates else {
             return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
         };
-        self.check_state(q, [("momenta", momenta.len()), ("speeds", speeds.len())])?;
-        self.check_state(q, [("rates", rates.len()), ("momenta", momenta.len())])?;
+        self.check(q, [("momenta", momenta)])?;
+        self.check_room("speeds", speeds)?;
+        self.check_room("rates", rates)?;
         let [inputs, none] = &mut self.inputs;
         momentum_rates(q, momenta, none, speeds, rates);
-        if !speeds.iter().chain(&*rates).all(|rate| rate.is_finite()) {
+        if !(all_finite(speeds) && all_finite(rates)) {
             return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
         }
         inputs.fill(0.0);
         efforts(speeds, inputs);
+        self.check_efforts(&self.inputs[0])?;
+        let [inputs, _] = &self.inputs;
         match self.tree.mechanism().constraints() {
             [] => self.add_inputs(q, rates),
             // What inputs make of dependent speeds falls to others: the module knows how.
@@ -387,7 +394,7 @@ impl Dynamics for Compiled {
         let Some(hamiltonian) = self.equations.hamiltonian else {
             return self.tree.hamiltonian(q, momenta);
         };
-        self.check_state(q, [("momenta", momenta.len()); 2])?;
+        self.check(q, [("momenta", momenta)])?;
         let energy = hamiltonian(q, momenta);
         match energy.is_finite() {
             true => Ok(energy),
@@ -403,9 +410,10 @@ impl Dynamics for Compiled {
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
         if let Some(forward) = self.equations.forward_dynamics_derivatives {
-            self.check_inputs(q, speeds, efforts)?;
+            self.check(q, [("speeds", speeds)])?;
+            self.check_efforts(efforts)?;
             forward(q, speeds, efforts, &mut self.rows);
-            if self.rows.iter().all(|entry| entry.is_finite()) {
+            if all_finite(&self.rows) {
                 return out.read(&self.rows);
             }
         }

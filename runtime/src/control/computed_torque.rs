@@ -1,7 +1,7 @@
 //! Computed torque: inverse dynamics at the accelerations of a reference, corrected by the error.
 
 use super::error::{positive, require};
-use super::state::{check_sizes, deviation, largest};
+use super::state::{check_state, deviation, largest, store_measures};
 use super::{ControlError, Controller, DEVIATIONS, Measure, Reference};
 use crate::dynamics::Recursive;
 use alloc::sync::Arc;
@@ -99,7 +99,7 @@ impl Controller for ComputedTorque {
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(self.reference.mechanism(), q, speeds, efforts)?;
+        check_state(self.reference.mechanism(), q, speeds, efforts)?;
         self.compare(time, q)?;
         self.correct(time, q, speeds);
         // Where all joints are holonomic, `S̄ᵀτ` is τ.
@@ -119,7 +119,7 @@ impl Controller for ComputedTorque {
         speeds: &[f64],
         values: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(self.reference.mechanism(), q, speeds, &self.error)?;
+        check_state(self.reference.mechanism(), q, speeds, &self.error)?;
         self.compare(time, q)?;
         let accelerations = &mut self.accelerations;
         for ((slot, wanted), speed) in accelerations
@@ -129,7 +129,7 @@ impl Controller for ComputedTorque {
         {
             *slot = speed - wanted;
         }
-        values.copy_from_slice(&[largest(&self.error), largest(&self.accelerations)]);
-        Ok(())
+        let found = [largest(&self.error), largest(&self.accelerations)];
+        store_measures(&found, values)
     }
 }

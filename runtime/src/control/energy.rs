@@ -1,11 +1,12 @@
 //! Energy shaping and damping injection through the ports of the Hamiltonian form.
 
 use super::error::require;
-use super::state::check_sizes;
+use super::state::{check_state, store_measures};
 use super::{ControlError, Controller, Measure};
 use crate::dynamics::{Dynamics, Recursive};
 use crate::elements::{Action, Element, JointSpring, MotionList, RotationSpring, View};
 use crate::mechanism::Mechanism;
+use alloc::collections::BTreeSet;
 use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -75,8 +76,9 @@ impl EnergyShaping {
         pump: Pump,
     ) -> Result<Self, ControlError> {
         mechanism.check_configuration(goal)?;
-        for (place, port) in ports.iter().enumerate() {
-            if ports[..place].iter().any(|other| other.body == port.body) {
+        let mut seen = BTreeSet::new();
+        for port in &ports {
+            if !seen.insert(port.body) {
                 return Err(ControlError::Joint {
                     joint: mechanism.body(port.body)?.joint_name().into(),
                     reason: "has two ports: the limit of one would cut off what the other does",
@@ -214,7 +216,7 @@ impl Controller for EnergyShaping {
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(&self.mechanism, q, speeds, efforts)?;
+        check_state(&self.mechanism, q, speeds, efforts)?;
         let surplus = match self.pump.gain {
             0.0 => 0.0,
             gain => gain * (self.energy(q, speeds)? - self.level),
@@ -251,8 +253,8 @@ impl Controller for EnergyShaping {
         speeds: &[f64],
         values: &mut [f64],
     ) -> Result<(), ControlError> {
-        values.copy_from_slice(&[self.energy(q, speeds)? - self.level]);
-        Ok(())
+        let found = [self.energy(q, speeds)? - self.level];
+        store_measures(&found, values)
     }
 }
 

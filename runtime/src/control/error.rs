@@ -5,13 +5,14 @@ use crate::dynamics::DynamicsError;
 use crate::elements::ElementError;
 use crate::integrate::StepFailure;
 use crate::mechanism::StateError;
+use crate::shown::Number;
 use alloc::string::String;
 
 /// Why a controller cannot be made, or cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ControlError {
     /// A number out of range.
-    #[error("{quantity} is {value}: it must be {requirement}")]
+    #[error("{quantity} is {value}: it must be {requirement}", value = Number(*.value))]
     Value {
         /// What it is.
         quantity: &'static str,
@@ -89,7 +90,7 @@ pub enum ControlError {
     )]
     NotStabilizable,
     /// The commanded speeds do not answer to the efforts.
-    #[error("at {time} s: efforts of joint `{joint}` do not determine its accelerations")]
+    #[error("at {time} s: efforts of joint `{joint}` do not determine its accelerations", time = Number(*.time))]
     Unresponsive {
         /// The joint.
         joint: String,
@@ -98,8 +99,7 @@ pub enum ControlError {
     },
     /// A path on which the point stands still has no direction.
     #[error(
-        "at {time} s the path has the speed {speed:e} m/s, and so no direction: it must be at least {limit:e} m/s"
-    )]
+        "at {time} s the path has the speed {speed:e} m/s, and so no direction: it must be at least {limit:e} m/s", time = Number(*.time))]
     PathStands {
         /// When, s.
         time: f64,
@@ -111,8 +111,7 @@ pub enum ControlError {
     /// Steps of one period are too long to foresee a fast motion.
     #[error(
         "the period of {period} s times the rate of {rate:.3e} 1/s of the fastest motion about the goal, most of all of joint `{joint}`, is {:.3e}, and steps of order 4, which foresee it, are stable up to {limit}: make the period at most {:.1e} s, or the springs and dampers that it is due to weaker",
-        period * rate, limit / rate
-    )]
+        period * rate, limit / rate, period = Number(*.period), limit = Number(*.limit))]
     PeriodTooLong {
         /// The joint that moves fastest in it.
         joint: String,

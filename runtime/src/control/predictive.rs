@@ -7,7 +7,7 @@ use super::error::{positive, require, size};
 use super::reach::Time;
 use super::regulator::{Equilibrium, Weights};
 use super::riccati::{self, Optimum, Weighting};
-use super::state::check_sizes;
+use super::state::check_state;
 use super::{ControlError, Controller, DEVIATIONS, Measure};
 use crate::integrate::{Form, LinearStep, Spectrum, Tableau};
 use crate::mechanism::Mechanism;
@@ -18,6 +18,9 @@ use program::Program;
 
 /// Programs in the first period at most, which has no plan to go on from.
 const FIRST_PROGRAMS: usize = 30;
+
+/// The most inputs of a plan: its matrix of 4096² numbers takes 128 MiB.
+const MOST_INPUTS: usize = 4096;
 
 /// How often a change that makes the plan worse is halved: a program sees motions to first order.
 const MOST_HALVINGS: i32 = 8;
@@ -87,8 +90,14 @@ impl PredictiveRegulator {
         limits: &[f64],
     ) -> Result<Self, ControlError> {
         positive("period", period)?;
-        require("horizon", horizon as f64, horizon > 0, "at least 1")?;
         size("limits", equilibrium.inputs().len(), limits.len())?;
+        let allowed = 1..=MOST_INPUTS / limits.len().max(1);
+        require(
+            "horizon",
+            horizon as f64,
+            allowed.contains(&horizon),
+            "at least 1, and times the inputs at most 4096",
+        )?;
         let rest = equilibrium
             .inputs()
             .iter()
@@ -381,7 +390,7 @@ impl Controller for PredictiveRegulator {
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(self.equilibrium.mechanism(), q, speeds, efforts)?;
+        check_state(self.equilibrium.mechanism(), q, speeds, efforts)?;
         let mut cost = self.begin(q, speeds)?;
         let programs = match core::mem::replace(&mut self.begun, true) {
             true => 1,

@@ -5,7 +5,7 @@ use super::error::{require, size};
 use super::state::{check_free, is_holonomic};
 use crate::elements::Law;
 use crate::integrate::Tableau;
-use crate::mechanism::{Body, Mechanism};
+use crate::mechanism::{Body, Mechanism, Space};
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -111,10 +111,11 @@ impl Reference {
     /// Q_ref at `time` (s) into `q`. Before 0 and after the end the laws go on, and the error grows with the distance.
     ///
     /// # Errors
-    /// When `q` has the wrong size.
+    /// When `q` has the wrong size; a time that is not finite, or so far from the reference that the configuration is not.
     pub fn configuration(&mut self, time: f64, q: &mut [f64]) -> Result<(), ControlError> {
         let length = self.mechanism.layout().configuration;
         size("configuration", length, q.len())?;
+        require("time", time, true, "finite")?;
         let last = self.knots.len() / length.max(1);
         // Of a negative or NaN time the cast makes 0.
         let knot = ((time / self.spacing) as usize).min(last.saturating_sub(1));
@@ -126,7 +127,9 @@ impl Reference {
         };
         self.carrier
             .carry(&self.mechanism, &self.laws, span, from, q);
-        Ok(())
+        Ok(self
+            .mechanism
+            .check_vector("configuration", Space::Configuration, q)?)
     }
 
     /// v_ref at `time` (s), one entry a speed.

@@ -2,7 +2,7 @@
 
 use super::error::{require, size};
 use super::riccati::{self, Optimum, Weighting};
-use super::state::{check_free, check_sizes, deviation, largest};
+use super::state::{check_free, check_state, deviation, largest, store_measures};
 use super::{ControlError, Controller, DEVIATIONS, Measure};
 use crate::dynamics::{Dynamics, ForwardDerivatives, Recursive};
 use crate::mechanism::{Body, Mechanism};
@@ -26,11 +26,14 @@ pub struct Equilibrium {
     efforts: Vec<f64>,
 }
 
+/// Freedoms that a regulated mechanism has at most: the work grows with their cube, and takes minutes there.
+const MOST_FREEDOMS: usize = 500;
+
 impl Equilibrium {
     /// The equilibrium `goal` of `mechanism` with inputs on the freedoms of the joints under the bodies `actuated`, in that order.
     ///
     /// # Errors
-    /// No joint that has inputs, a nonholonomic one among them, or one twice; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
+    /// More than 500 freedoms; no joint that has inputs, a nonholonomic one among them, or one twice; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
     /// that gravity or elements would move there and that no input holds.
     pub fn new(
         mechanism: Arc<Mechanism>,
@@ -38,6 +41,11 @@ impl Equilibrium {
         actuated: &[usize],
     ) -> Result<Self, ControlError> {
         check_free(&mechanism)?;
+        if mechanism.layout().freedoms > MOST_FREEDOMS {
+            return Err(ControlError::Mechanism(
+                "the mechanism has more than 500 freedoms: a regulator takes dense matrices of twice their number",
+            ));
+        }
         mechanism.check_configuration(&goal)?;
         let mut inputs = Vec::new();
         for &index in actuated {
@@ -120,11 +128,10 @@ impl Equilibrium {
         x: &mut [f64],
         values: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(&self.mechanism, q, speeds, &self.efforts)?;
+        check_state(&self.mechanism, q, speeds, &self.efforts)?;
         self.state(q, speeds, x)?;
         let (phi, rates) = x.split_at(self.goal_sizes().0);
-        values.copy_from_slice(&[largest(phi), largest(rates)]);
-        Ok(())
+        store_measures(&[largest(phi), largest(rates)], values)
     }
 
     /// `A` and `B` of `ẋ = A x + B u` about the goal: `ϕ̇ = S₀⁻¹ S̄ v̄`, and v̄̇ by the derivatives of forward dynamics.
@@ -348,7 +355,7 @@ impl Controller for Regulator {
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(&self.equilibrium.mechanism, q, speeds, efforts)?;
+        check_state(&self.equilibrium.mechanism, q, speeds, efforts)?;
         self.equilibrium.state(q, speeds, &mut self.x)?;
         efforts.copy_from_slice(&self.equilibrium.efforts);
         for (row, &freedom) in self.equilibrium.inputs.iter().enumerate() {

@@ -145,7 +145,7 @@ fn check(
     weighting: Weighting<'_>,
     time: Time,
 ) -> Result<(), ControlError> {
-    use super::error::size;
+    use super::error::{require, size};
     let (n, m) = (a.nrows(), b.ncols());
     size("a row of A", n, a.ncols())?;
     size("a column of B", n, b.nrows())?;
@@ -153,6 +153,21 @@ fn check(
     size("a column of Q", n, weighting.state.nrows())?;
     size("a row of R", m, weighting.input.ncols())?;
     size("a column of R", m, weighting.input.nrows())?;
+    if n == 0 || m == 0 {
+        return Err(ControlError::Mechanism(
+            "there is nothing to be regulated: a system has states and inputs",
+        ));
+    }
+    for (quantity, matrix) in [
+        ("an entry of A", a),
+        ("an entry of B", b),
+        ("an entry of Q", weighting.state),
+        ("an entry of R", weighting.input),
+    ] {
+        for &entry in matrix {
+            require(quantity, entry, true, "finite")?;
+        }
+    }
     solvable(a, b, weighting.state, time)
 }
 

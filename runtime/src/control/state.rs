@@ -2,7 +2,7 @@
 
 use super::ControlError;
 use super::error::size;
-use crate::mechanism::{Body, Mechanism, StateError};
+use crate::mechanism::{Body, Mechanism, Space, StateError};
 
 /// ϕ of all joints with `Φ(from, ϕ) = to`, into `phi` (one entry a freedom).
 pub(super) fn deviation(
@@ -35,17 +35,23 @@ pub(super) fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
         })
 }
 
-/// Whether `q`, v̄ and τ have the sizes of the mechanism.
-pub(super) fn check_sizes(
+/// Whether `q` and v̄ have the sizes of the mechanism and are finite, and the room for τ has its size.
+pub(super) fn check_state(
     mechanism: &Mechanism,
     q: &[f64],
     speeds: &[f64],
     efforts: &[f64],
 ) -> Result<(), ControlError> {
-    let layout = mechanism.layout();
-    size("configuration", layout.configuration, q.len())?;
-    size("speeds", layout.speeds, speeds.len())?;
-    size("efforts", layout.freedoms, efforts.len())
+    mechanism.check_vector("configuration", Space::Configuration, q)?;
+    mechanism.check_vector("speeds", Space::Speeds, speeds)?;
+    Ok(mechanism.check_room("efforts", Space::Freedoms, efforts)?)
+}
+
+/// Measures into `values`, one entry each.
+pub(super) fn store_measures(measured: &[f64], values: &mut [f64]) -> Result<(), ControlError> {
+    size("measures", measured.len(), values.len())?;
+    values.copy_from_slice(measured);
+    Ok(())
 }
 
 /// Whether v̄ is v at a joint.

@@ -1,6 +1,6 @@
 //! Why equations of motion cannot be evaluated.
 
-use crate::mechanism::{Mechanism, StateError};
+use crate::mechanism::{Mechanism, Space, StateError};
 use alloc::string::String;
 
 /// Why equations of motion cannot be evaluated.
@@ -90,17 +90,39 @@ pub enum DynamicsError {
     State(#[from] StateError),
 }
 
-/// The two sizes that a mass matrix of a mechanism can have.
-#[derive(Clone, Copy)]
-pub(super) enum Space {
-    /// M, one row a freedom.
-    Freedoms,
-    /// M̄, one row a speed.
-    Speeds,
+/// What a pivot is of.
+const CARRIED: &str = "inertia that moves with a speed";
+
+impl DynamicsError {
+    /// Whether something that is not finite made it.
+    fn is_of_no_value(&self) -> bool {
+        match self {
+            Self::State(StateError::NoValue { .. } | StateError::NotFinite { .. }) => true,
+            Self::Coupling { ratio, .. } => !ratio.is_finite(),
+            Self::ConstraintViolated { value, .. } => !value.is_finite(),
+            _ => false,
+        }
+    }
 }
 
 impl Mechanism {
-    /// The joint and the freedom or speed behind a row of a mass matrix whose pivot is not above its limit.
+    /// The error itself; where something that is not finite made it, the first joint with a kernel that is not at (q, v̄).
+    pub(crate) fn first_cause(
+        &self,
+        error: DynamicsError,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> DynamicsError {
+        if !error.is_of_no_value() {
+            return error;
+        }
+        match self.check_vector("configuration", Space::Configuration, q) {
+            Ok(()) => self.no_value(q, speeds).map_or(error, DynamicsError::State),
+            Err(cause) => cause.into(),
+        }
+    }
+
+    /// The joint and the freedom or speed behind a row of a mass matrix whose pivot is not above its limit: singular, or not finite.
     pub(super) fn singular_mass(
         &self,
         space: Space,
@@ -109,16 +131,19 @@ impl Mechanism {
         limit: f64,
     ) -> DynamicsError {
         let owner = self.bodies().iter().find_map(|body| {
-            let (range, names) = match space {
-                Space::Freedoms => (&body.ranges().freedoms, body.joint().freedoms()),
-                Space::Speeds => (&body.ranges().speeds, body.joint().speeds()),
-            };
+            let (range, names) = (space.range(body.ranges()), space.names(body.joint()));
             let name = range
                 .contains(&row)
                 .then(|| names.get(row - range.start))??;
             Some((body.joint_name(), *name))
         });
         let (joint, speed) = owner.unwrap_or(("", ""));
+        if !pivot.is_finite() || !limit.is_finite() {
+            return DynamicsError::State(StateError::NoValue {
+                joint: joint.into(),
+                what: CARRIED,
+            });
+        }
         DynamicsError::SingularMass {
             joint: joint.into(),
             speed,

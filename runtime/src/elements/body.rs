@@ -178,8 +178,10 @@ impl Element for BodyWrench {
     fn power(&self, view: &View<'_>) -> f64 {
         let (force, moment) = self.in_the_world(view);
         let (_, velocity) = view.point(Some(self.body), &self.point);
-        let (turn, _) = split(view.motions.twist(self.body));
-        dot(&force, &velocity) + dot(&moment, &turn)
+        let turn = view.motions.twist(self.body).map(|twist| split(twist).0);
+        turn.map_or(f64::NAN, |turn| {
+            dot(&force, &velocity) + dot(&moment, &turn)
+        })
     }
 
     fn slope(&self) -> Option<&dyn Slope> {

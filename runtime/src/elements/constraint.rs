@@ -31,14 +31,15 @@ impl PointConstraint {
         body(&self.name, mechanism, self.body)?;
         values(&self.name, "point", self.point.as_slice(), 3, true)?;
         values(&self.name, "direction", self.direction.as_slice(), 3, true)?;
-        if self.direction.norm() > 0.0 {
+        let length = self.direction.norm();
+        if length > 0.0 && length.is_finite() {
             return Ok(());
         }
         Err(ElementError::Value {
             element: self.name.clone(),
             quantity: "length of the direction",
-            value: 0.0,
-            requirement: "positive",
+            value: length,
+            requirement: "positive and finite",
         })
     }
 }

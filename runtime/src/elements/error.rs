@@ -1,6 +1,7 @@
 //! Why an element does not fit its mechanism.
 
 use crate::mechanism::Mechanism;
+use crate::shown::Number;
 use alloc::string::String;
 
 /// Why an element does not fit its mechanism.
@@ -17,7 +18,7 @@ pub enum ElementError {
         count: usize,
     },
     /// A value out of range.
-    #[error("{element}: {quantity} is {value}, it must be {requirement}")]
+    #[error("{element}: {quantity} is {value}, it must be {requirement}", value = Number(*.value))]
     Value {
         /// The element.
         element: String,

@@ -33,10 +33,11 @@ impl Element for JointDamper {
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
         let (mut velocity, mut effort) = ([0.0; 6], [0.0; 6]);
         let velocity = view.joint_velocity(self.body, &mut velocity);
+        let effort = &mut effort[..velocity.len()];
         for ((effort, c), v) in effort.iter_mut().zip(&self.coefficients).zip(velocity) {
             *effort = -c * v;
         }
-        action.add_effort(view, self.body, &effort);
+        action.add_effort(view, self.body, effort);
     }
 
     fn energy(&self, _view: &View<'_>) -> f64 {
@@ -59,8 +60,9 @@ impl Slope for JointDamper {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
         let size = self.coefficients.len();
         let mut by_velocity = [0.0; 36];
-        for (i, c) in self.coefficients.iter().enumerate() {
-            by_velocity[i * size + i] = -c;
+        let diagonal = by_velocity.iter_mut().step_by(size + 1);
+        for (entry, c) in diagonal.zip(&self.coefficients) {
+            *entry = -c;
         }
         slopes.add_effort(view, self.body, &[0.0; 36], &by_velocity);
     }

@@ -9,7 +9,7 @@ use crate::dynamics::Sensitivity;
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{add_cross, cross, dot};
 use crate::spatial::split;
-use crate::steps::Variation;
+use crate::steps::{Placement, Variation};
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -21,7 +21,7 @@ pub trait Slope {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>);
 }
 
-/// Where elements put how what they exert changes.
+/// Where elements put how what they exert changes. What is said of a body that is not there makes all of it NaN.
 #[derive(Debug)]
 pub struct Slopes<'a> {
     /// X̄, one column a speed.
@@ -163,6 +163,25 @@ struct Place {
 }
 
 impl Slopes<'_> {
+    /// What was said makes no sense: NaN, which whoever takes derivatives finds.
+    fn spoil(&mut self) {
+        match &mut self.into {
+            Target::Joints(slopes) => {
+                for own in &mut slopes.joints {
+                    own.by_local.fill(f64::NAN);
+                    own.by_speeds.fill(f64::NAN);
+                }
+            }
+            Target::Whole {
+                by_local,
+                by_speeds,
+            } => {
+                by_local.entries_mut().fill(f64::NAN);
+                by_speeds.entries_mut().fill(f64::NAN);
+            }
+        }
+    }
+
     /// Efforts of the joint under a body, with `∂τ/∂ϕ` and `∂τ/∂v`: K×K each, column by column.
     pub fn add_effort(
         &mut self,
@@ -171,14 +190,20 @@ impl Slopes<'_> {
         by_local: &[f64],
         by_velocity: &[f64],
     ) {
-        let ranges = view.mechanism.bodies()[body].ranges();
-        let (freedoms, speeds) = (&ranges.freedoms, &ranges.speeds);
-        let (size, q) = (freedoms.len(), view.joint_configuration(body));
+        let (Some(own), Some((joint, q))) = (view.mechanism.bodies().get(body), view.kernels(body))
+        else {
+            return self.spoil();
+        };
+        let (freedoms, speeds) = (&own.ranges().freedoms, &own.ranges().speeds);
+        let size = freedoms.len();
+        if by_local.len() < size * size || by_velocity.len() < size * size {
+            return self.spoil();
+        }
         let (mut basis, mut turned) = ([0.0; 36], [0.0; 216]);
         let basis = &mut basis[..size * speeds.len()];
         let turned = &mut turned[..size * basis.len()];
-        view.joint(body).speed_basis(q, basis);
-        view.joint(body).speed_basis_gradient(q, turned);
+        joint.speed_basis(q, basis);
+        joint.speed_basis_gradient(q, turned);
         let v = &view.speeds[speeds.clone()];
         for (k, freedom) in freedoms.clone().enumerate() {
             let slice = &turned[k * basis.len()..(k + 1) * basis.len()];
@@ -197,6 +222,9 @@ impl Slopes<'_> {
 
     /// A moment on a body that keeps its direction in the world, N·m.
     pub fn add_moment(&mut self, view: &View<'_>, body: usize, moment: &Vector3<f64>) {
+        if body >= view.mechanism.bodies().len() {
+            return self.spoil();
+        }
         for index in path(view.mechanism, body) {
             for freedom in view.mechanism.bodies()[index].ranges().freedoms.clone() {
                 let (turn, _) = split(&self.variations[freedom].local);
@@ -210,14 +238,23 @@ impl Slopes<'_> {
 
     /// A force between two points.
     pub fn add_point_force(&mut self, view: &View<'_>, force: &PointForce) {
-        let places = force.ends.map(|end| end.map(|end| Place::new(view, end)));
+        let mut bodies = force.ends.iter().flatten().map(|(body, _)| *body);
+        if bodies.any(|body| body >= view.mechanism.bodies().len()) {
+            return self.spoil();
+        }
+        let places = force
+            .ends
+            .map(|end| end.and_then(|end| Place::new(view, end)));
         for (place, sign) in places.iter().zip(SIGNS) {
             let Some(place) = place else {
                 continue;
             };
             for index in path(view.mechanism, place.body) {
                 let ranges = view.mechanism.bodies()[index].ranges();
-                let arm = place.position - view.motions.placement(index).origin;
+                let Some(placement) = view.motions.placement(index) else {
+                    return self.spoil();
+                };
+                let arm = place.position - placement.origin;
                 for freedom in ranges.freedoms.clone() {
                     let Variation { local, drift, .. } = &self.variations[freedom];
                     let (turn, moved) = (split(local).0, at(local, &arm));
@@ -289,9 +326,11 @@ impl Slopes<'_> {
         power: impl Fn(&Vector6<f64>, &Vector3<f64>) -> f64,
     ) {
         for index in path(view.mechanism, body) {
-            let origin = view.motions.placement(index).origin;
+            let Some(Placement { origin, .. }) = view.motions.placement(index) else {
+                return self.spoil();
+            };
             for speed in view.mechanism.bodies()[index].ranges().speeds.clone() {
-                let entry = power(&self.columns[speed], &origin);
+                let entry = power(&self.columns[speed], origin);
                 self.add(speed, column, entry);
             }
         }
@@ -318,13 +357,13 @@ fn path(mechanism: &Mechanism, body: usize) -> impl Iterator<Item = usize> + '_ 
 }
 
 impl Place {
-    fn new(view: &View<'_>, (body, arm): End) -> Self {
-        let (turn, slide) = split(view.motions.twist(body));
-        Self {
+    fn new(view: &View<'_>, (body, arm): End) -> Option<Self> {
+        let (turn, slide) = split(view.motions.twist(body)?);
+        Some(Self {
             body,
-            position: view.motions.placement(body).origin + arm,
+            position: view.motions.placement(body)?.origin + arm,
             velocity: add_cross(&slide, &turn, &arm),
-        }
+        })
     }
 }
 

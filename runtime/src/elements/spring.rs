@@ -28,16 +28,15 @@ pub struct JointSpring {
 impl JointSpring {
     /// ϕ and Kϕ; NaN where ϕ cannot be found.
     fn stretch(&self, view: &View<'_>) -> ([f64; 6], [f64; 6]) {
-        let joint = view.joint(self.body);
+        let Some((joint, q)) = view.kernels(self.body) else {
+            return ([f64::NAN; 6], [f64::NAN; 6]);
+        };
         let size = joint.layout().freedoms;
         let (mut phi, mut load) = ([0.0; 6], [0.0; 6]);
         // Where it fails, ϕ is NaN, and so is what follows from it.
-        _ = joint.local(
-            &self.rest,
-            view.joint_configuration(self.body),
-            &mut phi[..size],
-        );
-        for (load, row) in load.iter_mut().zip(self.stiffness.chunks_exact(size)) {
+        _ = joint.local(&self.rest, q, &mut phi[..size]);
+        let rows = self.stiffness.chunks_exact(size.max(1));
+        for (load, row) in load.iter_mut().zip(rows) {
             *load = row.iter().zip(&phi).map(|(k, x)| k * x).sum();
         }
         (phi, load)
@@ -85,6 +84,9 @@ impl Element for JointSpring {
                 requirement,
             });
         }
+        if size == 0 {
+            return Ok(());
+        }
         let matrix = DMatrix::from_row_slice(size, size, &self.stiffness);
         let (most, least) = (matrix.amax(), matrix.symmetric_eigenvalues().min());
         // Rounding of a stiffness of less than full rank.
@@ -100,15 +102,16 @@ impl Element for JointSpring {
     }
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
-        let joint = view.joint(self.body);
-        let size = joint.layout().freedoms;
         let (phi, load) = self.stretch(view);
-        let q = view.joint_configuration(self.body);
+        let Some((joint, q)) = view.kernels(self.body) else {
+            return action.add_effort(view, self.body, &[]);
+        };
+        let size = joint.layout().freedoms;
         let mut inverse = [0.0; 36];
         let inverse = &mut inverse[..size * size];
         joint.velocity_map_inverse(q, inverse);
         let (mut effort, mut rate) = ([0.0; 6], [0.0; 6]);
-        for (effort, column) in effort.iter_mut().zip(inverse.chunks_exact(size)) {
+        for (effort, column) in effort.iter_mut().zip(inverse.chunks_exact(size.max(1))) {
             let rate = &mut rate[..size];
             joint.retract_differential_inverse(&self.rest, &phi[..size], column, rate);
             *effort = -rate.iter().zip(&load).map(|(r, l)| r * l).sum::<f64>();
@@ -132,10 +135,15 @@ impl Element for JointSpring {
 
 impl Slope for JointSpring {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
-        let (joint, q) = (view.joint(self.body), view.joint_configuration(self.body));
-        let mut by_local = [0.0; 36];
-        let own = &mut by_local[..self.stiffness.len()];
-        joint.spring_slope(q, &self.rest, &self.stiffness, own);
+        let Some((joint, q)) = view.kernels(self.body) else {
+            return slopes.add_effort(view, self.body, &[], &[]);
+        };
+        let (mut by_local, size) = ([f64::NAN; 36], joint.layout().freedoms);
+        let fits = self.rest.len() == q.len() && self.stiffness.len() == size * size;
+        if fits {
+            let own = &mut by_local[..size * size];
+            joint.spring_slope(q, &self.rest, &self.stiffness, own);
+        }
         slopes.add_effort(view, self.body, &by_local, &[0.0; 36]);
     }
 }
@@ -157,10 +165,11 @@ pub struct RotationSpring {
 
 impl RotationSpring {
     fn turn(&self, view: &View<'_>) -> Matrix3<f64> {
-        let pose = view
-            .joint(self.body)
-            .pose(view.joint_configuration(self.body));
-        product(&pose.rotation, &self.rest.transpose())
+        let known = view.kernels(self.body);
+        let rotation = known.map_or(Matrix3::repeat(f64::NAN), |(joint, q)| {
+            joint.pose(q).rotation
+        });
+        product(&rotation, &self.rest.transpose())
     }
 }
 
@@ -188,11 +197,13 @@ impl Element for RotationSpring {
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
         let moment: Vector3<f64> = vee(&self.turn(view)) * -self.stiffness;
-        let joint = view.joint(self.body);
+        let Some((joint, q)) = view.kernels(self.body) else {
+            return action.add_effort(view, self.body, &[]);
+        };
         let size = joint.layout().freedoms;
         let (mut map, mut effort) = ([0.0; 36], [0.0; 6]);
         let map = &mut map[..6 * size];
-        joint.twist_map(view.joint_configuration(self.body), map);
+        joint.twist_map(q, map);
         for (effort, column) in effort.iter_mut().zip(map.chunks_exact(6)) {
             *effort = column[..3].iter().zip(&moment).map(|(x, m)| x * m).sum();
         }
@@ -216,7 +227,9 @@ impl Element for RotationSpring {
 
 impl Slope for RotationSpring {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
-        let (joint, q) = (view.joint(self.body), view.joint_configuration(self.body));
+        let Some((joint, q)) = view.kernels(self.body) else {
+            return slopes.add_effort(view, self.body, &[], &[]);
+        };
         let size = joint.layout().freedoms;
         let mut by_local = [0.0; 36];
         let own = &mut by_local[..size * size];

@@ -1,20 +1,20 @@
 //! What an element sees of a mechanism, and how it acts on it.
 
-use crate::erased::AnyJoint;
-use crate::mechanism::Mechanism;
+use crate::erased::{AnyJoint, Kernels};
+use crate::mechanism::{Body, Mechanism};
 use crate::spatial::fused::{add_cross, apply, cross};
 use crate::spatial::{Pose, split};
 use crate::steps::Placement;
 use alloc::vec::Vec;
 use core::fmt::Debug;
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
-/// Placements and twists of the joints' child frames, by body; twists at those frames' origins, in world axes.
+/// Placements and twists of the joints' child frames, by body; twists at those frames' origins, in world axes. `None` for a body that is not there.
 pub trait Motions {
     /// Placement of a body's joint-child frame.
-    fn placement(&self, body: usize) -> &Placement<f64>;
+    fn placement(&self, body: usize) -> Option<&Placement<f64>>;
     /// Its twist.
-    fn twist(&self, body: usize) -> &Vector6<f64>;
+    fn twist(&self, body: usize) -> Option<&Vector6<f64>>;
 }
 
 /// Placements and twists in a list of their own.
@@ -22,16 +22,19 @@ pub trait Motions {
 pub(crate) struct MotionList(pub(crate) Vec<(Placement<f64>, Vector6<f64>)>);
 
 impl Motions for MotionList {
-    fn placement(&self, body: usize) -> &Placement<f64> {
-        &self.0[body].0
+    fn placement(&self, body: usize) -> Option<&Placement<f64>> {
+        self.0.get(body).map(|(placement, _)| placement)
     }
 
-    fn twist(&self, body: usize) -> &Vector6<f64> {
-        &self.0[body].1
+    fn twist(&self, body: usize) -> Option<&Vector6<f64>> {
+        self.0.get(body).map(|(_, twist)| twist)
     }
 }
 
 /// A mechanism at one state.
+///
+/// Of a body that is not there it tells nothing: NaN where there is a number.
+#[non_exhaustive]
 pub struct View<'a> {
     /// The mechanism.
     pub mechanism: &'a Mechanism,
@@ -53,21 +56,34 @@ impl Debug for View<'_> {
 }
 
 impl<'a> View<'a> {
-    /// The joint under a body.
-    pub fn joint(&self, body: usize) -> &'a dyn AnyJoint {
-        self.mechanism.bodies()[body].joint()
+    fn body(&self, body: usize) -> Option<&'a Body> {
+        self.mechanism.bodies().get(body)
+    }
+
+    /// The joint under a body, as elements here use it, and its Q.
+    pub(super) fn kernels(&self, body: usize) -> Option<(&'a dyn Kernels, &'a [f64])> {
+        let body = self.body(body)?;
+        Some((&**body.kernels(), body.configuration(self.configuration)))
+    }
+
+    /// The joint under a body, if there is one of that index.
+    pub fn joint(&self, body: usize) -> Option<&'a dyn AnyJoint> {
+        Some(self.body(body)?.joint())
     }
 
     /// Its Q.
     pub fn joint_configuration(&self, body: usize) -> &'a [f64] {
-        self.mechanism.bodies()[body].configuration(self.configuration)
+        self.body(body)
+            .map_or(&[], |body| body.configuration(self.configuration))
     }
 
     /// Its velocity `v = S̄ v̄`, in the first entries of `buffer`.
     pub fn joint_velocity<'b>(&self, body: usize, buffer: &'b mut [f64; 6]) -> &'b [f64] {
-        let ranges = self.mechanism.bodies()[body].ranges();
+        let Some(own) = self.body(body) else {
+            return &[];
+        };
+        let (joint, ranges) = (own.joint(), own.ranges());
         let speeds = &self.speeds[ranges.speeds.clone()];
-        let joint = self.joint(body);
         let velocity = &mut buffer[..ranges.freedoms.len()];
         if joint.structures().speed_basis.is_identity() {
             velocity.copy_from_slice(speeds);
@@ -88,17 +104,19 @@ impl<'a> View<'a> {
         let Some(body) = body else {
             return Pose::identity();
         };
-        let placement = self.motions.placement(body).pose();
-        placement.compose(self.mechanism.bodies()[body].child_placement())
+        let known = self.body(body).zip(self.motions.placement(body));
+        known.map_or_else(nowhere, |(body, placement)| {
+            placement.pose().compose(body.child_placement())
+        })
     }
 
     /// From the origin of the joint-child frame to a point given in the body frame, world axes, m.
     pub fn arm(&self, body: usize, point: &Vector3<f64>) -> Vector3<f64> {
-        let fixed = self.mechanism.bodies()[body].child_placement();
-        apply(
-            &self.motions.placement(body).rotation,
-            &fixed.transform_point(point),
-        )
+        let known = self.body(body).zip(self.motions.placement(body));
+        known.map_or(nowhere().translation, |(body, placement)| {
+            let fixed = body.child_placement();
+            apply(&placement.rotation, &fixed.transform_point(point))
+        })
     }
 
     /// Position and velocity of a point given in the body frame (in the world for `None`), world axes, m and m/s.
@@ -107,13 +125,22 @@ impl<'a> View<'a> {
             return (*point, Vector3::zeros());
         };
         let arm = self.arm(body, point);
-        let (angular, linear) = split(self.motions.twist(body));
-        let position = self.motions.placement(body).origin + arm;
-        (position, add_cross(&linear, &angular, &arm))
+        let known = self.motions.twist(body).zip(self.motions.placement(body));
+        let Some((twist, placement)) = known else {
+            return (nowhere().translation, nowhere().translation);
+        };
+        let (angular, linear) = split(twist);
+        (placement.origin + arm, add_cross(&linear, &angular, &arm))
     }
 }
 
-/// Where elements put what they exert.
+/// The pose of a body that is not there.
+fn nowhere() -> Pose<f64> {
+    let nan = f64::NAN;
+    Pose::new(Matrix3::repeat(nan), Vector3::repeat(nan))
+}
+
+/// Where elements put what they exert. What is put on a body that is not there makes all of it NaN, so that the motion ends with an error.
 #[derive(Debug)]
 pub struct Action<'a> {
     /// Wrench on each body at the origin of its joint-child frame, world axes.
@@ -125,9 +152,15 @@ pub struct Action<'a> {
 impl Action<'_> {
     /// Adds efforts of the joint under a body, one entry a freedom.
     pub fn add_effort(&mut self, view: &View<'_>, body: usize, effort: &[f64]) {
-        let range = view.mechanism.bodies()[body].ranges().freedoms.clone();
-        for (sum, value) in self.efforts[range].iter_mut().zip(effort) {
-            *sum += value;
+        let range = view.body(body).map(|body| body.ranges().freedoms.clone());
+        let own = range.and_then(|range| self.efforts.get_mut(range));
+        match own.filter(|own| own.len() == effort.len()) {
+            Some(own) => {
+                for (sum, value) in own.iter_mut().zip(effort) {
+                    *sum += value;
+                }
+            }
+            None => self.efforts.fill(f64::NAN),
         }
     }
 
@@ -138,6 +171,9 @@ impl Action<'_> {
 
     /// Adds a wrench on a body at the origin of its joint-child frame, world axes.
     pub fn add_wrench(&mut self, body: usize, moment: &Vector3<f64>, force: &Vector3<f64>) {
-        self.wrenches[body] += crate::spatial::join(moment, force);
+        match self.wrenches.get_mut(body) {
+            Some(sum) => *sum += crate::spatial::join(moment, force),
+            None => self.wrenches.fill(Vector6::repeat(f64::NAN)),
+        }
     }
 }

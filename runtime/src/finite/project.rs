@@ -58,7 +58,8 @@ impl<T: Scalar, const N: usize, const R: usize> Equations<T, N, R> {
     /// The least δ that solves `rank` of the equations, chosen one after the other by what is left of their directions.
     fn shortest_solution(mut self, rank: usize) -> SVector<T, N> {
         let mut solution = SVector::zeros();
-        for _ in 0..rank {
+        // No more of them are independent than there are relations.
+        for _ in 0..rank.min(R) {
             let (direction, value) = self.most_independent();
             solution -= direction * value;
             self.eliminate(&direction, value);

@@ -1,7 +1,7 @@
 //! How near a motion comes to the sets on which a joint loses its meaning.
 
-use super::error::Seconds;
 use crate::mechanism::{Body, Loci, Mechanism};
+use crate::shown::Number;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{Display, Formatter, Result};
@@ -21,7 +21,7 @@ pub struct Approach {
 
 impl Display for Approach {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let (joint, value, time) = (&self.joint, self.value, Seconds(self.time));
+        let (joint, value, time) = (&self.joint, self.value, Number(self.time));
         write!(
             f,
             "joint `{joint}`: {} comes to {value:e} at {time} s",

@@ -145,6 +145,7 @@ impl Dense {
         let time = self.time(tau);
         let (phi, y) = self.point.split_at(flow.mechanism.layout().freedoms);
         retract(&flow.mechanism, &self.base, phi, &mut self.configuration);
+        flow.mechanism.check_poses(&self.configuration)?;
         flow.all_speeds_of(&self.configuration, y, &mut self.speeds)?;
         Ok(Instant {
             time,
@@ -164,7 +165,7 @@ impl Dense {
         }
         let time = self.time(tau);
         let y = &mut self.point[flow.mechanism.layout().freedoms..];
-        flow.mechanism.set_driven_speeds(time, y);
+        flow.mechanism.prescribe_speeds(time, y);
     }
 
     /// Raises the degree to that of the scheme, unless it has been; `stages` is what an implicit scheme has to begin with.

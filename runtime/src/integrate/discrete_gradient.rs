@@ -181,6 +181,10 @@ impl Correction {
         add(&mut self.momenta, 1.0, &self.change);
         retract(&flow.mechanism, &standing.base, &self.phi, &mut self.end);
         let found = flow.energy(&self.end, &self.momenta)?;
+        if !found.is_finite() {
+            let at = (&*self.end, &*self.speeds);
+            return Err(flow.mechanism.infinite_energy(at).into());
+        }
         let own = self.change.iter().zip(&self.faster);
         let carried = 2.0 * self.kinetic + own.map(|(p, v)| p * v).sum::<f64>();
         let error = (found - self.energy) - (self.work + self.residue);

@@ -166,7 +166,8 @@ impl<'a> Driver<'a> {
         let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
         let pace = self.standing.pace(&mut self.flow);
         let pace = pace.map_err(|cause| self.at_state(cause))?;
-        Ok((change / pace).min(0.01 * span))
+        // A hundredth of the shortest spans is nothing: these are one step.
+        Ok((change / pace).min(0.01 * span).max(f64::MIN_POSITIVE))
     }
 
     /// The next sample time, or the end, or the next instant for new inputs.

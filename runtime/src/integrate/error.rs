@@ -3,27 +3,15 @@
 use super::Near;
 use crate::dynamics::DynamicsError;
 use crate::mechanism::StateError;
+use crate::shown::Number;
 use alloc::boxed::Box;
 use alloc::string::String;
-use core::fmt::{Display, Formatter};
-
-/// A time for messages: with an exponent where decimals would be unreadable.
-pub(super) struct Seconds(pub(super) f64);
-
-impl Display for Seconds {
-    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
-        match self.0.abs() {
-            size if size > 0.0 && !(1e-3..1e7).contains(&size) => write!(f, "{:e}", self.0),
-            _ => write!(f, "{}", self.0),
-        }
-    }
-}
 
 /// Why a step cannot be taken, or is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepFailure {
     /// The length of a step that is asked for.
-    #[error("the step is {step} s long: it must be positive and finite")]
+    #[error("the step is {step} s long: it must be positive and finite", step = Number(*.step))]
     Length {
         /// The length, s.
         step: f64,
@@ -37,7 +25,7 @@ pub enum StepFailure {
         ratio: f64,
     },
     /// A joint turns too far for one step.
-    #[error("joint `{joint}` turns by {angle} rad within the step, more than pi")]
+    #[error("joint `{joint}` turns by {angle} rad within the step, more than pi", angle = Number(*.angle))]
     Turn {
         /// The joint.
         joint: String,
@@ -63,25 +51,34 @@ pub enum StepFailure {
         joint: String,
     },
     /// The function of an event is NaN or infinite.
-    #[error("the function of event `{event}` is {value}: it must be finite")]
+    #[error("the function of event `{event}` is {value}: it must be finite", value = Number(*.value))]
     Event {
         /// The event.
         event: String,
         /// Its value.
         value: f64,
     },
-    /// NaN or infinity.
-    #[error("the motion of joint `{joint}` is not finite")]
-    NotFinite {
-        /// The joint.
-        joint: String,
+    /// The coefficients of an explicit method are none.
+    #[error("the method {reason}")]
+    Tableau {
+        /// What is wrong with them.
+        reason: String,
     },
-    /// The state reached cannot be brought back to its manifold.
+    /// The state reached is not finite, or cannot be brought back to its manifold.
     #[error(transparent)]
     State(#[from] StateError),
     /// The equations of motion cannot be evaluated.
     #[error(transparent)]
-    Dynamics(#[from] DynamicsError),
+    Dynamics(DynamicsError),
+}
+
+impl From<DynamicsError> for StepFailure {
+    fn from(cause: DynamicsError) -> Self {
+        match cause {
+            DynamicsError::State(cause) => Self::State(cause),
+            cause => Self::Dynamics(cause),
+        }
+    }
 }
 
 /// What to do about a step of fixed size, where its length can be the reason.
@@ -90,11 +87,11 @@ fn advice(cause: &StepFailure) -> &'static str {
         StepFailure::Turn { .. }
         | StepFailure::NoConvergence { .. }
         | StepFailure::SingularIteration { .. }
-        | StepFailure::NotFinite { .. }
         | StepFailure::State(_) => "; take a smaller dt",
         StepFailure::Length { .. }
         | StepFailure::Inaccurate { .. }
         | StepFailure::Event { .. }
+        | StepFailure::Tableau { .. }
         | StepFailure::Dynamics(_) => "",
     }
 }
@@ -103,7 +100,7 @@ fn advice(cause: &StepFailure) -> &'static str {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IntegrateError {
     /// An option out of range.
-    #[error("{option} is {value}: it must be {requirement}")]
+    #[error("{option} is {value}: it must be {requirement}", value = Number(*.value))]
     Option {
         /// The option.
         option: &'static str,
@@ -129,7 +126,7 @@ pub enum IntegrateError {
         reason: String,
     },
     /// The end lies before the start.
-    #[error("t_end is {} s: it lies before the initial time {} s", Seconds(*.end), Seconds(*.start))]
+    #[error("t_end is {} s: it lies before the initial time {} s", Number(*.end), Number(*.start))]
     TimeOrder {
         /// Initial time.
         start: f64,
@@ -139,7 +136,7 @@ pub enum IntegrateError {
     /// A sample time out of order or out of range.
     #[error(
         "sample {index} is at {} s: sample times ascend, and this one must lie between {} s and {} s",
-        Seconds(*.time), Seconds(*.earliest), Seconds(*.end)
+        Number(*.time), Number(*.earliest), Number(*.end)
     )]
     Sample {
         /// Its index.
@@ -155,7 +152,7 @@ pub enum IntegrateError {
     #[error("initial state: {0}")]
     Initial(#[from] StateError),
     /// The equations of motion fail at a state that was reached, so that no step size can mend it.
-    #[error("at {} s: {cause}{near}", Seconds(*.time))]
+    #[error("at {} s: {cause}{near}", Number(*.time))]
     AtState {
         /// When.
         time: f64,
@@ -165,7 +162,7 @@ pub enum IntegrateError {
         near: Near,
     },
     /// A step of fixed size fails.
-    #[error("the step of {step:e} s at {} s fails: {cause}{near}{}", Seconds(*.time), advice(.cause))]
+    #[error("the step of {step:e} s at {} s fails: {cause}{near}{}", Number(*.time), advice(.cause))]
     Step {
         /// When.
         time: f64,
@@ -177,7 +174,7 @@ pub enum IntegrateError {
         near: Near,
     },
     /// Step control has come to steps that time cannot resolve.
-    #[error("the step has shrunk to {step:e} s at {} s, the limit is {limit:e} s: {cause}{near}", Seconds(*.time))]
+    #[error("the step has shrunk to {step:e} s at {} s, the limit is {limit:e} s: {cause}{near}", Number(*.time))]
     StepUnderflow {
         /// When.
         time: f64,

@@ -1,9 +1,11 @@
 //! The vector field in (ϕ, y) around a base point, for both forms.
 
+use super::StepFailure;
 use super::standing::add;
 use super::{Form, Inputs};
 use crate::dynamics::{Dynamics, DynamicsError};
-use crate::mechanism::{CONSTRAINT_TOLERANCE, Mechanism};
+use crate::mechanism::{CONSTRAINT_TOLERANCE, Mechanism, Space};
+use crate::scalar::all_finite;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -23,6 +25,21 @@ impl Rates {
         self.phi.copy_from_slice(&other.phi);
         self.y.copy_from_slice(&other.y);
         self.speeds.copy_from_slice(&other.speeds);
+    }
+
+    /// The first body of whose joint ϕ̇ or ẏ is not finite.
+    pub(super) fn first_infinite(&self, mechanism: &Mechanism) -> Option<usize> {
+        if all_finite(&self.phi) & all_finite(&self.y) {
+            return None;
+        }
+        mechanism.bodies().iter().position(|body| {
+            let ranges = body.ranges();
+            let (phi, y) = (
+                &self.phi[ranges.freedoms.clone()],
+                &self.y[ranges.speeds.clone()],
+            );
+            !(all_finite(phi) && all_finite(y))
+        })
     }
 
     /// Adds `weight` times ϕ̇ and ẏ.
@@ -189,12 +206,21 @@ impl<'a> Flow<'a> {
         phi: &[f64],
         y: &[f64],
         mut rates: RatesMut<'_>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<(), StepFailure> {
         self.evaluations += 1;
         retract(&self.mechanism, base, phi, &mut self.configuration);
         self.dynamic_rates(time, y, &mut rates)?;
         self.local_rates(base, phi, rates.speeds, rates.phi);
-        Ok(())
+        let found = [
+            (
+                "rate of the local coordinates",
+                Space::Freedoms,
+                &*rates.phi,
+            ),
+            ("acceleration", Space::Speeds, &*rates.y),
+        ];
+        let at = (&*self.configuration, &*rates.speeds);
+        Ok(self.mechanism.check_finite(at, &found)?)
     }
 
     /// The name of the joint under a body.
@@ -242,7 +268,7 @@ impl<'a> Flow<'a> {
     pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
         let held = self.held.as_deref();
         fill(&mut self.inputs, held, time, q, speeds, efforts);
-        self.mechanism.set_driven_accelerations(time, efforts);
+        self.mechanism.prescribe_accelerations(time, efforts);
     }
 
     /// What one unit of each speed adds to y at `q`: 1, or what it adds to its own momentum.
@@ -284,7 +310,7 @@ impl<'a> Flow<'a> {
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
             let held = held.as_deref();
             fill(inputs, held, time, configuration, speeds, efforts);
-            mechanism.set_driven_accelerations(time, efforts);
+            mechanism.prescribe_accelerations(time, efforts);
         };
         match self.form {
             Form::Lagrangian => {

@@ -101,17 +101,42 @@ impl<'a> Integration<'a> {
     /// or off the joints' manifolds; a singular mass matrix; a step that fails at fixed size, or shrinks to nothing under step control; an event whose
     /// function is not finite.
     pub fn run(mut self) -> Result<Solution, IntegrateError> {
-        self.check()?;
+        let observer = core::mem::replace(&mut self.observer, Box::new(no_observer));
+        self.begin(|driver| {
+            let mut observer = observer;
+            driver.run(&mut *observer)
+        })
+    }
+
+    /// Whether it can begin: the options, the first state, and the equations of motion, the inputs and the events there. Nothing moves.
+    ///
+    /// # Errors
+    /// As those of [`Integration::run`] at the first state.
+    pub fn check(self) -> Result<(), IntegrateError> {
+        self.begin(|_| Ok(()))
+    }
+
+    fn begin<R>(
+        mut self,
+        then: impl FnOnce(Driver<'_>) -> Result<R, IntegrateError>,
+    ) -> Result<R, IntegrateError> {
+        self.check_request()?;
         let hold = self.period;
         let inputs = self.inputs.as_mut();
         let inputs = inputs.map(|inputs| -> &mut Inputs<'_> { &mut **inputs });
-        let observer = &mut *self.observer;
         let (dynamics, options) = (self.dynamics, self.options);
         let wanted = (self.sampling, self.events);
-        Driver::new(dynamics, self.initial, options, hold, inputs, wanted)?.run(observer)
+        then(Driver::new(
+            dynamics,
+            self.initial,
+            options,
+            hold,
+            inputs,
+            wanted,
+        )?)
     }
 
-    fn check(&self) -> Result<(), IntegrateError> {
+    fn check_request(&self) -> Result<(), IntegrateError> {
         let (initial, options) = (self.initial, self.options);
         let period = self.period.unwrap_or(f64::MAX);
         if !(period > 0.0 && period.is_finite()) {

@@ -9,6 +9,8 @@ use super::flow::{Flow, Rates};
 use super::linear::{Change, Charts, Equations};
 use super::standing::Standing;
 use crate::dynamics::{DynamicsError, Sensitivity};
+use crate::mechanism::StateError;
+use crate::scalar::all_finite;
 use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -82,13 +84,28 @@ impl Jacobian {
             match analytic.evaluate(standing, flow, time) {
                 Ok(()) => {
                     analytic.store(&mut self.entries);
-                    return Ok(());
+                    return self.check_finite(flow);
                 }
                 Err(DynamicsError::NotDifferentiable { .. }) => self.difference(),
                 Err(cause) => return Err(cause.into()),
             }
         }
-        self.take_differences(standing, flow, time)
+        self.take_differences(standing, flow, time)?;
+        self.check_finite(flow)
+    }
+
+    /// Whether all entries are finite; where they are not, the joint whose own motion changes what is not.
+    fn check_finite(&self, flow: &Flow<'_>) -> Result<(), StepFailure> {
+        if all_finite(&self.entries) {
+            return Ok(());
+        }
+        let rows = || self.entries.chunks_exact(self.size);
+        let mut columns = 0..self.size;
+        let found = columns.find(|&j| rows().any(|row| !row[j].is_finite()));
+        Err(StepFailure::State(StateError::NoValue {
+            joint: flow.row_name(found.unwrap_or_default()),
+            what: "derivative of the motion",
+        }))
     }
 
     fn take_differences(

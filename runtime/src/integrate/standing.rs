@@ -3,7 +3,7 @@
 use super::StepFailure;
 use super::flow::{Flow, Rates, RatesMut, retract};
 use super::residue::{Residue, add_exactly};
-use super::turns::{Turns, check_finite};
+use super::turns::Turns;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -46,8 +46,10 @@ impl Standing {
         configuration: &[f64],
         speeds: &[f64],
     ) -> Result<Self, StepFailure> {
+        flow.mechanism.check_poses(configuration)?;
+        flow.mechanism.check_speeds("speeds", speeds)?;
         let mut speeds = speeds.to_vec();
-        flow.mechanism.set_driven_speeds(time, &mut speeds);
+        flow.mechanism.prescribe_speeds(time, &mut speeds);
         let y = flow.initial(configuration, &speeds)?;
         let freedoms = flow.mechanism.layout().freedoms;
         let mut standing = Self {
@@ -77,8 +79,7 @@ impl Standing {
     /// Rates at the state.
     pub(super) fn evaluate(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), StepFailure> {
         let rates = self.rates.parts();
-        flow.evaluate(time, &self.base, &self.offset, &self.y, rates)?;
-        check_finite(&flow.mechanism, &self.rates.phi, &self.rates.y)
+        flow.evaluate(time, &self.base, &self.offset, &self.y, rates)
     }
 
     /// Rates at the point that the step has come to.
@@ -86,15 +87,9 @@ impl Standing {
         &self,
         flow: &mut Flow<'_>,
         time: f64,
-        RatesMut { phi, y, speeds }: RatesMut<'_>,
+        rates: RatesMut<'_>,
     ) -> Result<(), StepFailure> {
-        let rates = RatesMut {
-            phi: &mut *phi,
-            y: &mut *y,
-            speeds,
-        };
-        flow.evaluate(time, &self.base, &self.phi, &self.next_y, rates)?;
-        check_finite(&flow.mechanism, phi, y)
+        flow.evaluate(time, &self.base, &self.phi, &self.next_y, rates)
     }
 
     /// Moves the point to the state and what `add` adds to it in ϕ and y, from what the last step left over on.
@@ -181,6 +176,9 @@ impl Standing {
             ..
         } = self;
         let last = last.unwrap_or(&rates.speeds);
+        if let Some(index) = errors.first_infinite(&flow.mechanism) {
+            return Ok((f64::INFINITY, index));
+        }
         flow.speeds_of(configuration, &errors.y, &mut errors.speeds)?;
         let part = |error: f64, size: f64| match error.abs() / size.max(1.0) {
             part if part.is_nan() => f64::INFINITY,
@@ -218,6 +216,8 @@ impl Standing {
             &self.offset,
             &mut self.configuration,
         );
+        // A joint may be beyond the range of numbers where its rates are not.
+        flow.mechanism.check_poses(&self.configuration)?;
         self.recentre(flow)?;
         let drives = flow.mechanism.drives();
         for drive in drives {
@@ -225,7 +225,7 @@ impl Standing {
             self.residue.y[own].fill(0.0);
         }
         // Prescribed speeds are what their laws say, not what steps have made of them.
-        flow.mechanism.set_driven_speeds(time, &mut self.y);
+        flow.mechanism.prescribe_speeds(time, &mut self.y);
         let Some((y, speeds)) = last.filter(|_| drives.is_empty()) else {
             return self.evaluate(flow, time);
         };

@@ -104,11 +104,7 @@ impl Turns {
 }
 
 /// Whether all entries of `phi` (one a freedom) and `y` (one a speed) are finite.
-pub(super) fn check_finite(
-    mechanism: &Mechanism,
-    phi: &[f64],
-    y: &[f64],
-) -> Result<(), StepFailure> {
+fn check_finite(mechanism: &Mechanism, phi: &[f64], y: &[f64]) -> Result<(), StepFailure> {
     if all_finite(phi) & all_finite(y) {
         return Ok(());
     }
@@ -116,10 +112,8 @@ pub(super) fn check_finite(
         let ranges = body.ranges();
         all_finite(&phi[ranges.freedoms.clone()]) & all_finite(&y[ranges.speeds.clone()])
     };
-    let joint = mechanism.bodies().iter().find(|body| !is_finite(body));
-    Err(StepFailure::NotFinite {
-        joint: joint.map_or("", |body| body.joint_name()).into(),
-    })
+    let found = mechanism.bodies().iter().find(|body| !is_finite(body));
+    found.map_or(Ok(()), |body| Err(body.without_value("motion").into()))
 }
 
 fn square(values: &[f64]) -> f64 {

@@ -1,6 +1,6 @@
 //! Bodies of a mechanism, each with the joint that it hangs on.
 
-use crate::erased::{AnyJoint, Layout};
+use crate::erased::{AnyJoint, Kernels, Layout, Token};
 use crate::spatial::{MassProperties, Pose, SpatialInertia};
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -58,12 +58,33 @@ impl Ranges {
 #[derive(Clone, Debug)]
 pub struct Body {
     pub(super) spec: BodySpec,
+    kernels: Arc<dyn Kernels>,
     pub(super) ranges: Ranges,
     pub(super) joint_frame: Pose<f64>,
     pub(super) joint_inertia: SpatialInertia<f64>,
 }
 
 impl Body {
+    pub(super) fn new(
+        spec: BodySpec,
+        ranges: Ranges,
+        joint_frame: Pose<f64>,
+        joint_inertia: SpatialInertia<f64>,
+    ) -> Self {
+        Self {
+            kernels: Arc::clone(&spec.joint).kernels(Token::OWN),
+            spec,
+            ranges,
+            joint_frame,
+            joint_inertia,
+        }
+    }
+
+    /// Its joint as recursions use it.
+    pub(crate) const fn kernels(&self) -> &Arc<dyn Kernels> {
+        &self.kernels
+    }
+
     /// Name of the body.
     pub fn name(&self) -> &str {
         &self.spec.name
@@ -121,9 +142,9 @@ impl Body {
         &self.joint_inertia
     }
 
-    /// This body's entries of a configuration vector.
+    /// This body's entries of a configuration vector; none of one that is too short.
     pub fn configuration<'a>(&self, q: &'a [f64]) -> &'a [f64] {
-        &q[self.ranges.configuration.clone()]
+        q.get(self.ranges.configuration.clone()).unwrap_or(&[])
     }
 
     /// The least of the functions of [`AnyJoint::singularities`] at this joint's own `q`, where it is 0 or not finite.

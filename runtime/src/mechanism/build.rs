@@ -2,10 +2,10 @@
 
 use super::body::singular_value;
 use super::check::CONFIGURATION_TOLERANCE;
+use super::rigid::{RigidBody, check_bodies};
 use super::{Body, BodySpec, Loci, MechanismError, Ranges};
 use crate::erased::Layout;
 use crate::spatial::{Pose, SpatialInertia};
-use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, Vector3};
@@ -15,65 +15,25 @@ const RANK_TOLERANCE: f64 = 1e-10;
 
 /// Everything that is wrong with the input of [`Mechanism::new`](super::Mechanism::new).
 pub(super) fn check(gravity: &Vector3<f64>, bodies: &[BodySpec]) -> Vec<MechanismError> {
-    let mut errors = Vec::new();
-    for (axis, &value) in ['x', 'y', 'z'].into_iter().zip(gravity) {
-        if !value.is_finite() {
-            errors.push(MechanismError::Gravity { axis, value });
-        }
-    }
-    check_names(bodies, &mut errors);
-    for (index, body) in bodies.iter().enumerate() {
-        check_body(index, body, &mut errors);
+    let rigid: Vec<RigidBody<'_>> = bodies.iter().map(RigidBody::from).collect();
+    let mut errors = check_bodies(gravity, &rigid);
+    for body in bodies {
         check_joint(body, &mut errors);
     }
     errors
 }
 
-fn check_names(bodies: &[BodySpec], errors: &mut Vec<MechanismError>) {
-    let mut names = BTreeMap::new();
-    for (index, body) in bodies.iter().enumerate() {
-        let first = *names.entry(body.name.as_str()).or_insert(index);
-        if first != index {
-            errors.push(MechanismError::DuplicateName {
-                body: body.name.clone(),
-                index,
-                first,
-            });
-        }
-    }
-}
-
-fn check_body(index: usize, body: &BodySpec, errors: &mut Vec<MechanismError>) {
-    if let Some(parent) = body.parent.filter(|&parent| parent >= index) {
-        errors.push(MechanismError::Parent {
-            body: body.name.clone(),
-            index,
-            parent,
-        });
-    }
-    let placements = [
-        ("placement", &body.placement),
-        ("child placement", &body.child_placement),
-    ];
-    for (which, pose) in placements {
-        if let Err(cause) = pose.check() {
-            errors.push(MechanismError::Placement {
-                body: body.name.clone(),
-                which,
-                cause,
-            });
-        }
-    }
-    if let Err(cause) = body.mass.check() {
-        errors.push(MechanismError::Mass {
-            body: body.name.clone(),
-            cause,
-        });
-    }
-}
-
 fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
     let (joint, size) = (&body.joint, body.joint.layout());
+    if size.freedoms > 6 || size.speeds + size.constraints != size.freedoms {
+        errors.push(MechanismError::Layout {
+            joint: body.joint_name.clone(),
+            freedoms: size.freedoms,
+            speeds: size.speeds,
+            constraints: size.constraints,
+        });
+        return;
+    }
     let mut home = vec![0.0; size.configuration];
     joint.home(&mut home);
     let residual = joint.residual(&home);
@@ -140,12 +100,9 @@ pub(super) fn assemble(specs: Vec<BodySpec>) -> (Vec<Body>, Layout) {
         let parent_frame = spec
             .parent
             .map_or_else(Pose::identity, |parent| *bodies[parent].child_placement());
-        bodies.push(Body {
-            ranges,
-            joint_frame: parent_frame * spec.placement,
-            joint_inertia: SpatialInertia::from(&spec.mass).transform(&spec.child_placement),
-            spec,
-        });
+        let joint_frame = parent_frame * spec.placement;
+        let inertia = SpatialInertia::from(&spec.mass).transform(&spec.child_placement);
+        bodies.push(Body::new(spec, ranges, joint_frame, inertia));
     }
     (bodies, layout)
 }

@@ -1,8 +1,10 @@
-//! Checks of a state against its mechanism, and projection onto the joints' manifolds.
+//! Checks of a state against its mechanism, what is not finite of it, and projection onto the joints' manifolds.
 
-use super::{Body, Loci, Mechanism, StateError};
-use crate::erased::FiniteMapError;
+use super::{Body, Loci, Mechanism, Ranges, StateError};
+use crate::erased::{AnyJoint, FiniteMapError};
+use crate::scalar::all_finite;
 use alloc::string::String;
+use core::ops::Range;
 
 /// Largest residual of a joint's relations that is taken for rounding of the input.
 pub const CONFIGURATION_TOLERANCE: f64 = 1e-9;
@@ -26,6 +28,46 @@ pub(crate) fn check_size(
         expected,
         found,
     })
+}
+
+/// What a vector of all joints has an entry for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Space {
+    /// Each stored scalar of Q.
+    Configuration,
+    /// Each freedom: v, ϕ, τ.
+    Freedoms,
+    /// Each speed: v̄, p̄ and their rates.
+    Speeds,
+}
+
+impl Space {
+    fn size(self, mechanism: &Mechanism) -> usize {
+        let layout = &mechanism.layout;
+        match self {
+            Self::Configuration => layout.configuration,
+            Self::Freedoms => layout.freedoms,
+            Self::Speeds => layout.speeds,
+        }
+    }
+
+    /// Where a joint's share lies.
+    pub(crate) fn range(self, ranges: &Ranges) -> Range<usize> {
+        match self {
+            Self::Configuration => ranges.configuration.clone(),
+            Self::Freedoms => ranges.freedoms.clone(),
+            Self::Speeds => ranges.speeds.clone(),
+        }
+    }
+
+    /// Names of a joint's entries.
+    pub(crate) fn names(self, joint: &dyn AnyJoint) -> &'static [&'static str] {
+        match self {
+            Self::Configuration => joint.coordinates(),
+            Self::Freedoms => joint.freedoms(),
+            Self::Speeds => joint.speeds(),
+        }
+    }
 }
 
 impl Body {
@@ -86,7 +128,118 @@ impl Body {
     }
 }
 
+impl Body {
+    /// The first of the joint's kernels that is not finite at its own `q` and v̄.
+    fn no_value(&self, q: &[f64], speeds: &[f64]) -> Option<&'static str> {
+        let finite = |size: usize, fill: &dyn Fn(&mut [f64])| {
+            let mut entries = [0.0; 36];
+            fill(&mut entries[..size]);
+            all_finite(&entries[..size])
+        };
+        let (joint, k, s) = (
+            self.joint(),
+            self.ranges.freedoms.len(),
+            self.ranges.speeds.len(),
+        );
+        if !joint.pose(q).is_finite() {
+            return Some("pose");
+        }
+        if !finite(6 * k, &|out| joint.twist_map_child(q, out)) {
+            return Some("twist map");
+        }
+        if !finite(k * s, &|out| joint.speed_basis(q, out)) {
+            return Some("speed basis");
+        }
+        if !finite(k * k, &|out| joint.velocity_map_inverse(q, out)) {
+            return Some("velocity map");
+        }
+        let bias = joint.bias_acceleration(q, speeds);
+        (!all_finite(bias.as_slice())).then_some("velocity product")
+    }
+
+    /// Says that something of the joint is not finite.
+    pub(crate) fn without_value(&self, what: &'static str) -> StateError {
+        StateError::NoValue {
+            joint: self.joint_name().into(),
+            what,
+        }
+    }
+}
+
 impl Mechanism {
+    /// Whether a vector of all joints has the right size and is finite; `quantity` says what it is.
+    pub(crate) fn check_vector(
+        &self,
+        quantity: &'static str,
+        space: Space,
+        values: &[f64],
+    ) -> Result<(), StateError> {
+        check_size(WHOLE, quantity, space.size(self), values.len())?;
+        if all_finite(values) {
+            return Ok(());
+        }
+        self.bodies.iter().try_for_each(|body| {
+            let own = &values[space.range(&body.ranges)];
+            body.check_finite(quantity, space.names(body.joint()), own)
+        })
+    }
+
+    /// Whether room for results has the right size.
+    pub(crate) fn check_room(
+        &self,
+        quantity: &'static str,
+        space: Space,
+        room: &[f64],
+    ) -> Result<(), StateError> {
+        check_size(WHOLE, quantity, space.size(self), room.len())
+    }
+
+    /// The first joint, from the root on, of which a kernel is not finite at (q, v̄).
+    pub(crate) fn no_value(&self, q: &[f64], speeds: &[f64]) -> Option<StateError> {
+        self.bodies.iter().find_map(|body| {
+            let speeds = speeds.get(body.ranges.speeds.clone())?;
+            let what = body.no_value(body.configuration(q), speeds)?;
+            Some(body.without_value(what))
+        })
+    }
+
+    /// Whether results at (q, v̄) are finite: `what` says what they are. Where they are not, the first joint with a kernel that is not, else
+    /// the first that has such a result.
+    pub(crate) fn check_finite(
+        &self,
+        (q, speeds): (&[f64], &[f64]),
+        results: &[(&'static str, Space, &[f64])],
+    ) -> Result<(), StateError> {
+        if results.iter().all(|(.., values)| all_finite(values)) {
+            return Ok(());
+        }
+        if let Some(cause) = self.no_value(q, speeds) {
+            return Err(cause);
+        }
+        let mut bodies = self.bodies.iter();
+        let found = bodies.find_map(|body| {
+            let mut results = results.iter();
+            let is_finite = |space: &Space, values: &[f64]| {
+                let own = values.get(space.range(&body.ranges));
+                own.is_none_or(all_finite)
+            };
+            let found = results.find(|(_, space, values)| !is_finite(space, values));
+            found.map(|(what, ..)| body.without_value(what))
+        });
+        found.map_or(Ok(()), Err)
+    }
+
+    /// Whether Q and the pose of every joint are finite at `q`.
+    pub(crate) fn check_poses(&self, q: &[f64]) -> Result<(), StateError> {
+        self.check_vector("configuration", Space::Configuration, q)?;
+        self.bodies.iter().try_for_each(|body| {
+            match body.joint().pose(body.configuration(q)).is_finite() {
+                true => Ok(()),
+                false => Err(body.without_value("pose")),
+            }
+        })
+    }
+
     /// Whether `q` has the right size, is finite, lies on every joint's manifold to [`CONFIGURATION_TOLERANCE`], and on none
     /// of the sets where a joint is singular.
     ///
@@ -104,11 +257,7 @@ impl Mechanism {
     /// # Errors
     /// The first entry that is refused.
     pub fn check_speeds(&self, quantity: &'static str, speeds: &[f64]) -> Result<(), StateError> {
-        check_size(WHOLE, quantity, self.layout.speeds, speeds.len())?;
-        self.bodies.iter().try_for_each(|body| {
-            let own = &speeds[body.ranges.speeds.clone()];
-            body.check_finite(quantity, body.joint().speeds(), own)
-        })
+        self.check_vector(quantity, Space::Speeds, speeds)
     }
 
     /// Moves each joint's Q to the nearest point of its manifold.

@@ -1,6 +1,7 @@
 //! What a mechanism carries besides its bodies: elements, rotor inertias, drives.
 
-use super::{Mechanism, MechanismError};
+use super::check::Space;
+use super::{Mechanism, MechanismError, StateError};
 use crate::dynamics::Recursive;
 use crate::elements::{Drive, Element, ElementError, PointConstraint};
 use alloc::format;
@@ -16,6 +17,8 @@ pub(super) struct Equipment {
     /// One entry a freedom; empty where there is none.
     armature: Vec<f64>,
     drives: Vec<Drive>,
+    /// Whether the joint under each body is driven; empty where there are no drives.
+    driven: Vec<bool>,
     constraints: Vec<PointConstraint>,
     /// The speeds that depend on the others, one a constraint.
     dependent: Vec<usize>,
@@ -27,6 +30,9 @@ const PREFERENCE: f64 = 0.01;
 
 /// How small a pivot of the constraints may be next to the largest for them to be taken for independent.
 const INDEPENDENCE: f64 = 1e-9;
+
+/// Speeds that a mechanism with constraints has at most: a matrix of their square takes 200 MB, and there are several.
+const MOST_COUPLED: usize = 5000;
 
 impl Mechanism {
     /// The mechanism with these elements instead of those it had.
@@ -96,8 +102,15 @@ impl Mechanism {
     /// # Errors
     /// Every drive that does not fit; two drives of one joint; a joint whose speeds constraints already make depend on others.
     pub fn with_drives(mut self, drives: Vec<Drive>) -> Result<Self, Vec<MechanismError>> {
-        let failures = drives.iter().enumerate().filter_map(|(index, drive)| {
-            let twice = drives[..index].iter().any(|other| other.body == drive.body);
+        let mut driven = vec![false; self.bodies.len()];
+        let mut dependent = vec![false; self.layout.speeds];
+        for &speed in &self.equipment.dependent {
+            dependent[speed] = true;
+        }
+        let failures = drives.iter().filter_map(|drive| {
+            let twice = driven
+                .get_mut(drive.body)
+                .is_some_and(|driven| core::mem::replace(driven, true));
             let twice = twice.then(|| ElementError::Joint {
                 element: drive.name.clone(),
                 joint: self
@@ -107,19 +120,18 @@ impl Mechanism {
                     .into(),
                 reason: "is driven already",
             });
-            let dependent = self.bodies.get(drive.body).filter(|body| {
-                let mut dependent = self.equipment.dependent.iter();
-                dependent.any(|speed| body.ranges.speeds.contains(speed))
-            });
-            let dependent = dependent.map(|body| ElementError::Joint {
+            let bound = self.bodies.get(drive.body);
+            let bound = bound.filter(|body| dependent[body.ranges.speeds.clone()].contains(&true));
+            let bound = bound.map(|body| ElementError::Joint {
                 element: drive.name.clone(),
                 joint: body.joint_name().into(),
                 reason: "has speeds that constraints make depend on others: give drives before constraints",
             });
-            drive.check(&self).err().or(twice).or(dependent)
+            drive.check(&self).err().or(twice).or(bound)
         });
         refuse(failures)?;
         self.equipment.drives = drives;
+        self.equipment.driven = driven;
         Ok(self)
     }
 
@@ -129,24 +141,29 @@ impl Mechanism {
     /// tips of the tree.
     ///
     /// # Errors
-    /// Every constraint that does not fit; a wrong size of `q`; every constraint that depends on the others at `q`.
+    /// Every constraint that does not fit; more than 5000 speeds; a wrong size of `q`; every constraint that depends on the others at `q`.
     pub fn with_constraints(
         mut self,
         constraints: Vec<PointConstraint>,
         q: &[f64],
     ) -> Result<Self, Vec<MechanismError>> {
         refuse(constraints.iter().filter_map(|c| c.check(&self).err()))?;
+        let speeds = self.layout.speeds;
+        if speeds > MOST_COUPLED && !constraints.is_empty() {
+            let limit = MOST_COUPLED;
+            return Err(vec![MechanismError::Coupled { speeds, limit }]);
+        }
         self.check_configuration(q)
             .map_err(|cause| vec![MechanismError::Configuration(cause)])?;
         self.equipment.constraints = constraints;
         self.equipment.dependent.clear();
         let matrix = Recursive::new(Arc::new(self.clone())).constraint_matrix(q);
-        let taken = |speed: usize| {
-            let drives = self.equipment.drives.iter();
-            let mut ranges = drives.map(|drive| &self.bodies[drive.body].ranges.speeds);
-            ranges.any(|range| range.contains(&speed))
-        };
-        self.equipment.dependent = dependent_columns(matrix, taken).map_err(|rows| {
+        let mut driven = vec![false; self.layout.speeds];
+        for drive in &self.equipment.drives {
+            driven[self.bodies[drive.body].ranges.speeds.clone()].fill(true);
+        }
+        let found = dependent_columns(matrix, |speed| driven[speed]);
+        self.equipment.dependent = found.map_err(|rows| {
             let refused = rows.into_iter().map(|(row, ratio)| {
                 let constraint = self.equipment.constraints[row].name.clone();
                 MechanismError::DependentConstraint {
@@ -175,10 +192,11 @@ impl Mechanism {
         &self.equipment.elements
     }
 
-    /// Rotor inertias of the joint under `body`, one entry a freedom; empty where it has none.
+    /// Rotor inertias of the joint under `body`, one entry a freedom; empty where it has none, and where there is no such body.
     pub fn armature(&self, body: usize) -> &[f64] {
-        let freedoms = self.bodies[body].ranges.freedoms.clone();
-        let own = self.equipment.armature.get(freedoms).unwrap_or(&[]);
+        let freedoms = self.bodies.get(body).map(|own| own.ranges.freedoms.clone());
+        let own = freedoms.and_then(|freedoms| self.equipment.armature.get(freedoms));
+        let own = own.unwrap_or(&[]);
         match own.iter().all(|a| *a == 0.0) {
             true => &[],
             false => own,
@@ -192,11 +210,34 @@ impl Mechanism {
 
     /// Whether the motion of the joint under `body` is prescribed.
     pub fn is_driven(&self, body: usize) -> bool {
-        self.equipment.drives.iter().any(|drive| drive.body == body)
+        self.equipment
+            .driven
+            .get(body)
+            .is_some_and(|&driven| driven)
     }
 
     /// The speeds that drives prescribe at time `t`, into their entries of `speeds`.
-    pub fn set_driven_speeds(&self, t: f64, speeds: &mut [f64]) {
+    ///
+    /// # Errors
+    /// When `speeds` has the wrong size.
+    pub fn set_driven_speeds(&self, t: f64, speeds: &mut [f64]) -> Result<(), StateError> {
+        self.check_room("speeds", Space::Speeds, speeds)?;
+        self.prescribe_speeds(t, speeds);
+        Ok(())
+    }
+
+    /// The accelerations v̄̇ that drives prescribe at time `t`, into the first entries of τ of their joints.
+    ///
+    /// # Errors
+    /// When `efforts` has the wrong size.
+    pub fn set_driven_accelerations(&self, t: f64, efforts: &mut [f64]) -> Result<(), StateError> {
+        self.check_room("efforts", Space::Freedoms, efforts)?;
+        self.prescribe_accelerations(t, efforts);
+        Ok(())
+    }
+
+    /// [`Mechanism::set_driven_speeds`] into speeds of the right size.
+    pub(crate) fn prescribe_speeds(&self, t: f64, speeds: &mut [f64]) {
         for drive in &self.equipment.drives {
             let own = &mut speeds[self.bodies[drive.body].ranges.speeds.clone()];
             for (speed, law) in own.iter_mut().zip(&drive.laws) {
@@ -205,8 +246,8 @@ impl Mechanism {
         }
     }
 
-    /// The accelerations v̄̇ that drives prescribe at time `t`, into the first entries of τ of their joints.
-    pub fn set_driven_accelerations(&self, t: f64, efforts: &mut [f64]) {
+    /// [`Mechanism::set_driven_accelerations`] into efforts of the right size.
+    pub(crate) fn prescribe_accelerations(&self, t: f64, efforts: &mut [f64]) {
         for drive in &self.equipment.drives {
             let own = &mut efforts[self.bodies[drive.body].ranges.freedoms.clone()];
             for (effort, law) in own.iter_mut().zip(&drive.laws) {

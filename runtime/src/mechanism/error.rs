@@ -2,6 +2,7 @@
 
 use super::FrameFault;
 use crate::erased::FiniteMapError;
+use crate::shown::Number;
 use crate::spatial::{MassError, PoseError};
 use alloc::string::String;
 use core::fmt::{Display, Formatter};
@@ -24,7 +25,7 @@ impl Display for Loci {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MechanismError {
     /// Gravity is NaN or infinite.
-    #[error("gravity component {axis} is {value}, not a finite number")]
+    #[error("gravity component {axis} is {value}, not a finite number", value = Number(*.value))]
     Gravity {
         /// `x`, `y` or `z`.
         axis: char,
@@ -79,6 +80,29 @@ pub enum MechanismError {
         /// What is wrong with them.
         cause: MassError,
     },
+    /// Numbers that are finite each, and not what the mechanism makes of them.
+    #[error("body `{body}`: {what} is beyond the range of numbers")]
+    Overflow {
+        /// The body.
+        body: String,
+        /// What is too large.
+        what: &'static str,
+    },
+    /// A joint that has not as many speeds and constraints as freedoms, or more than six of these.
+    #[error(
+        "joint `{joint}`: it has {freedoms} freedoms, {speeds} speeds and {constraints} constraints: there must be at most six \
+         freedoms, as many as speeds and constraints together"
+    )]
+    Layout {
+        /// The joint.
+        joint: String,
+        /// K.
+        freedoms: usize,
+        /// S.
+        speeds: usize,
+        /// C.
+        constraints: usize,
+    },
     /// The joint's home is not on its own manifold, or not finite.
     #[error(
         "joint `{joint}`: its home configuration is off its manifold by {residual:e}, more than {limit:e}"
@@ -93,8 +117,7 @@ pub enum MechanismError {
     },
     /// The joint is singular at home.
     #[error(
-        "joint `{joint}`: it is singular where {loci} is 0, and at home the least of these is {value}"
-    )]
+        "joint `{joint}`: it is singular where {loci} is 0, and at home the least of these is {value}", value = Number(*.value))]
     Singular {
         /// The joint.
         joint: String,
@@ -134,6 +157,16 @@ pub enum MechanismError {
         /// Smallest ratio allowed.
         limit: f64,
     },
+    /// Constraints in a mechanism that is too large for them.
+    #[error(
+        "the mechanism has {speeds} speeds: constraints that couple joints take dense matrices, and with them at most {limit} are possible"
+    )]
+    Coupled {
+        /// How many speeds there are.
+        speeds: usize,
+        /// How many there may be.
+        limit: usize,
+    },
     /// A spring, damper, rotor inertia, drive or the like does not fit.
     #[error(transparent)]
     Element(#[from] crate::elements::ElementError),
@@ -171,7 +204,7 @@ pub enum StateError {
         count: usize,
     },
     /// A number is NaN or infinite.
-    #[error("joint `{joint}`: {quantity} entry `{entry}` is {value}, not a finite number")]
+    #[error("joint `{joint}`: {quantity} entry `{entry}` is {value}, not a finite number", value = Number(*.value))]
     NotFinite {
         /// The joint.
         joint: String,
@@ -181,6 +214,14 @@ pub enum StateError {
         entry: &'static str,
         /// Its value.
         value: f64,
+    },
+    /// A kernel of a joint, or what follows from it, has no value.
+    #[error("the {what} of joint `{joint}` is not finite")]
+    NoValue {
+        /// The joint.
+        joint: String,
+        /// `pose`, `twist map` and the like.
+        what: &'static str,
     },
     /// Q is not on the joint's manifold.
     #[error(
@@ -195,7 +236,7 @@ pub enum StateError {
         limit: f64,
     },
     /// The configuration is singular.
-    #[error("joint `{joint}`: it is singular where {loci} is 0, and the least of these is {value}")]
+    #[error("joint `{joint}`: it is singular where {loci} is 0, and the least of these is {value}", value = Number(*.value))]
     Singular {
         /// The joint.
         joint: String,

@@ -2,6 +2,7 @@
 
 use super::{Mechanism, MechanismError};
 use crate::spatial::{Pose, PoseError};
+use alloc::collections::BTreeMap;
 use alloc::string::String;
 use alloc::vec::Vec;
 
@@ -51,8 +52,18 @@ impl Mechanism {
     /// Everything that is wrong with the frames: a body that is not there, a placement that is no pose, a name that is taken.
     pub fn with_frames(mut self, frames: Vec<NamedFrame>) -> Result<Self, Vec<MechanismError>> {
         let mut errors = Vec::new();
+        let bodies = self.bodies.iter().enumerate();
+        let bodies: BTreeMap<&str, usize> = bodies.map(|(i, body)| (body.name(), i)).collect();
+        let mut names = BTreeMap::new();
         for (index, frame) in frames.iter().enumerate() {
-            let faults = self.faults(&frames[..index], frame).into_iter().flatten();
+            let first = *names.entry(frame.name.as_str()).or_insert(index);
+            let taken = [
+                (first != index).then_some(FrameFault::NameOfFrame { first }),
+                bodies
+                    .get(frame.name.as_str())
+                    .map(|&body| FrameFault::NameOfBody { body }),
+            ];
+            let faults = self.faults(frame).into_iter().chain(taken).flatten();
             errors.extend(faults.map(|fault| MechanismError::Frame {
                 frame: frame.name.clone(),
                 fault,
@@ -65,16 +76,13 @@ impl Mechanism {
         Ok(self)
     }
 
-    fn faults(&self, before: &[NamedFrame], frame: &NamedFrame) -> [Option<FrameFault>; 4] {
+    /// What is wrong with a frame, but for its name.
+    fn faults(&self, frame: &NamedFrame) -> [Option<FrameFault>; 2] {
         let count = self.bodies.len();
         let missing = frame.body.filter(|index| *index >= count);
-        let first = before.iter().position(|other| other.name == frame.name);
-        let body = self.body_index(&frame.name);
         [
             missing.map(|index| FrameFault::Body { index, count }),
             frame.at.check().err().map(FrameFault::Placement),
-            first.map(|first| FrameFault::NameOfFrame { first }),
-            body.map(|body| FrameFault::NameOfBody { body }),
         ]
     }
 

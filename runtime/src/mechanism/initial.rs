@@ -1,6 +1,6 @@
 //! Velocities of one joint: from a twist to v, from v to v̄ and back.
 
-use super::check::{WHOLE, check_size};
+use super::check::{Space, check_size};
 use super::reach::least_squares;
 use super::{Body, Mechanism, StateError};
 use alloc::vec;
@@ -98,10 +98,10 @@ impl Mechanism {
     /// `v = S̄ v̄` of all joints.
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub fn velocity_from_speeds(&self, q: &[f64], speeds: &[f64]) -> Result<Vec<f64>, StateError> {
-        check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
-        check_size(WHOLE, "speeds", self.layout.speeds, speeds.len())?;
+        self.check_vector("configuration", Space::Configuration, q)?;
+        self.check_vector("speeds", Space::Speeds, speeds)?;
         let mut velocity = vec![0.0; self.layout.freedoms];
         for body in &self.bodies {
             let own = DVectorView::from_slice(

@@ -1,6 +1,6 @@
 //! Where the bodies of a mechanism are, how they move, and what that amounts to.
 
-use super::check::{WHOLE, check_size};
+use super::check::Space;
 use super::{Body, Mechanism, StateError};
 use crate::elements::{MotionList, View};
 use crate::spatial::{Pose, SpatialInertia, join, split};
@@ -121,10 +121,10 @@ impl Mechanism {
     /// Pose and twist of every body, with energies and momenta.
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub fn kinematics(&self, q: &[f64], speeds: &[f64]) -> Result<Kinematics, StateError> {
-        check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
-        check_size(WHOLE, "speeds", self.layout.speeds, speeds.len())?;
+        self.check_vector("configuration", Space::Configuration, q)?;
+        self.check_vector("speeds", Space::Speeds, speeds)?;
         let bodies = self.body_states(q, speeds);
         let mass: f64 = self.bodies.iter().map(|body| body.mass().mass).sum();
         let moment: Vector3<f64> = bodies
@@ -139,6 +139,23 @@ impl Mechanism {
             element_energy: self.element_energy(q, speeds, &bodies),
             rotor_energy: self.rotor_energy(speeds),
             bodies,
+        })
+    }
+
+    /// Why the energy at (q, v̄) is not finite: a kernel of a joint, or else where the energy of a body is not.
+    pub(crate) fn infinite_energy(&self, (q, speeds): (&[f64], &[f64])) -> StateError {
+        let of_kernel = self.no_value(q, speeds);
+        of_kernel.unwrap_or_else(|| {
+            let states = self.body_states(q, speeds);
+            let is_finite = |state: &BodyState| {
+                state.kinetic_energy.is_finite() && state.potential_energy.is_finite()
+            };
+            let place = states.iter().position(|state| !is_finite(state));
+            let joint = self.bodies.get(place.unwrap_or_default());
+            StateError::NoValue {
+                joint: joint.map_or("", Body::joint_name).into(),
+                what: "energy",
+            }
         })
     }
 

@@ -12,16 +12,18 @@ mod frame;
 mod initial;
 mod kinematics;
 mod reach;
+mod rigid;
 
 pub use body::{Body, BodySpec, Ranges};
 pub use check::CONFIGURATION_TOLERANCE;
-pub(crate) use check::{WHOLE, check_size};
+pub(crate) use check::{Space, WHOLE, check_size};
 pub use equipment::dependent_columns;
 pub use error::{Loci, MechanismError, StateError};
 pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;
 pub use kinematics::{BodyState, Kinematics};
 pub use reach::REACH_TOLERANCE;
+pub use rigid::{RigidBody, check_bodies};
 
 use crate::erased::Layout;
 use alloc::vec;

@@ -163,6 +163,35 @@ impl<T: Scalar> Scalar for Dual<T> {
         Self::new(self.value.ln(), self.derivative / self.value)
     }
 
+    fn ln_1p(self) -> Self {
+        Self::new(
+            self.value.ln_1p(),
+            self.derivative / (T::one() + self.value),
+        )
+    }
+
+    fn sinh(self) -> Self {
+        Self::new(self.value.sinh(), self.value.cosh() * self.derivative)
+    }
+
+    fn cosh(self) -> Self {
+        Self::new(self.value.cosh(), self.value.sinh() * self.derivative)
+    }
+
+    fn sech(self) -> Self {
+        let value = self.value.sech();
+        Self::new(value, -(self.value.tanh() * value * self.derivative))
+    }
+
+    fn tanh(self) -> Self {
+        let sech = self.value.sech();
+        Self::new(self.value.tanh(), sech * sech * self.derivative)
+    }
+
+    fn ln_cosh(self) -> Self {
+        Self::new(self.value.ln_cosh(), self.value.tanh() * self.derivative)
+    }
+
     fn stumpff(self, order: usize) -> Self {
         let slope = if order == 0 {
             -self.value.stumpff(1)

@@ -1,6 +1,6 @@
 //! [`Scalar`] for `f64` and `f32`.
 
-use super::{Scalar, rotation, series};
+use super::{Scalar, hyperbolic, rotation, series};
 use nalgebra::{Matrix3, Vector3};
 use num_traits::Float;
 
@@ -54,6 +54,36 @@ macro_rules! implement_scalar {
             #[inline]
             fn ln(self) -> Self {
                 Float::ln(self)
+            }
+
+            #[inline]
+            fn ln_1p(self) -> Self {
+                Float::ln_1p(self)
+            }
+
+            #[inline]
+            fn sinh(self) -> Self {
+                Float::sinh(self)
+            }
+
+            #[inline]
+            fn cosh(self) -> Self {
+                Float::cosh(self)
+            }
+
+            #[inline]
+            fn sech(self) -> Self {
+                hyperbolic::sech(self)
+            }
+
+            #[inline]
+            fn tanh(self) -> Self {
+                Float::tanh(self)
+            }
+
+            #[inline]
+            fn ln_cosh(self) -> Self {
+                hyperbolic::ln_cosh(self)
             }
 
             #[inline]

@@ -125,6 +125,36 @@ impl<const FUSED: bool> Scalar for Lane<FUSED> {
     }
 
     #[inline]
+    fn ln_1p(self) -> Self {
+        Self(Scalar::ln_1p(self.0))
+    }
+
+    #[inline]
+    fn sinh(self) -> Self {
+        Self(Scalar::sinh(self.0))
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        Self(Scalar::cosh(self.0))
+    }
+
+    #[inline]
+    fn sech(self) -> Self {
+        Self(Scalar::sech(self.0))
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        Self(Scalar::tanh(self.0))
+    }
+
+    #[inline]
+    fn ln_cosh(self) -> Self {
+        Self(Scalar::ln_cosh(self.0))
+    }
+
+    #[inline]
     fn stumpff(self, order: usize) -> Self {
         Self(self.0.stumpff(order))
     }

@@ -141,6 +141,30 @@ macro_rules! implement_lanes {
                 self.each(Scalar::ln)
             }
 
+            fn ln_1p(self) -> Self {
+                self.each(Scalar::ln_1p)
+            }
+
+            fn sinh(self) -> Self {
+                self.each(Scalar::sinh)
+            }
+
+            fn cosh(self) -> Self {
+                self.each(Scalar::cosh)
+            }
+
+            fn sech(self) -> Self {
+                self.each(Scalar::sech)
+            }
+
+            fn tanh(self) -> Self {
+                self.each(Scalar::tanh)
+            }
+
+            fn ln_cosh(self) -> Self {
+                self.each(Scalar::ln_cosh)
+            }
+
             fn stumpff(self, order: usize) -> Self {
                 self.each(|s| s.stumpff(order))
             }

@@ -8,6 +8,7 @@ mod batch;
 mod dual;
 mod extended;
 mod float;
+mod hyperbolic;
 mod lane;
 #[cfg(feature = "wide")]
 mod lanes;
@@ -79,6 +80,32 @@ pub trait Scalar:
     /// Natural logarithm.
     fn ln(self) -> Self;
 
+    /// `ln(1 + self)`, accurate where `self` is small.
+    fn ln_1p(self) -> Self;
+
+    /// `ln(1 + self · e^scale)` for a scale that is not negative, without the exponential, which may overflow; accurate for a small
+    /// `self` where the scale is 0.
+    #[inline]
+    fn ln_1p_scaled(self, scale: Self) -> Self {
+        let far = scale + (self + (-scale).exp()).ln();
+        Self::select(Self::zero().less(scale), far, self.ln_1p())
+    }
+
+    /// Hyperbolic sine.
+    fn sinh(self) -> Self;
+
+    /// Hyperbolic cosine.
+    fn cosh(self) -> Self;
+
+    /// Hyperbolic secant `1 / cosh`, also where the hyperbolic cosine overflows.
+    fn sech(self) -> Self;
+
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+
+    /// `ln cosh`, also where the hyperbolic cosine overflows, and accurate where it is 1.
+    fn ln_cosh(self) -> Self;
+
     /// Stumpff function `c_k(s) = Σ_j (−s)^j / (k + 2j)!` of `s = self`, entire in `s`.
     ///
     /// With `s = θ²`: `c_0 = cos θ`, `c_1 = sin θ / θ`, `c_2 = (1 − cos θ)/θ²`, `c_3 = (θ − sin θ)/θ³`. The derivative is
@@ -102,4 +129,10 @@ pub trait Scalar:
 
     /// `if_true` where `mask` holds, else `if_false`, lane by lane.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+
+    /// The larger of two numbers, lane by lane.
+    #[inline]
+    fn larger(self, other: Self) -> Self {
+        Self::select(self.less(other), other, self)
+    }
 }

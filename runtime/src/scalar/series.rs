@@ -49,6 +49,10 @@ fn powers<F: Float + Scalar>(x: F, coefficient: impl Fn(usize) -> F) -> F {
 /// Stumpff function c_k(s), see [`Scalar::stumpff`].
 #[inline]
 pub(super) fn stumpff<F: Float + Scalar>(s: F, order: usize) -> F {
+    if order >= FACTORIALS {
+        // No term of these is a number other than 0; NaN and infinity make no sense of them.
+        return s * F::from_f64(0.0);
+    }
     // Of the cosine, small beside its terms from a half on, the sum would lose more.
     if order > 0 && Float::abs(s) <= F::from_f64(NEAR) {
         return powers(-s, |j| inverse_factorial(order + 2 * j));
@@ -160,6 +164,8 @@ pub(super) fn dexp_inverse<F: Float + Scalar>(s: F, derivative: usize) -> F {
 /// are taken as they stand and the others as the power series `Σ t_m x^m`, of radius 9. Every term is positive on
 /// (−2π, 2π), for every derivative, so that nothing cancels.
 fn dexp_inverse_far<F: Float + Scalar>(s: F, derivative: usize) -> F {
+    // From there on its factorial, and so the value, is beyond all numbers.
+    let derivative = derivative.min(FACTORIALS);
     let period = TAU * TAU;
     let order = derivative + 1;
     let pole = |square: f64| power(F::from_f64(1.0) / (F::from_f64(square) - s), order);

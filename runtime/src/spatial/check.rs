@@ -1,6 +1,7 @@
 //! What makes a matrix a rotation, and a pose a pose.
 
 use super::Pose;
+use crate::shown::Number;
 use nalgebra::Matrix3;
 
 /// Largest entry of RᵀR − I that is taken for rounding of the input.
@@ -10,7 +11,7 @@ pub const ROTATION_TOLERANCE: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PoseError {
     /// A number is NaN or infinite.
-    #[error("{part} entry ({row}, {column}) is {value}, not a finite number")]
+    #[error("{part} entry ({row}, {column}) is {value}, not a finite number", value = Number(*.value))]
     NotFinite {
         /// `rotation` or `translation`.
         part: &'static str,
@@ -30,7 +31,7 @@ pub enum PoseError {
         deviation: f64,
     },
     /// The determinant is −1.
-    #[error("rotation matrix has determinant {determinant}: it is a reflection")]
+    #[error("rotation matrix has determinant {determinant}: it is a reflection", determinant = Number(*.determinant))]
     Reflection {
         /// det R.
         determinant: f64,

@@ -125,6 +125,15 @@ impl<T: Scalar> SpatialInertia<T> {
     }
 }
 
+impl SpatialInertia<f64> {
+    /// Whether all of its numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let moments = self.inertia.matrix();
+        let numbers = self.first_moment.iter().chain(&moments);
+        self.mass.is_finite() && numbers.into_iter().all(|entry| entry.is_finite())
+    }
+}
+
 impl From<&MassProperties> for SpatialInertia<f64> {
     /// About the body origin; the symmetric part of the given inertia is taken.
     fn from(properties: &MassProperties) -> Self {

@@ -1,5 +1,6 @@
 //! Mass properties of a body, and what makes them physical.
 
+use crate::shown::Number;
 use nalgebra::{Matrix3, Vector3};
 
 /// Rounding that an inertia matrix may show, in units of the trace of the inertia about the frame's origin: an inertia about
@@ -38,7 +39,7 @@ pub struct MassProperties {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MassError {
     /// A number is NaN or infinite.
-    #[error("{quantity} is {value}, not a finite number")]
+    #[error("{quantity} is {value}, not a finite number", value = Number(*.value))]
     NotFinite {
         /// Which number.
         quantity: &'static str,
@@ -46,7 +47,7 @@ pub enum MassError {
         value: f64,
     },
     /// The mass is below zero.
-    #[error("mass is {mass} kg: it must be at least 0")]
+    #[error("mass is {mass} kg: it must be at least 0", mass = Number(*.mass))]
     NegativeMass {
         /// The mass given.
         mass: f64,
@@ -54,8 +55,7 @@ pub enum MassError {
     /// The inertia matrix differs from its transpose.
     #[error(
         "inertia is not symmetric: its ({row}, {column}) entry {upper} and its ({column}, {row}) entry {lower} differ by \
-         more than {limit:e} kg m²"
-    )]
+         more than {limit:e} kg m²", upper = Number(*.upper), lower = Number(*.lower))]
     NotSymmetric {
         /// Row, counted from 1.
         row: usize,

@@ -145,6 +145,14 @@ impl<T: Scalar> Pose<T> {
     }
 }
 
+impl Pose<f64> {
+    /// Whether all of its numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let (rotation, translation) = (&self.rotation, &self.translation);
+        (rotation.iter().chain(translation)).all(|entry| entry.is_finite())
+    }
+}
+
 fn map_columns<T: Scalar, const C: usize>(
     columns: &SMatrix<T, 6, C>,
     map: impl Fn(&Vector6<T>) -> Vector6<T>,

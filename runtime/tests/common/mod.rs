@@ -9,3 +9,4 @@ pub mod polar;
 pub mod random;
 pub mod readings;
 pub mod trees;
+pub mod wall;

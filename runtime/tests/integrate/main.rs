@@ -7,6 +7,7 @@ mod choice;
 mod dense;
 mod energy;
 mod events;
+mod finite;
 mod motion;
 mod order;
 mod requests;

@@ -200,7 +200,7 @@ impl Control {
         let mut sink = Sink::default();
         let begin = (scene.configuration.as_slice(), scene.settings.t_end);
         let bodies = scene.mechanism.bodies().iter();
-        let joints = Some(bodies.map(|body| body.joint_name()).collect());
+        let joints = bodies.map(|body| body.joint_name()).collect();
         let found = match parse::controller(text, &joints, &mut sink) {
             Some(description) if sink.len() == 0 => {
                 build::control(&description, &scene.mechanism, begin, &mut sink)

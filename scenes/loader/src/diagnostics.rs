@@ -1,11 +1,9 @@
 //! Errors of a scene file: collected, then rendered together under the lines that they are about.
 
 use crate::source::Span;
-use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
+use crate::text::{is_visible, visible};
+use hamel_diagnostics::{Place, Report};
 use std::fmt;
-
-/// Errors that are rendered; the others are counted.
-const MOST_RENDERED: usize = 100;
 
 /// One mistake in a source text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,36 +69,21 @@ impl Diagnostic {
         self.span.as_ref()
     }
 
-    fn group<'a>(&'a self, source_name: &'a str, source: &'a str) -> Group<'a> {
-        let title = Level::ERROR.primary_title(self.message.as_str());
-        let group = match &self.span {
-            Some(span) => title.element(self.snippet(span, source_name, source)),
-            None => Group::with_title(title),
-        };
-        let help = self.help.iter();
-        group.elements(help.map(|text| Level::HELP.message(text.as_str())))
-    }
-
-    fn snippet<'a>(
-        &'a self,
-        span: &Span,
-        source_name: &'a str,
-        source: &'a str,
-    ) -> Snippet<'a, Annotation<'a>> {
-        let labelled = |kind: AnnotationKind, span: &Span, label: &'a str| {
-            let annotation = kind.span(within(source, span));
-            if label.is_empty() {
-                annotation
-            } else {
-                annotation.label(label)
-            }
-        };
+    fn report<'a>(&'a self, owner: &'a Diagnostics) -> Report<'a> {
         let context = self.context.as_deref();
-        let context = context.map(|(span, label)| labelled(AnnotationKind::Context, span, label));
-        Snippet::source(source)
-            .path(source_name)
-            .annotation(labelled(AnnotationKind::Primary, span, &self.label))
-            .annotations(context)
+        let place = self.span.as_ref().map(|span| Place {
+            source_name: &owner.source_name,
+            source: &owner.source,
+            primary: (span.clone(), &self.label),
+            context: context.map(|(span, label)| (span.clone(), label.as_str())),
+        });
+        Report {
+            code: None,
+            message: self.message.as_str().into(),
+            place,
+            notes: &[],
+            help: &self.help,
+        }
     }
 }
 
@@ -132,35 +115,28 @@ impl Diagnostics {
 
     /// Line and column of a byte of the text, both from 1; columns count characters.
     pub fn line_and_column(&self, byte: usize) -> (usize, usize) {
-        let end = floor_boundary(&self.source, byte);
+        let end = self.source.floor_char_boundary(byte);
         let before = &self.source[..end];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.bytes().filter(|&b| b == b'\n').count() + 1;
         (line, before[line_start..].chars().count() + 1)
     }
 
-    /// The mistakes as text with excerpts of the source, with terminal colours if `colour`; at most a hundred of them.
+    /// The first mistakes as text with excerpts of the source, with terminal colours if `colour`, and the number of the others. Where something in
+    /// it would not be seen, that is written out, and there are no colours.
     pub fn render(&self, colour: bool) -> String {
-        let renderer = if colour {
-            Renderer::styled()
-        } else {
-            Renderer::plain()
+        let plain = hamel_diagnostics::render(self.reports(), false);
+        let mut text = match colour && is_visible(&plain) {
+            true => hamel_diagnostics::render(self.reports(), true),
+            false => visible(&plain),
         };
-        let reports = self.errors.iter().take(MOST_RENDERED).map(|error| {
-            let group = error.group(&self.source_name, &self.source);
-            renderer.render(&[group])
-        });
-        let mut text = reports.collect::<Vec<_>>().join("\n\n");
-        if let Some(more) = self
-            .errors
-            .len()
-            .checked_sub(MOST_RENDERED)
-            .filter(|&n| n > 0)
-        {
-            text.push_str(&format!("\n\n… and {more} more errors"));
-        }
         text.push('\n');
         text
+    }
+
+    /// The mistakes, ready to print.
+    pub fn reports(&self) -> impl Iterator<Item = Report<'_>> {
+        self.errors.iter().map(|error| error.report(self))
     }
 }
 
@@ -171,18 +147,3 @@ impl fmt::Display for Diagnostics {
 }
 
 impl std::error::Error for Diagnostics {}
-
-/// `span`, moved onto character boundaries inside `source`.
-fn within(source: &str, span: &Span) -> Span {
-    let start = floor_boundary(source, span.start);
-    let end = floor_boundary(source, span.end).max(start);
-    start..end
-}
-
-/// The last character boundary of `source` at or before `byte`.
-fn floor_boundary(source: &str, byte: usize) -> usize {
-    (0..=byte.min(source.len()))
-        .rev()
-        .find(|&at| source.is_char_boundary(at))
-        .unwrap_or(0)
-}

@@ -92,8 +92,8 @@ impl SceneEvent {
         let beyond = move |_time: f64, q: &[f64], speeds: &[f64]| {
             let found = match quantity {
                 Quantity::Point(point) => point.of(&mechanism, q),
-                Quantity::Coordinate(entry) => q[entry],
-                Quantity::Speed(entry) => speeds[entry],
+                Quantity::Coordinate(entry) => entry_of(q, entry),
+                Quantity::Speed(entry) => entry_of(speeds, entry),
             };
             found - value
         };
@@ -105,12 +105,19 @@ impl SceneEvent {
     }
 }
 
+/// NaN for an entry that is not there, which whoever looks at an event refuses.
+fn entry_of(values: &[f64], entry: usize) -> f64 {
+    values.get(entry).copied().unwrap_or(f64::NAN)
+}
+
 impl PointAlong {
     /// At configuration `q`, m.
     fn of(&self, mechanism: &Mechanism, q: &[f64]) -> f64 {
         let (mut position, mut next) = (self.point, Some(self.body));
         while let Some(index) = next {
-            let body = &mechanism.bodies()[index];
+            let Ok(body) = mechanism.body(index) else {
+                return f64::NAN;
+            };
             let joint = body.joint().pose(body.configuration(q));
             let pose = *body.placement() * joint * *body.child_placement();
             position = pose.transform_point(&position);

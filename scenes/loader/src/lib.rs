@@ -19,7 +19,9 @@ mod scene;
 mod settings;
 mod shape;
 mod source;
+mod start;
 mod suggest;
+pub mod text;
 pub mod urdf;
 mod write;
 
@@ -37,8 +39,9 @@ pub use forces::{
     BodyPoint, ConstraintDescription, FrameDescription, JointForces, JointSpring, PerFreedom,
     PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,
 };
-pub use notice::Notice;
-pub use scene::Scene;
+pub use notice::{Notice, Severity};
+pub use scene::{Scene, read_file};
 pub use settings::{Arithmetic, Settings};
 pub use shape::{Geometry, ShapeDescription};
 pub use source::{Located, Span};
+pub use start::StartError;

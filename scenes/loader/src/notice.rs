@@ -1,13 +1,34 @@
 //! What a file says and the simulation leaves out: told beside the scene, never dropped in silence.
 
+use std::collections::HashMap;
 use std::fmt;
 
 /// Names of elements that a notice shows; the others are counted.
 const MOST_SHOWN: usize = 4;
 
+/// How much a notice matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The mechanism moves otherwise than the file says.
+    Warning,
+    /// Good to know.
+    Note,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Warning => "warning",
+            Self::Note => "note",
+        })
+    }
+}
+
 /// Something that a file says and that has no effect on the simulation, or that the format leaves open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
+    /// How much it matters.
+    pub severity: Severity,
     /// What it is, in words.
     pub message: String,
     /// The elements that it is about, such as "joint `elbow`", in the order of the file.
@@ -15,9 +36,9 @@ pub struct Notice {
 }
 
 impl fmt::Display for Notice {
-    /// The message, and the first few of the elements.
+    /// Severity and message, and the first few of the elements: `warning: dry friction is not simulated: joint `elbow``.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)?;
+        write!(f, "{}: {}", self.severity, self.message)?;
         let shown = self.elements.len().min(MOST_SHOWN);
         for (index, element) in self.elements[..shown].iter().enumerate() {
             let mark = if index == 0 { ": " } else { ", " };
@@ -32,23 +53,40 @@ impl fmt::Display for Notice {
 
 /// Collects notices, one for each message.
 #[derive(Debug, Default)]
-pub(crate) struct Notices(Vec<Notice>);
+pub(crate) struct Notices {
+    notices: Vec<Notice>,
+    /// Their places by their messages, of which there may be as many as elements.
+    places: HashMap<String, usize>,
+}
 
 impl Notices {
-    /// Adds an element to the notice of that message.
+    /// Adds an element to the note of that message.
     pub(crate) fn add(&mut self, message: impl Into<String>, element: impl Into<String>) {
-        let (message, element) = (message.into(), element.into());
-        match self.0.iter_mut().find(|notice| notice.message == message) {
-            Some(notice) => notice.elements.push(element),
-            None => self.0.push(Notice {
-                message,
-                elements: vec![element],
-            }),
+        self.add_as(Severity::Note, message.into(), element.into());
+    }
+
+    /// Adds an element to the warning of that message.
+    pub(crate) fn warn(&mut self, message: impl Into<String>, element: impl Into<String>) {
+        self.add_as(Severity::Warning, message.into(), element.into());
+    }
+
+    fn add_as(&mut self, severity: Severity, message: String, element: String) {
+        match self.places.get(&message) {
+            Some(&place) => self.notices[place].elements.push(element),
+            None => {
+                self.places.insert(message.clone(), self.notices.len());
+                self.notices.push(Notice {
+                    severity,
+                    message,
+                    elements: vec![element],
+                });
+            }
         }
     }
 
-    /// The notices, in the order of their first elements.
-    pub(crate) fn into_vec(self) -> Vec<Notice> {
-        self.0
+    /// The notices, warnings before notes, and otherwise in the order of their first elements.
+    pub(crate) fn into_vec(mut self) -> Vec<Notice> {
+        self.notices.sort_by_key(|notice| notice.severity);
+        self.notices
     }
 }

@@ -10,6 +10,7 @@ use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
 use crate::settings::Settings;
 use crate::shape::ShapeDescription;
+use crate::text;
 use hamel::integrate::State;
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
@@ -19,18 +20,20 @@ use std::sync::Arc;
 /// The text of a file, and what messages call it.
 ///
 /// # Errors
-/// A file that cannot be read or is not UTF-8.
-pub(crate) fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
+/// A file that cannot be read, is not UTF-8 or holds nothing.
+pub fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
     let name = path.display().to_string();
     let refuse =
         |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
     let bytes =
         std::fs::read(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        refuse(format!("cannot read {name}: its byte {valid} is not UTF-8"))
-    })?;
-    Ok((text, name))
+    let text =
+        text::from_utf8(bytes).map_err(|reason| refuse(format!("cannot read {name}: {reason}")))?;
+    // One error, not one for each thing that it lacks: such a file is one that is being written, or was not written to its end.
+    match text.trim().is_empty() {
+        true => Err(refuse(format!("{name} is empty"))),
+        false => Ok((text, name)),
+    }
 }
 
 /// What is said of a scene that cannot be read, should no error say more.
@@ -192,10 +195,8 @@ fn describe(
 /// Name of a file without folder and ending.
 pub(crate) fn stem(source_name: &str) -> String {
     let stem = Path::new(source_name).file_stem();
-    stem.map_or_else(
-        || source_name.to_owned(),
-        |stem| stem.to_string_lossy().into_owned(),
-    )
+    let stem = stem.map_or_else(|| source_name.into(), |stem| stem.to_string_lossy());
+    text::visible_line(&stem)
 }
 
 /// The bodies in the order of the tree; `None` if a part of one could not be read.

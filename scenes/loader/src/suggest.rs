@@ -6,6 +6,35 @@ const THRESHOLD: f64 = 0.78;
 /// A list of names is cut off after this many.
 const MOST_LISTED: usize = 32;
 
+/// Pairs of characters that suggestions among the names of one text may compare: many misspelt names among many would take hours. A text of a
+/// thousand names has suggestions for its first thousand mistakes.
+const WORK: usize = 100_000_000;
+
+/// What is left of the work on one text.
+#[derive(Debug)]
+pub(crate) struct Suggestions {
+    left: usize,
+}
+
+impl Default for Suggestions {
+    fn default() -> Self {
+        Self { left: WORK }
+    }
+}
+
+impl Suggestions {
+    /// As [`nearest`], among as many of the names as there is work left for.
+    pub(crate) fn nearest<'a>(&mut self, name: &str, known: &[&'a str]) -> Option<&'a str> {
+        let affordable = known.iter().take_while(|candidate| {
+            let pairs = (name.len() + 1).saturating_mul(candidate.len() + 1);
+            let left = self.left.checked_sub(pairs);
+            self.left = left.unwrap_or(0);
+            left.is_some()
+        });
+        nearest(name, affordable.copied())
+    }
+}
+
 /// The name among `known` that `name` most likely means, if any is near.
 pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
@@ -30,10 +59,12 @@ pub(crate) fn all_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 fn listed<'a>(names: impl IntoIterator<Item = &'a str>, conjunction: &str) -> String {
-    let mut quoted: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
-    let left_out = quoted.len().saturating_sub(MOST_LISTED);
+    let mut names = names.into_iter();
+    let listed = names.by_ref().take(MOST_LISTED);
+    let mut quoted: Vec<String> = listed.map(|name| format!("`{name}`")).collect();
+    // Of a slice this takes no time, however long it is.
+    let left_out = names.count();
     if left_out > 0 {
-        quoted.truncate(MOST_LISTED);
         quoted.push(format!("{left_out} more"));
     }
     match quoted.split_last() {

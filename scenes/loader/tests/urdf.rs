@@ -71,7 +71,7 @@ fn an_axis_that_is_not_given_is_x_and_told() {
     let import = robot("revolute", "", "");
     let along = arm(&import).at.rotation * Vector3::z();
     assert!((along - Vector3::x()).amax() <= ROUNDING);
-    let told = "the axis is not given: it is x, the default of URDF: joint `joint`";
+    let told = "note: the axis is not given: it is x, the default of URDF: joint `joint`";
     assert_eq!(notices(&import), [told]);
 }
 
@@ -89,8 +89,9 @@ fn a_version_that_is_not_known_is_told() {
         assert_eq!(told(known), [""; 0], "{known}");
     }
     for (unknown, known) in [("2.7", "1.2"), ("1.3", "1.2"), ("0.9", "1.0"), ("x", "1.0")] {
-        let message =
-            format!("version `{unknown}` of URDF is not known: it is read as {known}: <robot>");
+        let message = format!(
+            "note: version `{unknown}` of URDF is not known: it is read as {known}: <robot>"
+        );
         assert_eq!(told(unknown), [message]);
     }
 }
@@ -158,17 +159,17 @@ fn what_is_not_simulated_is_told_and_kept() {
     );
     let import = robot("revolute", inside, &more);
     let wanted = [
-        "attributes `current` of <limit> are not read: joint `joint`",
-        "transmissions are not simulated: transmission `t`",
-        "elements <gear> in <robot> are not read: gear 1",
-        "limits of position are not simulated: the joint moves past them: joint `joint`",
-        "limits of velocity and effort are not simulated: joint `joint`",
-        "mimic joints are not coupled: the joint moves by itself: joint `joint`",
-        "dry friction is not simulated: joint `joint`",
-        "safety controllers are not simulated: joint `joint`",
-        "calibrations are not read: joint `joint`",
-        "URDF does not say whether a planar joint turns: it turns about its axis and slides across it: joint `other`",
-        "meshes are not read: pictures show such links by their inertias: link `hand`",
+        "warning: limits of position are not simulated: the joint moves past them: joint `joint`",
+        "warning: mimic joints are not coupled: the joint moves by itself: joint `joint`",
+        "warning: dry friction is not simulated: joint `joint`",
+        "note: attributes `current` of <limit> are not read: joint `joint`",
+        "note: transmissions are not simulated: transmission `t`",
+        "note: elements <gear> in <robot> are not read: gear 1",
+        "note: limits of velocity and effort are not simulated: joint `joint`",
+        "note: safety controllers are not simulated: joint `joint`",
+        "note: calibrations are not read: joint `joint`",
+        "note: URDF does not say whether a planar joint turns: it turns about its axis and slides across it: joint `other`",
+        "note: meshes are not read: pictures show such links by their inertias: link `hand`",
     ];
     assert_eq!(notices(&import), wanted);
     let facts = &import.joints[0];
@@ -238,7 +239,7 @@ fn simple_visual_shapes_are_kept_for_pictures() {
         (block.color, pin.color),
         (Some([128; 3]), Some([255, 0, 0]))
     );
-    let told = "visual shapes that are not complete are not drawn: link `tip`, link `tip`";
+    let told = "note: visual shapes that are not complete are not drawn: link `tip`, link `tip`";
     assert!(notices(&import).iter().any(|notice| notice == told));
     let text = import.to_toml();
     let again = hamel_scene::Scene::from_toml(&text, "r.toml").expect("a sound text");
@@ -248,8 +249,7 @@ fn simple_visual_shapes_are_kept_for_pictures() {
 #[test]
 fn a_mimic_joint_that_follows_nothing_is_told() {
     let inside = "<axis xyz=\"0 0 1\"/><mimic joint=\"absent\"/>";
-    let told =
-        "mimic joints follow no other joint of the robot: the joint moves by itself: joint `joint`";
+    let told = "warning: mimic joints follow no other joint of the robot: the joint moves by itself: joint `joint`";
     assert_eq!(notices(&robot("revolute", inside, "")), [told]);
 }
 
@@ -278,8 +278,8 @@ fn the_scene_that_is_written_can_be_read_by_people() {
     let written = robot("revolute", inside, "").to_toml();
     let wanted = "\
 # What the robot's file says and the scene does not, or what it leaves open:
-# - limits of position are not simulated: the joint moves past them: joint `joint`
-# - limits of velocity and effort are not simulated: joint `joint`
+# - warning: limits of position are not simulated: the joint moves past them: joint `joint`
+# - note: limits of velocity and effort are not simulated: joint `joint`
 hamel = 1
 name = \"r\"
 description = \"Imported from the URDF r.urdf\"

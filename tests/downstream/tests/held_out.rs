@@ -3,18 +3,38 @@
 use hamel_downstream::held_out::*;
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
+use hamel_tests::laws::search::{Effort, check_everywhere};
+use std::path::Path;
 
-/// One test a joint, and the list of those that have one.
+/// Two tests a joint, and the list of those that have them.
 macro_rules! law_tests {
-    ($($name:ident: $joint:expr, $reach:expr;)*) => {
+    ($($name:ident: $joint:ident $(::new($($value:expr),*))?, $reach:expr;)*) => {
         const TESTED: &[&str] = &[$(stringify!($name)),*];
         $(
             #[test]
             fn $name() {
                 let reach: Reach = $reach;
-                check_within(&$joint, reach);
+                check_within(&$joint $(::new($($value),*))?, reach);
             }
         )*
+        mod everywhere {
+            use super::*;
+            $(
+                #[test]
+                fn $name() {
+                    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../codegen/tests/held-out");
+                    let derived = hamel_tests::derived_in(&folder, stringify!($name));
+                    let build = |_values: &[f64]| {
+                        let _values = &mut _values.iter().copied().chain(std::iter::repeat(f64::NAN));
+                        $joint $(::new($({
+                            let _: f64 = $value;
+                            _values.next().unwrap_or(f64::NAN)
+                        }),*))?
+                    };
+                    check_everywhere(&derived, build, &[$($($value),*)?], Effort::PLAIN);
+                }
+            )*
+        }
     };
 }
 
@@ -41,6 +61,7 @@ law_tests! {
     so3_norm: So3Norm::new(0.7), HalfTurn;
     so3_skew: So3Skew::new(0.7), HalfTurn;
     so3_turn: So3Turn::new(0.7), HalfTurn;
+    soft_steps: SoftSteps::new(0.7, 0.85), HalfTurn;
     sphere_skate: SphereSkate::new(0.7), HalfTurn;
     sphere_steer: SphereSteer::new(0.7), Entries(0.5);
     two_vectors: TwoVectors, HalfTurn;

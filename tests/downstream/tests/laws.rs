@@ -6,18 +6,38 @@ use hamel_downstream::joints::{
 };
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
+use hamel_tests::laws::search::{Effort, check_everywhere};
+use std::path::Path;
 
-/// One test a joint, and the list of those that have one.
+/// Two tests a joint, and the list of those that have them.
 macro_rules! law_tests {
-    ($($name:ident: $joint:expr, $reach:expr;)*) => {
+    ($($name:ident: $joint:ident $(::new($($value:expr),*))?, $reach:expr;)*) => {
         const TESTED: &[&str] = &[$(stringify!($name)),*];
         $(
             #[test]
             fn $name() {
                 let reach: Reach = $reach;
-                check_within(&$joint, reach);
+                check_within(&$joint $(::new($($value),*))?, reach);
             }
         )*
+        mod everywhere {
+            use super::*;
+            $(
+                #[test]
+                fn $name() {
+                    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
+                    let derived = hamel_tests::derived_in(&folder, stringify!($name));
+                    let build = |_values: &[f64]| {
+                        let _values = &mut _values.iter().copied().chain(std::iter::repeat(f64::NAN));
+                        $joint $(::new($({
+                            let _: f64 = $value;
+                            _values.next().unwrap_or(f64::NAN)
+                        }),*))?
+                    };
+                    check_everywhere(&derived, build, &[$($($value),*)?], Effort::PLAIN);
+                }
+            )*
+        }
     };
 }
 

@@ -30,6 +30,8 @@ pub struct AtZero {
     speed_basis: Option<Grid<Jet>>,
     /// ∂Φ/∂ϕ of the stored scalars.
     tangent: Grid<Node>,
+    /// X S − J to first order in ϕ: at ϕ = 0, and its derivative by each ϕ_k. S being a least-squares solution, it vanishes where X spans J.
+    mismatch: Vec<Grid<Node>>,
 }
 
 /// Arguments of kernels beside Q.
@@ -52,7 +54,9 @@ impl AtZero {
         let jacobian = declared.jacobian(&pose, 0);
         let x = declared.twist_map(&moving);
         let (velocity_map, slopes) = velocity_map(&x, &jacobian);
+        let mismatch = mismatch(&x, &jacobian, &velocity_map, &slopes);
         Self {
+            mismatch,
             twist_map_child: to_child(&pose, &x),
             local: values(&to_child(&pose, &jacobian)),
             twist_map: x,
@@ -85,6 +89,9 @@ impl AtZero {
             let of_child = slopes(&self.twist_map_child, k);
             sheet.put("twist_map_child_gradient", of_child);
             sheet.put("velocity_map_gradient", self.slopes[k].clone());
+        }
+        for mismatch in &self.mismatch {
+            sheet.put("mismatch", mismatch.clone());
         }
         sheet.put("local_twist_map", self.local.clone());
         sheet.put("gamma", self.gamma(v));
@@ -230,6 +237,23 @@ fn beside(columns: impl Iterator<Item = Grid<Node>>) -> Grid<Node> {
 fn along(grid: &Grid<Jet>, rate: &Grid<Node>) -> Grid<Node> {
     let term = |k: usize| slopes(grid, k).map(|entry| entry.times(rate.at(k, 0)));
     (1..rate.rows).fold(term(0), |sum, k| sum.plus(&term(k)))
+}
+
+/// X₀ S₀ − J₀ and X₀ S_k + X_k S₀ − J_k.
+fn mismatch(
+    x: &Grid<Jet>,
+    j: &Grid<Jet>,
+    start: &Grid<Node>,
+    slices: &[Grid<Node>],
+) -> Vec<Grid<Node>> {
+    let base = values(x);
+    let first = base.times(start).minus(&values(j));
+    let slice = |(k, slice): (usize, &Grid<Node>)| {
+        let left = base.times(slice).plus(&slopes(x, k).times(start));
+        left.minus(&slopes(j, k))
+    };
+    let rest = slices.iter().enumerate().map(slice);
+    std::iter::once(first).chain(rest).collect()
 }
 
 /// X₀ S₀ = J₀ and X₀ S_k = J_k − X_k S₀, (23) order by order.

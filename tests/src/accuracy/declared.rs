@@ -90,6 +90,12 @@ impl Declared {
         self.at(q).with(&self.locals, phi).evaluate_all(&self.moved)
     }
 
+    /// The stored scalars of the home configuration.
+    pub fn home(&self) -> Vec<Node> {
+        let home = self.parameters.evaluate_all(&self.home);
+        home.into_iter().map(|entry| entry.value).collect()
+    }
+
     /// ϕ, each coordinate a variable; numbered from `first`.
     pub fn variables(&self, phi: &[Node], first: usize, degree: usize) -> Vec<Jet> {
         let variable = |(i, value): (usize, &Node)| Jet::variable(value.clone(), first + i, degree);

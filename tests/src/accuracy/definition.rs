@@ -132,6 +132,12 @@ impl Definition {
         })
     }
 
+    /// The home configuration.
+    pub fn home(&self) -> Vec<Tracked> {
+        let known = |node: Node| node.known().unwrap_or(Tracked::input(f64::NAN));
+        self.declared.home().into_iter().map(known).collect()
+    }
+
     /// Φ(Q, ϕ).
     pub(super) fn moved(&self, q: &[Tracked], phi: &[Tracked]) -> Grid<Tracked> {
         self.moved.run(&[q, phi].concat()).get("moved").clone()

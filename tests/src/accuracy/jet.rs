@@ -256,6 +256,12 @@ fn derivative(function: Function, order: u8, x: &Node) -> Node {
         (Function::Cos, _) => once(Function::Sin).negative(),
         (Function::Sin, _) => once(Function::Cos),
         (Function::Exp, _) => at(Function::Exp),
+        (Function::Sinh, _) => once(Function::Cosh),
+        (Function::Cosh, _) => once(Function::Sinh),
+        (Function::LnCosh, _) => once(Function::Tanh),
+        (Function::Tanh | Function::Sech, _) => {
+            fading(function, order, &at(Function::Sech), &at(Function::Tanh))
+        }
         (Function::Ln, _) => once(Function::Recip),
         (Function::Sqrt, 1) => at(Function::Recip)
             .times(&at(Function::Sqrt))
@@ -278,7 +284,30 @@ fn derivative(function: Function, order: u8, x: &Node) -> Node {
         }
         (Function::DexpInverse(n), _) => once(Function::DexpInverse(n + 1)),
         (Function::Group, 1) => number(1),
-        (Function::Group | Function::Pi | Function::Atan2, _) => number(0),
+        // Ln1p and Larger are of written formulas, not of definitions.
+        (
+            Function::Group | Function::Pi | Function::Atan2 | Function::Ln1p | Function::Larger,
+            _,
+        ) => number(0),
+    }
+}
+
+/// Derivatives of tangent and secant in terms of themselves.
+fn fading(function: Function, order: u8, sech: &Node, tanh: &Node) -> Node {
+    let number = |value: i32| Node::input(value.into());
+    let square = sech.power(2);
+    // Of secant and tangent: a times sech², b times tanh².
+    let both = |a, b| {
+        let first = square.times(&number(a));
+        first.plus(&tanh.power(2).times(&number(b)))
+    };
+    match (function, order) {
+        (Function::Tanh, 1) => square,
+        (Function::Tanh, 2) => square.times(tanh).times(&number(-2)),
+        (Function::Tanh, _) => square.times(&both(-2, 4)),
+        (_, 1) => sech.times(tanh).negative(),
+        (_, 2) => sech.times(&both(-1, 1)),
+        _ => sech.times(tanh).times(&both(5, -1)),
     }
 }
 
@@ -297,6 +326,11 @@ mod tests {
             sum.sin(),
             &sum.cos() * x,
             sum.exp(),
+            sum.sinh(),
+            sum.cosh(),
+            sum.sech(),
+            sum.tanh(),
+            sum.cosh().ln(),
             sum.ln(),
             sum.sqrt(),
             &recip * y,

@@ -33,10 +33,13 @@ mod wide;
 
 pub use compare::{Measured, Worst};
 pub use definition::Definition;
+pub(crate) use definition::numbers;
+pub use finite::AtPhi;
 pub use grid::Grid;
 pub use jet::Jet;
 pub use node::Node;
-pub use outputs::{check_lanes, measure_duals};
+pub(crate) use outputs::{Arguments, arguments, formulas, outputs, solutions};
+pub use outputs::{Output, check_lanes, measure_duals};
 pub use points::{Case, Points};
 pub use program::{Program, Sheet};
 pub use suite::{check, measure};

@@ -14,7 +14,7 @@ use hamel_codegen::derived::Derived;
 pub type Output<T> = (&'static str, Vec<T>);
 
 /// Arguments of kernels in a scalar.
-struct Arguments<T, const N: usize, const K: usize, const S: usize> {
+pub(crate) struct Arguments<T, const N: usize, const K: usize, const S: usize> {
     q: SVector<T, N>,
     target: SVector<T, N>,
     phi: SVector<T, K>,
@@ -33,7 +33,48 @@ fn flat_all<T: Scalar, const R: usize, const C: usize, const K: usize>(
     slices.iter().flat_map(flat).collect()
 }
 
-fn outputs<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+/// Every kernel by its name.
+pub(crate) fn outputs<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    at: &Arguments<T, N, K, S>,
+) -> Vec<Output<T>>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let mut all = formulas(joint, at);
+    all.extend(solutions(joint, at).map(|solution| solution()));
+    all
+}
+
+/// Kernels that are solutions of equations where Φ is not exp: each is computed when it is asked for.
+pub(crate) fn solutions<'a, T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &'a J,
+    at: &'a Arguments<T, N, K, S>,
+) -> [Box<dyn Fn() -> Output<T> + 'a>; 4]
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let Arguments {
+        q, target, phi, v, ..
+    } = at;
+    [
+        Box::new(|| ("local", flat(&joint.local(q, target)))),
+        Box::new(|| {
+            let differential = joint.retract_differential(q, phi);
+            ("retract_differential", flat(&differential))
+        }),
+        Box::new(|| {
+            let rate = joint.retract_differential_inverse(q, phi, v);
+            ("retract_differential_inverse", flat(&rate))
+        }),
+        Box::new(|| ("project", flat(&joint.project(q)))),
+    ]
+}
+
+/// The other kernels by their names.
+pub(crate) fn formulas<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
     at: &Arguments<T, N, K, S>,
 ) -> Vec<Output<T>>
@@ -44,6 +85,7 @@ where
     let (q, v) = (&at.q, &at.v);
     let pose = joint.pose(q);
     vec![
+        ("home", flat(&joint.home())),
         ("rotation", flat(&pose.rotation)),
         ("translation", flat(&pose.translation)),
         ("twist_map", flat(&joint.twist_map(q))),
@@ -68,16 +110,6 @@ where
         ),
         ("configuration_rate", flat(&joint.configuration_rate(q, v))),
         ("retract", flat(&joint.retract(q, &at.phi))),
-        ("local", flat(&joint.local(q, &at.target))),
-        (
-            "retract_differential",
-            flat(&joint.retract_differential(q, &at.phi)),
-        ),
-        (
-            "retract_differential_inverse",
-            flat(&joint.retract_differential_inverse(q, &at.phi, v)),
-        ),
-        ("project", flat(&joint.project(q))),
         ("residual", vec![joint.residual(q)]),
         ("singularity", vec![joint.singularity(q)]),
         (
@@ -115,7 +147,7 @@ where
 }
 
 /// The arguments of a case, each number made by `number` from all its values (one, or one a lane).
-fn arguments<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn arguments<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
     cases: &[Case],
     number: impl Fn(&[f64]) -> T,

@@ -168,7 +168,14 @@ fn value(function: Function, x: Wide) -> Wide {
         Function::Group => x,
         Function::Pi
         | Function::Exp
+        | Function::Sinh
+        | Function::Cosh
+        | Function::Sech
+        | Function::Tanh
+        | Function::LnCosh
         | Function::Ln
+        | Function::Ln1p
+        | Function::Larger
         | Function::Atan2
         | Function::DexpInverse(_) => by_precise(function, &[x]),
     }
@@ -180,6 +187,11 @@ fn slope(function: Function, x: Wide) -> Wide {
         Function::Cos => -x.cos_sin().1,
         Function::Sin => x.cos_sin().0,
         Function::Exp => value(function, x),
+        Function::Sinh => value(Function::Cosh, x),
+        Function::Cosh => value(Function::Sinh, x),
+        Function::Sech => -(value(Function::Tanh, x) * value(Function::Sech, x)),
+        Function::Tanh => value(Function::Sech, x) * value(Function::Sech, x),
+        Function::LnCosh => value(Function::Tanh, x),
         Function::Ln => x.recip(),
         Function::Sqrt => x.sqrt().recip().halved(1),
         Function::Recip => -(x * x).recip(),
@@ -189,6 +201,6 @@ fn slope(function: Function, x: Wide) -> Wide {
         }
         Function::DexpInverse(n) => by_precise(Function::DexpInverse(n + 1), &[x]),
         Function::Group => Wide::from_integer(1),
-        Function::Pi | Function::Atan2 => Wide::ZERO,
+        Function::Pi | Function::Ln1p | Function::Larger | Function::Atan2 => Wide::ZERO,
     }
 }

@@ -1,12 +1,12 @@
 //! The scene loader as a target: scene files, and robots in URDF.
 
 use super::corpus::Corpus;
-use super::target::{Outcome, guarded};
+use super::target::{Outcome, guarded, shown};
 use crate::refusals::files;
 use crate::scenes::difference;
 use hamel::registry::JointRegistry;
 use hamel_scene::urdf::{self, Options};
-use hamel_scene::{Diagnostics, Scene, SceneDescription};
+use hamel_scene::{Control, Diagnostics, Scene, SceneDescription};
 use std::path::{Path, PathBuf};
 
 /// Right and wrong files, as many of the ones as of the others: most mutations make a right one wrong.
@@ -28,6 +28,18 @@ pub fn scenes() -> Corpus {
     let examples = page.split("```toml\n").skip(1);
     right.extend(examples.filter_map(|rest| Some(rest.split("```").next()?.to_owned())));
     balanced(right, texts(&root.join("tests/corpus/scenes-bad"), "toml"))
+}
+
+/// The controllers of the repository that stand in files of their own.
+///
+/// # Panics
+/// Where a folder of the repository cannot be read.
+pub fn controllers() -> Corpus {
+    let folders = ["scenes/controllers", "tests/fuzz/seeds/controller"];
+    let texts = folders
+        .iter()
+        .flat_map(|folder| texts(&root().join(folder), "toml"));
+    Corpus::of(texts.collect(), '\n')
 }
 
 /// The robots of the repository, right or wrong; of the right ones the small.
@@ -95,6 +107,14 @@ pub fn robot(text: &str, registry: &JointRegistry) -> Outcome {
     })
 }
 
+/// Reads a controller for `scene`.
+pub fn controller(text: &str, scene: &Scene) -> Outcome {
+    guarded(|| match Control::parse(text, "input.toml", scene) {
+        Ok(_) => Outcome::Accepted,
+        Err(errors) => refused(text, &errors),
+    })
+}
+
 /// Reads what was written for `wanted`.
 fn again(text: &str, wanted: &SceneDescription, registry: &JointRegistry) -> Outcome {
     let found = match Scene::from_toml(text, "written.toml") {
@@ -117,9 +137,6 @@ fn refused(text: &str, errors: &Diagnostics) -> Outcome {
     match (errors.errors().is_empty(), misplaced) {
         (true, _) => Outcome::Broken("refused without an error".into()),
         (_, Some(span)) => Outcome::Broken(format!("an error outside the text: {span:?}")),
-        _ if errors.render(false).trim().is_empty() => {
-            Outcome::Broken("errors that show nothing".into())
-        }
-        _ => Outcome::Refused,
+        _ => shown(errors.reports()),
     }
 }

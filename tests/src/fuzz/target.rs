@@ -2,6 +2,7 @@
 
 use hamel_codegen::diagnostic::Diagnostics;
 use hamel_codegen::emit;
+use hamel_diagnostics::Report;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What became of an input.
@@ -13,6 +14,18 @@ pub enum Outcome {
     Refused,
     /// Something that must never happen.
     Broken(String),
+}
+
+impl Outcome {
+    /// Nothing, where the reader did what it should.
+    ///
+    /// # Panics
+    /// Where something broke: so a fuzzer learns of it.
+    pub fn sound(&self) {
+        if let Self::Broken(why) = self {
+            panic!("{why}");
+        }
+    }
 }
 
 /// Reads and checks a spec; shows what is wrong with it.
@@ -53,7 +66,14 @@ fn refused(text: &str, errors: &Diagnostics) -> Outcome {
     match (errors.errors.is_empty(), misplaced) {
         (true, _) => Outcome::Broken("refused without an error".into()),
         (_, Some(error)) => Outcome::Broken(format!("an error outside the text: {error:?}")),
-        _ if errors.render().is_empty() => Outcome::Broken("errors that show nothing".into()),
+        _ => shown(errors.reports()),
+    }
+}
+
+/// Prints what is wrong with an input: the first two errors, which would take most of the time of a run if they were all printed.
+pub(super) fn shown<'a>(reports: impl Iterator<Item = Report<'a>>) -> Outcome {
+    match hamel_diagnostics::render(reports.take(2), false).trim() {
+        "" => Outcome::Broken("errors that show nothing".into()),
         _ => Outcome::Refused,
     }
 }

@@ -5,6 +5,7 @@
 
 mod dual;
 mod finite;
+pub mod search;
 mod speed;
 mod velocity;
 

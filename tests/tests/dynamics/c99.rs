@@ -7,7 +7,7 @@ use hamel_codegen::derived::Primitive;
 use hamel_codegen::expr::Function as Known;
 use hamel_codegen::scene::emit::Function;
 use hamel_codegen::scene::functions::{Kind, Loops, compile};
-use hamel_codegen::scene::graph::{Argument, Sym, atan2, call, primitive, record};
+use hamel_codegen::scene::graph::{Argument, Sym, atan2, call, call_two, primitive, record};
 use hamel_codegen::scene::model::Model;
 use hamel_codegen::scene::scene;
 use hamel_scene::Scene;
@@ -290,7 +290,21 @@ fn helpers_agree() {
             call(Known::Ln, x(2)),
             call(Known::Sqrt, x(2)),
         ]);
+        let hyperbolic = [
+            Known::Sinh,
+            Known::Cosh,
+            Known::Sech,
+            Known::Tanh,
+            Known::LnCosh,
+        ];
+        all.extend(hyperbolic.map(|function| call(function, x(0))));
         all.push(atan2(x(0), x(1)));
+        all.push(call_two(Known::Larger, x(0), x(1)));
+        all.push(call_two(
+            Known::Ln1p,
+            x(2),
+            call_two(Known::Larger, x(0), Sym::from(0.0)),
+        ));
         let matrix: Vec<Sym> = (3..12).map(x).collect();
         let quaternion: Vec<Sym> = (12..16).map(x).collect();
         all.extend(primitive(Primitive::RotationVector, &matrix));

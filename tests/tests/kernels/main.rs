@@ -4,7 +4,9 @@
 
 mod accuracy;
 mod extended;
+mod fuzz_pipeline;
 mod fuzz_specs;
+mod hyperbolic;
 mod laws;
 mod no_std;
 mod paper;

@@ -1,16 +1,18 @@
-//! The scene loader on broken input, scene files and robots in URDF: no panic, no input that takes long, bounded memory; and
-//! what is accepted comes through its own text.
+//! The scene loader on broken input, scene files, robots in URDF and controllers: no panic, no input that takes long, bounded memory; and what
+//! is accepted comes through its own text.
 //!
-//! `cargo test` takes a slice. The whole:
-//! `cargo test --release --package hamel-tests --test scenes fuzz -- --ignored --nocapture --test-threads 1`. The environment
-//! variables `FUZZ_FROM` and `FUZZ_COUNT` choose other numbers of inputs.
+//! This is a slice of mutations, the same in every run; `tests/fuzz/run` is guided by coverage. The environment variables `FUZZ_FROM` and
+//! `FUZZ_COUNT` choose other numbers of inputs.
 
 use hamel::registry::JointRegistry;
 use hamel_tests::fuzz::{self, Corpus, Mutator, Outcome, report, run};
 
-type Target = fn(&str, &JointRegistry) -> Outcome;
-
-fn inputs(name: &str, corpus: Corpus, target: Target, count: u64) {
+fn inputs(
+    name: &str,
+    corpus: Corpus,
+    target: impl Fn(&str, &JointRegistry) -> Outcome,
+    count: u64,
+) {
     let number = |key: &str| std::env::var(key).ok().and_then(|text| text.parse().ok());
     let from = number("FUZZ_FROM").unwrap_or(0);
     let count = number("FUZZ_COUNT").unwrap_or(count);
@@ -32,13 +34,8 @@ fn a_slice_of_robots() {
 }
 
 #[test]
-#[ignore = "ten minutes of a core"]
-fn five_million_scenes() {
-    inputs("scenes", fuzz::scenes(), fuzz::scene, 5_000_000);
-}
-
-#[test]
-#[ignore = "ten minutes of a core"]
-fn five_million_robots() {
-    inputs("robots", fuzz::robots(), fuzz::robot, 5_000_000);
+fn a_slice_of_controllers() {
+    let scene = hamel_tests::scenes::load("ball_pendulum_upright");
+    let read = |text: &str, _: &JointRegistry| fuzz::controller(text, &scene);
+    inputs("controllers", fuzz::controllers(), read, 4_000);
 }

@@ -11,3 +11,4 @@ mod plate_cart_arm;
 mod references;
 mod robots;
 mod scene_files;
+mod size;

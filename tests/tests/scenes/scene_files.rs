@@ -106,7 +106,10 @@ fn files_that_cannot_be_read_are_refused() -> Result<(), Box<dyn Error>> {
     let bytes = folder.join("bytes.toml");
     fs::write(&bytes, b"hamel = 1\nname = \"\xff\"\n")?;
     for (path, reason) in [
-        (&bytes, "byte 18 is not UTF-8"),
+        (
+            &bytes,
+            "its line 2 is not UTF-8: byte 18 of the file is 0xff",
+        ),
         (&folder, "cannot read"),
         (&folder.join("absent.toml"), "cannot read"),
     ] {

@@ -5,6 +5,7 @@ use super::super::sample::seven;
 use super::charts::Chart;
 use super::solids::{Ellipsoid, Shape};
 use hamel::mechanism::Body;
+use hamel_scene::text::visible;
 use serde::Serialize;
 
 /// Everything but the recorded numbers. All in SI units; poses are x, y, z and a quaternion, scalar first.
@@ -14,7 +15,7 @@ pub struct Header<'a> {
     version: u32,
     /// Name of the scene.
     pub name: &'a str,
-    description: &'a str,
+    description: String,
     /// Form and method, in words.
     method: String,
     gravity: [f64; 3],
@@ -63,7 +64,7 @@ impl<'a> Header<'a> {
         Self {
             version: 1,
             name: &scene.name,
-            description: &scene.description,
+            description: visible(&scene.description),
             method: format!("{} form, {}", settings.form_name(), plan.method()),
             gravity: (*scene.mechanism.gravity()).into(),
             frames,

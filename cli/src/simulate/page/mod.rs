@@ -10,6 +10,7 @@ mod solids;
 mod text;
 
 use super::plan::Plan;
+use crate::files::{Draft, first_line};
 use crate::output::Failure;
 use blob::Blob;
 use charts::Charts;
@@ -18,6 +19,7 @@ use hamel::mechanism::Kinematics;
 use header::Header;
 use std::fs::File;
 use std::io::Write;
+use std::path::Path;
 
 /// Frames that a page shows in a second at most; from samples nearer to each other it takes every so many.
 const FRAMES_PER_SECOND: f64 = 60.0;
@@ -28,11 +30,16 @@ const MOST_POSES: f64 = 60_000.0;
 /// Part of the distance of two frames by which rounding may bring samples nearer.
 const ROUNDING: f64 = 1e-9;
 
+/// Whether a file is a page that was written before; the frame has this mark.
+pub fn is_own(file: &File) -> bool {
+    first_line(file).ends_with("<!-- hamel simulate -->")
+}
+
 /// A page being recorded.
 pub struct Page<'a> {
     plan: &'a Plan,
-    file: File,
-    target: String,
+    file: Draft,
+    path: &'a Path,
     charts: Charts<'a>,
     blob: Blob,
     /// Least time between two frames, s.
@@ -41,27 +48,22 @@ pub struct Page<'a> {
 }
 
 impl<'a> Page<'a> {
-    /// Creates the file that `plan` asks for, if it asks for one.
+    /// Begins the file that `plan` asks for, if it asks for one.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn create(plan: &'a Plan) -> Result<Option<Self>, Failure> {
-        let Some(path) = &plan.html else {
+        let Some(output) = &plan.html else {
             return Ok(None);
         };
-        let target = path.display().to_string();
-        let file = File::create(path).map_err(|error| Failure::Write {
-            target: target.clone(),
-            error,
-        })?;
         let bodies = plan.scene.mechanism.bodies().len() as f64;
         let charts = Charts::new(plan);
         Ok(Some(Self {
             blob: Blob::new(charts.columns()),
             charts,
             plan,
-            file,
-            target,
+            file: output.open()?,
+            path: output.path(),
             spacing: (1.0 / FRAMES_PER_SECOND).max(plan.settings.t_end * bodies / MOST_POSES),
             last_frame: f64::NEG_INFINITY,
         }))
@@ -89,7 +91,7 @@ impl<'a> Page<'a> {
         self.blob.push(step.time, &columns, poses);
     }
 
-    /// Writes the page.
+    /// Writes the page, and gives the file its name.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -97,9 +99,7 @@ impl<'a> Page<'a> {
         let header = Header::new(self.plan, self.blob.frames(), self.charts.into_described());
         let page = text::page(&header, &self.blob.bytes())?;
         let written = self.file.write_all(page.as_bytes());
-        written.map_err(|error| Failure::Write {
-            target: self.target,
-            error,
-        })
+        written.map_err(|error| Failure::write(self.path, error))?;
+        self.file.finish()
     }
 }

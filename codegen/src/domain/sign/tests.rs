@@ -87,3 +87,30 @@ fn functions_of_parameters_have_the_signs_of_their_ranges() {
     assert!(!check("(a: rad > 0 < 1.6)", "cos(a)"));
     assert!(!check("(a: rad > 0)", "sin(a)"));
 }
+
+/// |(a, b) · n| ≤ √(a² + b²) for a unit vector n.
+#[test]
+fn unit_vectors_bound_what_is_linear_in_them() {
+    assert!(check("", "3/2 + sin(q) + cos(q)"));
+    assert!(!check("", "sqrt(2) + sin(q) + cos(q)"));
+    assert!(check_with(
+        "(a: m > 0, b: m > 0, c: m > 0)",
+        "require c * c > a * a + b * b;",
+        "c + a * sin(q) + b * cos(q)"
+    ));
+    assert!(!check(
+        "(a: m > 0, b: m > 0, c: m > 0)",
+        "c + a * sin(q) + b * cos(q)"
+    ));
+}
+
+#[test]
+fn expressions_of_few_bounded_variables_are_bounded_on_cells() {
+    assert!(check("", "3 + cos(q) + cos(2 * q) + cos(3 * q)"));
+    assert!(!check("", "1 + cos(q) + cos(2 * q)"));
+    assert!(check(
+        "(a: 1 in 0..=1)",
+        "2 + a * cos(q) * sin(3 * q) - a * a / 2"
+    ));
+    assert!(!check("(a: 1 in 0..=1)", "1 + a * cos(q)"));
+}

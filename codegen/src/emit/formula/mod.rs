@@ -5,6 +5,7 @@
 
 mod count;
 mod divisor;
+mod exponential;
 mod factor;
 mod fused;
 mod numbered;

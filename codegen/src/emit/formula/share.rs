@@ -1,6 +1,7 @@
 //! Subexpressions that occur more than once are computed once, under a name that says what they are.
 
 use super::divisor::shared_sums;
+use super::exponential::in_range;
 use super::pairs::extract_pairs;
 use super::reciprocal::share_reciprocals;
 use super::shapes::{Shape, Shapes};
@@ -164,7 +165,7 @@ fn expressions(kernel: &Kernel) -> Vec<Expr> {
     };
     let lines = kernel.steps.iter().flat_map(of_step);
     let outputs = kernel.outputs.iter().flat_map(Matrix::entries);
-    lines.chain(outputs.cloned()).collect()
+    in_range(lines.chain(outputs.cloned()))
 }
 
 /// Rewrites formulas in order, binding a shared part just before the first line that uses it.

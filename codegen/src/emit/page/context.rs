@@ -3,6 +3,7 @@
 use super::text::{cell, html, paragraphs};
 use crate::emit::report::layout::{left_aligned, width};
 use crate::emit::report::{Formula, Report};
+use crate::emit::text::{fence, markdown, visible};
 use std::collections::BTreeMap;
 use tera::Context;
 
@@ -26,9 +27,17 @@ impl Medium {
     /// Text of a spec or proof in a table.
     fn text(self, text: &str) -> String {
         match self {
-            Self::Terminal => text.to_owned(),
+            Self::Terminal => visible(text),
             Self::Markdown => cell(text),
             Self::Html => html(text),
+        }
+    }
+
+    /// The doc comment of a spec, line by line.
+    fn docs(self, lines: &[String]) -> Vec<String> {
+        match self {
+            Self::Markdown => markdown(lines),
+            _ => lines.iter().map(|line| visible(line)).collect(),
         }
     }
 
@@ -93,7 +102,7 @@ pub fn context(report: &Report, medium: Medium) -> Context {
     context.insert("name", &report.name);
     context.insert("type_name", &report.type_name);
     context.insert("summary", &medium.text(&report.summary));
-    context.insert("docs", &report.docs);
+    context.insert("docs", &medium.docs(&report.docs));
     context.insert("paragraphs", &list(&paragraphs(&report.docs)));
     context.insert("freedom_count", &report.shape.freedoms);
     context.insert("scalar_count", &report.shape.configuration);
@@ -105,7 +114,9 @@ pub fn context(report: &Report, medium: Medium) -> Context {
     context.insert("velocity_frame", report.velocity_frame.as_str());
     context.insert("speeds", &report.speeds);
     context.insert("imperceptible", &report.imperceptible);
-    context.insert("spec", report.spec.trim());
+    let spec = visible(&report.spec.trim().replace("\r\n", "\n"));
+    context.insert("fence", &fence(&spec));
+    context.insert("spec", &spec);
     tables(&mut context, report, medium);
     context
 }

@@ -37,7 +37,7 @@ pub fn overview(
     context.insert("header", &header(specs));
     context.insert("pages", pages);
     context.insert("joints", &reports.iter().map(joint).collect::<Vec<Row>>());
-    context.insert("numeric", &numeric(&reports));
+    context.insert("checked", &checked(&reports));
     let scalars = scalar_types(&reports);
     let measured = reports.iter().map(|(report, _)| measured(report, &scalars));
     context.insert("measured", &measured.flatten().collect::<Vec<String>>());
@@ -56,7 +56,7 @@ fn joint((report, drawn): &(Report, bool)) -> Row {
     let numbers = [
         ("normal_form", of_kind("normal_form")),
         ("certificate", of_kind("certificate")),
-        ("numeric", of_kind("numeric")),
+        ("checked", of_kind("checked")),
     ];
     let speeds = match report.shape.constraints {
         0 => "= v".to_owned(),
@@ -104,17 +104,18 @@ fn singular(report: &Report) -> String {
     }
 }
 
-/// The claims that no symbolic proof was found for, each with its joint.
-fn numeric(reports: &[(Report, bool)]) -> Vec<Row> {
+/// The claims that are checked, not proved, each with its joint.
+fn checked(reports: &[(Report, bool)]) -> Vec<Row> {
     let of_report = |(report, _): &(Report, bool)| -> Vec<Row> {
         let row = |claim: &ClaimRow| {
             Row::from([
                 ("joint", report.name.clone()),
                 ("statement", cell(&claim.statement)),
                 ("proof", cell(&claim.proof)),
+                ("reason", cell(&claim.detail)),
             ])
         };
-        let claims = report.claims.iter().filter(|claim| claim.kind == "numeric");
+        let claims = report.claims.iter().filter(|claim| claim.kind == "checked");
         claims.map(row).collect()
     };
     reports.iter().flat_map(of_report).collect()

@@ -1,8 +1,10 @@
 //! Text of specs and proofs in Markdown and HTML, where some characters mean something.
 
+use crate::emit::text::{inline_but, visible};
+
 /// Text inside HTML; words between backticks are code.
 pub fn html(text: &str) -> String {
-    let escaped = text
+    let escaped = visible(text)
         .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
@@ -30,22 +32,8 @@ pub fn paragraphs(docs: &[String]) -> Vec<String> {
 
 /// Text of a cell in a table of Markdown: one line, in which nothing but backticks is markup.
 pub fn cell(text: &str) -> String {
-    let mut in_code = false;
-    let mut shown = String::new();
-    for c in text
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
-        .chars()
-    {
-        in_code ^= c == '`';
-        // A pipe ends the cell even inside code.
-        if c == '|' || (!in_code && r"\*_<~[".contains(c)) {
-            shown.push('\\');
-        }
-        shown.push(c);
-    }
-    shown
+    // A pipe ends the cell even inside code.
+    inline_but(text, r"\*_<~[$").replace('|', "\\|")
 }
 
 #[cfg(test)]
@@ -55,6 +43,8 @@ mod tests {
     #[test]
     fn markup_in_text_is_shown_as_it_is() {
         assert_eq!(cell("a_b * |c|\n `d_e`"), r"a\_b \* \|c\| `d_e`");
+        assert_eq!(cell("`<b> and $x$"), r"\`\<b> and \$x\$");
+        assert_eq!(html("\u{202e}<b>"), r"\u{202e}&lt;b&gt;");
         assert_eq!(
             html("a < b & `c > d`"),
             "a &lt; b &amp; <code>c &gt; d</code>"

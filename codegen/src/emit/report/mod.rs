@@ -18,7 +18,7 @@ pub use finite::FiniteRow;
 pub use formulas::{Formula, main_formulas};
 pub use provenance::{Statement, sources, statement};
 pub use series::{Series, series};
-pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow};
+pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, proof_in_words};
 
 use super::names::type_name;
 use crate::derived::{Derived, Shape};
@@ -92,11 +92,7 @@ impl Report {
             name: spec.name.value.clone(),
             type_name: type_name(&spec.name.value),
             summary: summary(&spec.docs, &spec.name.value),
-            docs: spec
-                .docs
-                .iter()
-                .map(|line| line.trim().to_owned())
-                .collect(),
+            docs: spec.docs.clone(),
             shape: derived.shape,
             parameters: tables::parameters(derived),
             requirements: requirements(spec),

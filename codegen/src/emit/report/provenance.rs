@@ -6,6 +6,7 @@ pub use statements::Statement;
 
 use crate::derived::KernelKind;
 use crate::model::{JointSpec, VelocityFrame};
+use crate::spec::comments::without_comments;
 use std::ops::Range;
 
 /// All statements that the values of a kernel depend on, in the order of the spec, `let` among them.
@@ -178,17 +179,10 @@ fn lines_around(source: &str, span: Range<usize>) -> Option<String> {
         .get(span.end..)?
         .find('\n')
         .map_or(source.len(), |at| span.end + at);
-    let code = source
-        .get(start..end)?
-        .lines()
-        .map(|line| line.split("//").next().unwrap_or_default().trim());
-    let words: Vec<&str> = code.filter(|line| !line.is_empty()).collect();
-    let one_line = words
-        .join(" ")
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ");
-    (!one_line.is_empty()).then_some(one_line)
+    // Comments are found from the start of the text: a line may stand inside one.
+    let bare = without_comments(source);
+    let words: Vec<&str> = bare.get(start..end)?.split_whitespace().collect();
+    (!words.is_empty()).then(|| words.join(" "))
 }
 
 #[cfg(test)]

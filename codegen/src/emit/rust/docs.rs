@@ -8,6 +8,7 @@ use crate::emit::report::{
     ClaimRow, FreedomRow, Report, Statement, main_formulas, manifold, sources, units,
     velocity_frame,
 };
+use crate::emit::text::{inline, markdown, visible};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -29,7 +30,7 @@ fn spaced(line: &str) -> String {
     if line.is_empty() {
         String::new()
     } else {
-        format!(" {line}")
+        format!(" {}", visible(line))
     }
 }
 
@@ -38,7 +39,7 @@ pub fn module(derived: &Derived) -> TokenStream {
     let report = Report::brief(derived);
     let mut lines: Vec<String> = match report.docs.is_empty() {
         true => vec![report.summary.clone()],
-        false => report.docs.clone(),
+        false => markdown(&report.docs),
     };
     lines.push(String::new());
     lines.extend(storage(derived, &report));
@@ -86,7 +87,14 @@ fn claims(report: &Report) -> Vec<String> {
     if report.claims.is_empty() {
         return vec![];
     }
-    let claim = |row: &ClaimRow| format!("- `{}`: {} ({})", row.name, row.statement, row.proof);
+    let claim = |row: &ClaimRow| {
+        format!(
+            "- `{}`: {} ({})",
+            row.name,
+            inline(&row.statement),
+            inline(&row.proof)
+        )
+    };
     let head = [String::new(), "Proved when this file was generated:".into()];
     head.into_iter()
         .chain(report.claims.iter().map(claim))

@@ -7,6 +7,7 @@ use super::type_ident;
 use crate::derived::Derived;
 use crate::emit::names::Names;
 use crate::emit::report::summary;
+use crate::emit::text::is_visible;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -70,15 +71,18 @@ fn build(derived: &Derived) -> TokenStream {
     }
 }
 
-/// The text as a raw string literal, so that a reader sees the spec as it was written.
+/// The text as a raw string literal, so that a reader sees the spec as it was written. A text of which a reader would not see all is escaped
+/// instead: a raw literal cannot hold a carriage return, and the compiler denies characters that turn the direction of writing.
 fn raw_string(text: &str) -> Literal {
+    if !is_visible(text) {
+        return Literal::string(text);
+    }
     let longest = text
         .split('"')
         .skip(1)
         .map(|rest| rest.chars().take_while(|c| *c == '#').count() + 1)
         .max();
     let signs = "#".repeat(longest.unwrap_or(0).max(1));
-    // Raw literals cannot hold a carriage return: such a text is escaped instead.
     format!("r{signs}\"{text}\"{signs}")
         .parse()
         .unwrap_or_else(|_| Literal::string(text))

@@ -49,7 +49,7 @@ pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, W
         #entries
         pub const ENTRIES: &[::hamel::registry::JointEntry] = &[#(self::#modules::ENTRY),*];
         #specs
-        pub const SPECS: &[(&str, &str)] = &[#((#names, self::#modules::SPEC)),*];
+        pub const SPECS: &[(&::core::primitive::str, &::core::primitive::str)] = &[#((#names, self::#modules::SPEC)),*];
         #macros
     };
     text("the index of all joints", &header(label), tokens)

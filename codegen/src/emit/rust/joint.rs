@@ -10,6 +10,7 @@ use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
 use crate::emit::names::Names;
 use crate::emit::report::summary;
+use crate::emit::text::inline;
 use crate::expr::Rational;
 use crate::model::VelocityFrame;
 use proc_macro2::{Literal, TokenStream};
@@ -60,7 +61,7 @@ pub fn sizes(derived: &Derived) -> [Literal; 4] {
 fn definition(derived: &Derived) -> TokenStream {
     let name = type_ident(derived);
     let spec = &derived.spec;
-    let docs = docs::outer(&[summary(&spec.docs, &spec.name.value)]);
+    let docs = docs::outer(&[inline(&summary(&spec.docs, &spec.name.value))]);
     let derives = quote! { #[derive(Clone, Copy, Debug, PartialEq)] };
     if spec.parameters.is_empty() {
         return quote! { #docs #derives pub struct #name; };
@@ -76,10 +77,10 @@ fn definition(derived: &Derived) -> TokenStream {
                 "Parameter `{}`, in {}.",
                 parameter.symbol.name, parameter.unit
             ),
-            text => format!("{text} In {}.", parameter.unit),
+            text => format!("{} In {}.", inline(text), parameter.unit),
         };
-        let text = format!("{text} It is {}.", limits::in_words(&parameter.range));
-        docs::outer(&text.lines().map(str::trim).collect::<Vec<_>>())
+        let range = limits::in_words(&parameter.range);
+        docs::outer(&[format!("{text} It is {range}.")])
     });
     let constructor = constructor_docs(derived);
     quote! {

@@ -1,5 +1,6 @@
-//! Blank lines between items and methods, in modules as well: what the printer of tokens leaves out.
+//! Blank lines between items and methods, in modules as well, and comments in bodies: what the printer of tokens leaves out.
 
+use super::comment::with_comments;
 use syn::{Attribute, Expr, File, Item, ItemMod};
 
 /// The file as text, items and methods apart from each other.
@@ -18,7 +19,8 @@ fn items(items: &[Item], place: &dyn Fn(&Item, &str) -> String) -> String {
         }
         let alone = prettyplease::unparse(&file_of(vec![], vec![item.clone()]));
         let alone = match item {
-            Item::Impl(_) => apart(&alone),
+            Item::Impl(_) => apart(&with_comments(&alone)),
+            Item::Fn(_) => with_comments(&alone),
             Item::Mod(module) => nested(module),
             Item::Macro(_) => one_call_a_line(&alone),
             _ => alone,

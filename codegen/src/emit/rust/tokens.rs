@@ -180,14 +180,23 @@ impl<'a> Writer<'a> {
             Function::Sin => quote! { #first.sin_cos().0 },
             Function::Cos => quote! { #first.sin_cos().1 },
             Function::Exp => quote! { #first.exp() },
+            Function::Sinh => quote! { #first.sinh() },
+            Function::Cosh => quote! { #first.cosh() },
+            Function::Sech => quote! { #first.sech() },
+            Function::Tanh => quote! { #first.tanh() },
+            Function::LnCosh => quote! { #first.ln_cosh() },
             Function::Ln => quote! { #first.ln() },
             Function::Sqrt => quote! { #first.sqrt() },
             Function::Recip => quote! { (T::one() / #first) },
             Function::Group => quote! { #first },
             Function::Pi => quote! { pi },
-            Function::Atan2 => {
-                let x = arguments.get(1).map(|x| self.formula(x));
-                quote! { #first.atan2(#x) }
+            Function::Atan2 | Function::Larger | Function::Ln1p => {
+                let second = arguments.get(1).map(|x| self.formula(x));
+                match function {
+                    Function::Atan2 => quote! { #first.atan2(#second) },
+                    Function::Ln1p => quote! { #first.ln_1p_scaled(#second) },
+                    _ => quote! { #first.larger(#second) },
+                }
             }
             Function::Stumpff(order) => {
                 let order = Literal::u8_unsuffixed(order);

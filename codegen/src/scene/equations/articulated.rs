@@ -184,7 +184,8 @@ impl Tree<'_> {
         }
         let mut pivots = vec![];
         for j in 0..columns.len() {
-            let inverse = (Sym::Number(1.0) / matrix[j][j]).named("inverse_inertia");
+            let inverse = self.inverse_of_inertia(index, j, matrix[j][j]);
+            let inverse = inverse.named("inverse_inertia");
             let mut scaled = momenta[j].times(inverse);
             if let Some(entry) = self.feels(index, j) {
                 *scaled.entry_mut(entry) = Sym::Number(1.0);

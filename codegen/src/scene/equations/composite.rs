@@ -167,7 +167,9 @@ impl Tree<'_> {
         let mut inverses = vec![Sym::zero(); matrix.len()];
         for k in (0..matrix.len()).rev() {
             section(sections[k], "factor");
-            inverses[k] = Sym::Number(1.0) / matrix[k][k];
+            let index = sections[k] as usize;
+            let own = k - self.bodies[index].share.speeds.start;
+            inverses[k] = self.inverse_of_inertia(index, own, matrix[k][k]);
             for (place, &i) in carriers[k].iter().enumerate() {
                 let factor = matrix[k][i] * inverses[k];
                 for &j in &carriers[k][place..] {

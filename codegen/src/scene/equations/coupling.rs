@@ -4,7 +4,7 @@
 
 use super::solve::{definite, square};
 use super::{Tree, number, wrench_to_parent};
-use crate::scene::graph::{Argument, Sym, section};
+use crate::scene::graph::{Argument, Sym, about, section};
 use crate::scene::prune::clean;
 use crate::scene::spatial::{Vec3, Wrench, cross, dot};
 use num_traits::Zero;
@@ -64,6 +64,10 @@ impl Tree<'_> {
     /// Aᵀ, one row a constraint.
     pub fn constraint_rows(&self) -> Vec<Vec<Sym>> {
         let constraints = 0..self.model.coupling.constraints.len();
+        let name = |constraint: usize| {
+            let own = &self.model.coupling.constraints[constraint];
+            format!("constraint `{}`", own.name)
+        };
         let row = |constraint: usize| {
             let (body, mut wrench) = self.constraint(constraint);
             let mut row = vec![Sym::zero(); self.model.sizes()[2]];
@@ -77,7 +81,9 @@ impl Tree<'_> {
             }
             row
         };
-        constraints.map(row).collect()
+        constraints
+            .map(|constraint| about(&name(constraint), || row(constraint)))
+            .collect()
     }
 
     /// The body of a constraint, and `(r × d; d)` in its frame: its product with a twist is the forbidden velocity.

@@ -1,7 +1,7 @@
 //! What springs and rotors at joints exert.
 
 use super::{Tree, number};
-use crate::scene::graph::{Sym, section};
+use crate::scene::graph::{Sym, about, section};
 use crate::scene::joint::Joint;
 use crate::scene::spatial::{Mat3, Twist, Vec3, Wrench, dot, product};
 use hamel::elements::{JointSpring, RotationSpring};
@@ -25,8 +25,10 @@ impl Tree<'_> {
         let turned = elements.rotation_springs.iter();
         let turned = turned.filter(|spring| spring.body == index);
         let each = springs
-            .map(|spring| self.joint_spring(index, spring))
-            .chain(turned.map(|spring| self.rotation_spring(index, spring)));
+            .map(|spring| about(&spring.name, || self.joint_spring(index, spring)))
+            .chain(
+                turned.map(|spring| about(&spring.name, || self.rotation_spring(index, spring))),
+            );
         let add =
             |sum: Vec<Sym>, next: Vec<Sym>| sum.into_iter().zip(next).map(|(a, b)| a + b).collect();
         each.reduce(add).unwrap_or_default()
@@ -38,8 +40,10 @@ impl Tree<'_> {
         let half = Sym::from(0.5);
         let joints = elements.joint_springs.iter().map(|spring| {
             section(number(spring.body), "spring");
-            let Stretch { phi, load, .. } = self.stretch(spring);
-            phi.iter().zip(&load).map(|(&x, &l)| x * l).sum::<Sym>() * half
+            about(&spring.name, || {
+                let Stretch { phi, load, .. } = self.stretch(spring);
+                phi.iter().zip(&load).map(|(&x, &l)| x * l).sum::<Sym>() * half
+            })
         });
         let turned = elements.rotation_springs.iter().map(|spring| {
             section(number(spring.body), "spring");
@@ -53,7 +57,7 @@ impl Tree<'_> {
         let points = elements
             .springs
             .iter()
-            .map(|spring| self.point_spring_energy(spring));
+            .map(|spring| about(&spring.name, || self.point_spring_energy(spring)));
         joints.chain(turned).chain(points).sum()
     }
 

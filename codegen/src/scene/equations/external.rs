@@ -2,7 +2,7 @@
 
 use super::{Tree, number};
 use crate::expr::Function;
-use crate::scene::graph::{Sym, call, section};
+use crate::scene::graph::{Sym, about, call, section};
 use crate::scene::prune::clean;
 use crate::scene::spatial::{Step, Vec3, Wrench, cross, dot};
 use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
@@ -23,10 +23,10 @@ impl Tree<'_> {
     pub(super) fn external(&self) -> Vec<Wrench> {
         let mut wrenches = vec![Wrench::zero(); self.bodies.len()];
         for spring in &self.model.elements.springs {
-            self.add_spring(spring, &mut wrenches);
+            about(&spring.name, || self.add_spring(spring, &mut wrenches));
         }
         for wrench in &self.model.elements.wrenches {
-            self.add_wrench(wrench, &mut wrenches);
+            about(&wrench.name, || self.add_wrench(wrench, &mut wrenches));
         }
         wrenches
     }

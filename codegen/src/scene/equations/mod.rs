@@ -19,7 +19,7 @@ mod variation;
 
 pub use articulated::Bias;
 
-use super::graph::{Argument, Sym, section};
+use super::graph::{Argument, Sym, inverse_of_inertia, section};
 use super::joint::Joint;
 use super::model::{Body, Model, Share};
 use super::prune::Link;
@@ -186,6 +186,20 @@ impl<'a> Tree<'a> {
                     .sum()
             })
             .collect()
+    }
+
+    /// The inverse of the inertia that moves with a speed of a body's joint; where that is nothing, the words of a simulation.
+    fn inverse_of_inertia(&self, index: usize, speed: usize, pivot: Sym) -> Sym {
+        let body = &self.model.bodies[index];
+        inverse_of_inertia(pivot, |pivot| {
+            let name = body.joint.speed_names.get(speed);
+            format!(
+                "the mass matrix is singular at joint `{}`, speed `{}`: its pivot {pivot:e} is not above 0e0; give mass or inertia to the \
+                 bodies that this joint moves",
+                body.joint_name,
+                name.map_or("", String::as_str)
+            )
+        })
     }
 
     /// `S̄ᵀ diag(armature) S̄` of a body's joint.

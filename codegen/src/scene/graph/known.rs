@@ -12,11 +12,18 @@ pub fn call(function: Function, a: f64, b: Option<f64>) -> f64 {
         (Function::Sin, None) => a.sin(),
         (Function::Cos, None) => a.cos(),
         (Function::Exp, None) => a.exp(),
+        (Function::Sinh, None) => Scalar::sinh(a),
+        (Function::Cosh, None) => Scalar::cosh(a),
+        (Function::Sech, None) => a.sech(),
+        (Function::Tanh, None) => Scalar::tanh(a),
+        (Function::LnCosh, None) => a.ln_cosh(),
         (Function::Ln, None) => a.ln(),
         (Function::Sqrt, None) => a.sqrt(),
         (Function::Stumpff(order), None) => a.stumpff(order.into()),
         (Function::DexpInverse(order), None) => a.dexp_inverse(order.into()),
         (Function::Atan2, Some(x)) => a.atan2(x),
+        (Function::Larger, Some(b)) => a.larger(b),
+        (Function::Ln1p, Some(scale)) => a.ln_1p_scaled(scale),
         _ => f64::NAN,
     }
 }

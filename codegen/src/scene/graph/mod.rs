@@ -5,13 +5,15 @@
 //! behind when it is written.
 
 mod count;
+mod fault;
 pub mod known;
 mod slope;
 mod sym;
 
 pub use count::Operations;
+pub use fault::{Cause, Fault, about, inverse_of_inertia};
 pub use slope::Slopes;
-pub use sym::{Sym, atan2, call, primitive, sin_cos};
+pub use sym::{Sym, atan2, call, call_two, primitive, sin_cos};
 
 use crate::derived::Primitive;
 use crate::expr::Function;
@@ -132,6 +134,10 @@ pub struct Graph {
     signed: bool,
     section: u32,
     topic: &'static str,
+    /// What is being reckoned, where it is no part of a body.
+    element: Option<String>,
+    /// What left the numbers.
+    faults: Vec<Fault>,
 }
 
 thread_local! {

@@ -121,7 +121,18 @@ impl Found {
             (Function::Sin, None) => sin_cos(x).1 * dx,
             (Function::Cos, None) => -sin_cos(x).0 * dx,
             (Function::Exp, None) => own * dx,
+            (Function::Sinh, None) => call(Function::Cosh, x) * dx,
+            (Function::Cosh, None) => call(Function::Sinh, x) * dx,
+            (Function::Sech, None) => -(call(Function::Tanh, x) * own * dx),
+            (Function::Tanh, None) => {
+                let sech = call(Function::Sech, x);
+                sech * sech * dx
+            }
+            (Function::LnCosh, None) => call(Function::Tanh, x) * dx,
             (Function::Ln, None) => dx / x,
+            // No value depends on scales.
+            (Function::Ln1p, Some(scale)) => dx / (x + call(Function::Exp, -Sym::Node(scale))),
+            (Function::Larger, _) => Sym::zero(),
             (Function::Sqrt, None) => dx * (Sym::from(0.5) / own),
             (Function::Stumpff(order), None) => {
                 let next = call(Function::Stumpff(order + 1), x);

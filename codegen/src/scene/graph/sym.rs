@@ -1,5 +1,6 @@
 //! Arithmetic on the graph under construction: an operation is folded or becomes a node.
 
+use super::fault::{divisor, folded, sound};
 use super::known;
 use super::{Argument, CURRENT, Graph, Operation, Value};
 use crate::derived::Primitive;
@@ -95,21 +96,22 @@ pub(super) fn make(operation: Operation) -> Sym {
     })
 }
 
-/// A function of one argument. Sines are odd, cosines even.
+/// A function of one argument. Odd and even functions are those of the argument without its sign.
 pub fn call(function: Function, argument: Sym) -> Sym {
     if let Some(number) = argument.number() {
-        return Sym::Number(known::call(function, number, None));
+        let value = |number: f64, _| known::call(function, number, None);
+        return Sym::Number(folded(number, 0.0, value));
     }
     let inner = argument.value();
     let (of, flips) = match function {
-        Function::Sin => (
+        Function::Sin | Function::Sinh | Function::Tanh => (
             Value {
                 negative: false,
                 ..inner
             },
             inner.negative,
         ),
-        Function::Cos => (
+        Function::Cos | Function::Cosh | Function::Sech | Function::LnCosh => (
             Value {
                 negative: false,
                 ..inner
@@ -127,21 +129,32 @@ pub fn sin_cos(angle: Sym) -> (Sym, Sym) {
     (call(Function::Sin, angle), call(Function::Cos, angle))
 }
 
+/// A function of two arguments.
+pub fn call_two(function: Function, first: Sym, second: Sym) -> Sym {
+    if let (Sym::Number(first), Sym::Number(second)) = (first, second) {
+        let value = |first: f64, second| known::call(function, first, Some(second));
+        return Sym::Number(folded(first, second, value));
+    }
+    let (first, second) = (first.value(), second.value());
+    make(Operation::Call(function, first, Some(second)))
+}
+
 /// `atan2(y, x)`.
 pub fn atan2(y: Sym, x: Sym) -> Sym {
-    if let (Sym::Number(y), Sym::Number(x)) = (y, x) {
-        return Sym::Number(known::call(Function::Atan2, y, Some(x)));
-    }
-    let (y, x) = (y.value(), x.value());
-    make(Operation::Call(Function::Atan2, y, Some(x)))
+    call_two(Function::Atan2, y, x)
 }
 
 /// The results of a function of the runtime, in the order of [`Primitive`].
 pub fn primitive(function: Primitive, arguments: &[Sym]) -> Vec<Sym> {
     let numbers: Option<Vec<f64>> = arguments.iter().map(|argument| argument.number()).collect();
     if let Some(numbers) = numbers {
+        if let Some(&broken) = numbers.iter().find(|number| number.is_nan()) {
+            return (0..results(function))
+                .map(|_| Sym::Number(broken))
+                .collect();
+        }
         let results = known::primitive(function, &numbers).into_iter();
-        return results.map(Sym::Number).collect();
+        return results.map(Sym::from).collect();
     }
     let arguments = arguments.iter().map(|argument| argument.value()).collect();
     let all = CURRENT.with_borrow_mut(|graph| graph.node(Operation::Several(function, arguments)));
@@ -167,7 +180,7 @@ fn precedes(graph: &Graph, a: u32, b: u32) -> bool {
 
 fn add(a: Sym, b: Sym) -> Sym {
     match (a, b) {
-        (Sym::Number(a), Sym::Number(b)) => Sym::Number(a + b),
+        (Sym::Number(a), Sym::Number(b)) => Sym::Number(folded(a, b, |a, b| a + b)),
         (Sym::Number(zero), other) | (other, Sym::Number(zero)) if zero == 0.0 => other,
         _ => CURRENT.with_borrow_mut(|graph| {
             let (a, b) = (value(graph, a), value(graph, b));
@@ -215,7 +228,7 @@ fn doubled(graph: &mut Graph, node: u32) -> u32 {
 
 fn multiply(a: Sym, b: Sym) -> Sym {
     match (a, b) {
-        (Sym::Number(a), Sym::Number(b)) => Sym::Number(a * b),
+        (Sym::Number(a), Sym::Number(b)) => Sym::Number(folded(a, b, |a, b| a * b)),
         (Sym::Number(number), other) | (other, Sym::Number(number)) if number == 0.0 => {
             let _ = other;
             Sym::Number(0.0)
@@ -279,18 +292,23 @@ fn scaled(graph: &Graph, product: u32, by: f64) -> Option<(u32, f64)> {
 
 fn divide(a: Sym, b: Sym) -> Sym {
     match (a, b) {
-        (Sym::Number(a), Sym::Number(b)) => Sym::Number(a / b),
+        (Sym::Number(a), Sym::Number(b)) => Sym::Number(folded(a, divisor(b), |a, b| a / b)),
         (Sym::Number(0.0), _) => a,
         (_, Sym::Number(1.0)) => a,
         (_, Sym::Number(-1.0)) => -a,
-        _ => CURRENT.with_borrow_mut(|graph| {
-            let (a, b) = (value(graph, a), value(graph, b));
-            Sym::Node(Value {
-                node: graph.node(Operation::Quotient(a.node, b.node)),
-                negative: a.negative != b.negative,
-            })
-        }),
+        (above, Sym::Number(below)) => quotient(above, Sym::Number(divisor(below))),
+        (above, below) => quotient(above, below),
     }
+}
+
+fn quotient(above: Sym, below: Sym) -> Sym {
+    CURRENT.with_borrow_mut(|graph| {
+        let (a, b) = (value(graph, above), value(graph, below));
+        Sym::Node(Value {
+            node: graph.node(Operation::Quotient(a.node, b.node)),
+            negative: a.negative != b.negative,
+        })
+    })
 }
 
 impl Neg for Sym {
@@ -299,6 +317,8 @@ impl Neg for Sym {
         match self {
             // Not −0: zero has no sign here.
             Self::Number(0.0) => self,
+            // What is no number keeps what it says.
+            Self::Number(number) if number.is_nan() => self,
             Self::Number(number) => Self::Number(-number),
             Self::Node(value) => Self::Node(value.opposite()),
         }
@@ -343,8 +363,9 @@ impl One for Sym {
 }
 
 impl From<f64> for Sym {
+    /// A number from outside of the graph.
     fn from(number: f64) -> Self {
-        Self::Number(number)
+        Self::Number(sound(number))
     }
 }
 

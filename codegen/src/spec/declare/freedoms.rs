@@ -145,6 +145,7 @@ fn local_name(freedom: &str) -> String {
 
 fn freedom(name: &str, number: usize, factor: usize, generator: Vec<Expr>) -> Freedom {
     let local = Symbol::new(Role::Local, number, &local_name(name));
+    let local = local.spelled(&format!("phi.{name}"));
     Freedom {
         name: name.to_owned(),
         local,

@@ -2,6 +2,7 @@
 
 use super::super::ast::Equation;
 use super::super::code;
+use super::super::comments::one_line;
 use super::super::evaluate::Evaluator;
 use super::once::At;
 use super::{Context, equation, home};
@@ -78,9 +79,4 @@ fn check(
                 .label("excludes the configuration in which a mechanism starts")
                 .help("declare another configuration by `home = …;`")
         })
-}
-
-/// Text of the spec without line breaks.
-pub(super) fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -16,6 +16,7 @@ mod retract;
 mod scope;
 mod stored;
 mod unit;
+mod unproved;
 
 use self::freedoms::Freedoms;
 use self::once::Once;
@@ -138,6 +139,7 @@ fn declare(
         constraint: matrices.constraint,
         speed_basis: matrices.speed_basis,
         speed_names: matrices.speed_names,
+        unproved: unproved::unproved(&statements.unproved, evaluator),
     };
     evaluator
         .errors

@@ -33,6 +33,8 @@ pub(super) struct Once<'a> {
     pub relations: Vec<At<'a, Equation>>,
     pub exceptions: Vec<At<'a, Equation>>,
     pub requirements: Vec<At<'a, Requirement>>,
+    /// Claims and reasons.
+    pub unproved: Vec<(&'a Name, &'a Name)>,
     targets: BTreeMap<Target, At<'a, [Node]>>,
 }
 
@@ -84,6 +86,10 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Require(value) => {
                 once.requirements.push(At { value, span });
+                continue;
+            }
+            StatementKind::Unproved(claim, reason) => {
+                once.unproved.push((claim, reason));
                 continue;
             }
             StatementKind::Assign(target, values) => {

@@ -2,9 +2,9 @@
 
 use super::super::ast::{Bound, Bounds, Requirement};
 use super::super::code;
+use super::super::comments::one_line;
 use super::super::evaluate::Evaluator;
 use super::equation;
-use super::loci::one_line;
 use super::once::{At, Once};
 use crate::diagnostic::Diagnostic;
 use crate::expr::Expr;

@@ -3,7 +3,8 @@
 use super::super::value::Value;
 use super::super::{Fallible, limits};
 use super::function::Call;
-use crate::expr::{Expr, Rational, evaluate_f64};
+use crate::domain::{ConstantSign, sign_of_constant};
+use crate::expr::{Expr, Rational};
 use num_traits::{One, ToPrimitive};
 
 /// Functions of one scalar.
@@ -25,17 +26,18 @@ pub(super) fn of_one(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
         }
         "log" => x.ln(),
         "asin" | "acos" | "atan" => inverse(call, x)?,
-        _ => hyperbolic(call, x)?,
+        "sinh" => x.sinh(),
+        "cosh" => x.cosh(),
+        _ => x.tanh(),
     };
     Ok(Value::Scalar(value))
 }
 
-/// The sign of a number; false for what depends on symbols, and where rounding decides.
+/// Whether a number is below 0; false for what depends on symbols, and for a number of which the sign is undecided.
 fn is_negative(x: &Expr) -> bool {
     match x.as_rational() {
         Some(number) => number.is_negative(),
-        // Exact sums of a few functions: 1e-9 is far above their rounding errors in double precision.
-        None => x.symbols().is_empty() && evaluate_f64(x, &|_| f64::NAN) < -1e-9,
+        None => sign_of_constant(x) == Some(ConstantSign::Negative),
     }
 }
 
@@ -60,20 +62,6 @@ fn inverse(call: &Call<'_>, x: &Expr) -> Fallible<Expr> {
         "asin" => x.atan2(&other),
         _ => other.atan2(x),
     })
-}
-
-/// sinh, cosh and tanh, by exp.
-fn hyperbolic(call: &Call<'_>, x: &Expr) -> Fallible<Expr> {
-    let up = x.exp();
-    let down = quotient(call, &Expr::one(), &up)?;
-    let half = Expr::fraction(1, 2);
-    let sinh = &half * &(&up - &down);
-    let cosh = &half * &(&up + &down);
-    match call.name {
-        "sinh" => Ok(sinh),
-        "cosh" => Ok(cosh),
-        _ => quotient(call, &sinh, &cosh),
-    }
 }
 
 /// `atan2(y, x)` and `pow(x, n)`.

@@ -237,6 +237,9 @@ impl<'a> Evaluator<'a> {
             ));
         }
         let known = self.names.keys().map(String::as_str).chain(["pi", "phi"]);
+        // Errors that are not printed need no advice: a file may have thousands of names, and as many that are not defined.
+        let printed = self.errors.len() < hamel_diagnostics::MOST_PRINTED;
+        let known = known.filter(|_| printed);
         match names::suggestion(name, known) {
             Some(advice) => error.help(advice),
             None => error

@@ -49,8 +49,8 @@ fn recover(tokens: &mut Tokens<'_>, start: usize) {
 }
 
 fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKind> {
-    let keyword = tokens.expect_name("a statement")?;
-    let kind = match keyword.text.as_str() {
+    let word = tokens.expect_name("a statement")?;
+    let kind = match word.text.as_str() {
         "config" => StatementKind::Config(list(tokens, factor)?),
         "basis" => StatementKind::Basis(basis(tokens)?),
         "local" => StatementKind::Local(list(tokens, |t| {
@@ -61,14 +61,22 @@ fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKi
         "relation" => StatementKind::Relation(equation(tokens, docs)?),
         "except" => StatementKind::Except(equation(tokens, docs)?),
         "require" => StatementKind::Require(requirement(tokens)?),
+        "unproved" => {
+            let claim = tokens.expect_name("the name of a claim")?;
+            keyword(tokens, "because")?;
+            StatementKind::Unproved(claim, tokens.expect_text("the reason, as a text")?)
+        }
         "let" => {
             let name = tokens.expect_name("a name")?;
             tokens.expect('=', "`=`")?;
             StatementKind::Let(name, expression::expression(tokens)?)
         }
-        word => match Target::ALL.into_iter().find(|target| target.name() == word) {
+        other => match Target::ALL
+            .into_iter()
+            .find(|target| target.name() == other)
+        {
             Some(target) => assignment(tokens, target)?,
-            None => return Err(unknown(&keyword, tokens)),
+            None => return Err(unknown(&word, tokens)),
         },
     };
     match tokens.eat(';') {

@@ -8,7 +8,7 @@ use curve::Target;
 use roller::Roller;
 
 use super::error::positive;
-use super::state::check_sizes;
+use super::state::{check_state, store_measures};
 use super::{ControlError, Controller, Measure};
 use crate::dynamics::{Dynamics, Recursive};
 use crate::mechanism::Mechanism;
@@ -130,7 +130,7 @@ impl PathFollower {
     /// v̄̇ of the joint's own speeds under the efforts of `self.probe`.
     fn respond(&mut self, time: f64, q: &[f64], speeds: &[f64]) -> Result<[f64; 2], ControlError> {
         self.mechanism
-            .set_driven_accelerations(time, &mut self.probe);
+            .prescribe_accelerations(time, &mut self.probe);
         self.dynamics
             .accelerations(q, speeds, &self.probe, &mut self.rates)?;
         Ok(self.roller.own(&self.rates))
@@ -166,7 +166,7 @@ impl Controller for PathFollower {
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(&self.mechanism, q, speeds, efforts)?;
+        check_state(&self.mechanism, q, speeds, efforts)?;
         let target = self.curve.at(time)?;
         let errors = self.errors(q, &target);
         let motion = self.roller.motion(self.roller.own(speeds));
@@ -209,14 +209,13 @@ impl Controller for PathFollower {
         speeds: &[f64],
         values: &mut [f64],
     ) -> Result<(), ControlError> {
-        check_sizes(&self.mechanism, q, speeds, &self.probe)?;
+        check_state(&self.mechanism, q, speeds, &self.probe)?;
         let target = self.curve.at(time)?;
         let errors = self.errors(q, &target);
         // Across the path, which is not across the joint.
         let (sin, cos) = (Float::sin(errors.heading), Float::cos(errors.heading));
         let across = cos * errors.across - sin * errors.along;
         let distance = Float::hypot(errors.along, errors.across);
-        values.copy_from_slice(&[distance, across, errors.heading]);
-        Ok(())
+        store_measures(&[distance, across, errors.heading], values)
     }
 }

@@ -13,12 +13,12 @@ use nalgebra::Vector6;
 pub(super) struct Seen<'a>(pub(super) &'a [Node]);
 
 impl Motions for Seen<'_> {
-    fn placement(&self, body: usize) -> &Placement<f64> {
-        &self.0[body].motion.placement
+    fn placement(&self, body: usize) -> Option<&Placement<f64>> {
+        self.0.get(body).map(|node| &node.motion.placement)
     }
 
-    fn twist(&self, body: usize) -> &Vector6<f64> {
-        &self.0[body].motion.twist
+    fn twist(&self, body: usize) -> Option<&Vector6<f64>> {
+        self.0.get(body).map(|node| &node.motion.twist)
     }
 }
 
@@ -26,9 +26,9 @@ impl Recursive {
     /// Placements and twists of all joint-child frames; allocates.
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub(crate) fn motions(&mut self, q: &[f64], speeds: &[f64]) -> Result<MotionList, StateError> {
-        self.check(q, &[("speeds", speeds.len())])?;
+        self.check(q, &[("speeds", speeds)])?;
         self.weigh(q);
         self.set_twists(speeds);
         let motions = self.nodes.iter().map(|node| &node.motion);

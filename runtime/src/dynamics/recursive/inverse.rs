@@ -2,7 +2,7 @@
 
 use super::Recursive;
 use crate::dynamics::DynamicsError;
-use crate::mechanism::{StateError, WHOLE, check_size};
+use crate::mechanism::{Space, StateError, WHOLE, check_size};
 use crate::spatial::turn_back;
 use nalgebra::{Cholesky, Matrix6, Vector6};
 
@@ -14,7 +14,7 @@ impl Recursive {
     /// `accelerations` = v̄̇ at `q` and v̄. Constraints that couple joints exert nothing here: for their share see [`Recursive::coupling_force`].
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub fn inverse_dynamics(
         &mut self,
         q: &[f64],
@@ -22,32 +22,31 @@ impl Recursive {
         accelerations: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), StateError> {
-        let sizes = [
-            ("speeds", speeds.len()),
-            ("accelerations", accelerations.len()),
-            ("efforts", efforts.len()),
-        ];
-        self.check(q, &sizes)?;
+        self.check(q, &[("speeds", speeds), ("accelerations", accelerations)])?;
+        self.check_room("efforts", efforts)?;
         self.advance(q, speeds, Some(accelerations));
         self.gather_needed(q, speeds, efforts);
         self.add_armature(accelerations, efforts);
-        Ok(())
+        let found = [("effort", Space::Speeds, &*efforts)];
+        self.mechanism.check_finite((q, speeds), &found)
     }
 
     /// `C̄ v̄ + S̄ᵀN̂` of the tree into `efforts` (one entry a speed): inverse dynamics at v̄̇ = 0.
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub fn bias_forces(
         &mut self,
         q: &[f64],
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), StateError> {
-        self.check(q, &[("speeds", speeds.len()), ("efforts", efforts.len())])?;
+        self.check(q, &[("speeds", speeds)])?;
+        self.check_room("efforts", efforts)?;
         self.advance(q, speeds, None);
         self.gather_needed(q, speeds, efforts);
-        Ok(())
+        let found = [("effort", Space::Speeds, &*efforts)];
+        self.mechanism.check_finite((q, speeds), &found)
     }
 
     /// What inputs must do beside the elements for the bodies to take the wrenches of the nodes.
@@ -76,10 +75,11 @@ impl Recursive {
     /// joint whose motion is prescribed.
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub fn joint_efforts(&self, q: &[f64], efforts: &mut [f64]) -> Result<(), StateError> {
         self.check(q, &[])?;
-        self.check_efforts(efforts)?;
+        self.mechanism
+            .check_room("efforts", Space::Freedoms, efforts)?;
         for (index, link) in self.links.iter().enumerate() {
             self.joint_effort(index, q, &mut efforts[link.freedoms.clone()]);
         }
@@ -112,7 +112,8 @@ impl Recursive {
         forces: &mut [f64],
     ) -> Result<(), DynamicsError> {
         let layout = self.mechanism.layout();
-        self.check_efforts(efforts)?;
+        self.check(q, &[])?;
+        self.check_efforts(q, &[], efforts)?;
         check_size(WHOLE, "constraint forces", layout.constraints, forces.len())?;
         for (index, body) in self.mechanism.bodies().iter().enumerate() {
             let ranges = body.ranges();

@@ -4,8 +4,7 @@ use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
 use super::link::{Kind, Node};
 use crate::dynamics::DynamicsError;
-use crate::dynamics::error::Space;
-use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
+use crate::mechanism::{Mechanism, Space, StateError, WHOLE, check_size};
 use crate::spatial::fused::{add_cross, dot};
 use crate::spatial::{SpatialInertia, shift_wrench, split};
 use alloc::vec;
@@ -165,12 +164,19 @@ fn nearest_speed(mechanism: &Mechanism, mut body: Option<usize>) -> Option<usize
 }
 
 impl Recursive {
+    /// Whether a mass matrix was made for a mechanism with so many speeds.
+    fn check_mass(&self, mass: &MassMatrix) -> Result<(), StateError> {
+        let speeds = self.mechanism.layout().speeds;
+        check_size(WHOLE, "rows of the mass matrix", speeds, mass.size)
+    }
+
     /// M̄ of the tree at `q` into `mass`; constraints that couple joints do not reduce it.
     ///
     /// # Errors
     /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
-        self.check(q, &[("rows of the mass matrix", mass.size)])?;
+        self.check(q, &[])?;
+        self.check_mass(mass)?;
         if core::mem::take(&mut mass.full) {
             mass.rows.fill(0.0);
         }
@@ -237,7 +243,8 @@ impl Recursive {
         q: &[f64],
         inverse: &mut MassMatrix,
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("rows of the mass matrix", inverse.size)])?;
+        self.check(q, &[])?;
+        self.check_mass(inverse)?;
         self.weigh(q);
         self.articulate()?;
         inverse.full = true;

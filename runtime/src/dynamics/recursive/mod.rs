@@ -37,7 +37,7 @@ pub use readings::{Frame, Readings};
 pub use refined::Refined;
 
 use super::{Dynamics, DynamicsError};
-use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
+use crate::mechanism::{Body, Mechanism, Space, StateError};
 use crate::spatial::ArticulatedInertia;
 use crate::steps::Pivot;
 use alloc::sync::Arc;
@@ -137,24 +137,48 @@ impl Recursive {
     /// Places all frames: what the other readings of one configuration start from.
     ///
     /// # Errors
-    /// When `q` has the wrong size.
+    /// When `q` has the wrong size, or is not finite.
     pub fn set_configuration(&mut self, q: &[f64]) -> Result<(), StateError> {
         self.check(q, &[])?;
         self.place(q);
         Ok(())
     }
 
-    fn check(&self, q: &[f64], vectors: &[(&'static str, usize)]) -> Result<(), StateError> {
-        let layout = self.mechanism.layout();
-        check_size(WHOLE, "configuration", layout.configuration, q.len())?;
-        vectors
-            .iter()
-            .try_for_each(|&(quantity, found)| check_size(WHOLE, quantity, layout.speeds, found))
+    /// Whether `q` and vectors with one entry a speed have their sizes, and are finite.
+    fn check(&self, q: &[f64], vectors: &[(&'static str, &[f64])]) -> Result<(), StateError> {
+        let mechanism = &self.mechanism;
+        mechanism.check_vector("configuration", Space::Configuration, q)?;
+        let mut vectors = vectors.iter();
+        vectors.try_for_each(|(quantity, own)| mechanism.check_vector(quantity, Space::Speeds, own))
     }
 
-    fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
-        let freedoms = self.mechanism.layout().freedoms;
-        check_size(WHOLE, "efforts", freedoms, efforts.len())
+    /// Whether `room` for results has one entry a speed.
+    fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
+        self.mechanism.check_room(quantity, Space::Speeds, room)
+    }
+
+    /// Whether τ has one entry a freedom, and is finite; where it is not, and a kernel at (q, v̄) is not either, that is the cause.
+    fn check_efforts(&self, q: &[f64], speeds: &[f64], tau: &[f64]) -> Result<(), StateError> {
+        let checked = self.mechanism.check_vector("efforts", Space::Freedoms, tau);
+        checked.map_err(|error| match &error {
+            StateError::NotFinite { .. } => self.mechanism.no_value(q, speeds).unwrap_or(error),
+            _ => error,
+        })
+    }
+
+    /// `task` at (q, v̄), and whether its results are finite, each with one entry a speed; an error is traced back to what is not finite first.
+    fn finite<const N: usize>(
+        &mut self,
+        (q, speeds): (&[f64], &[f64]),
+        names: [&'static str; N],
+        results: [&mut [f64]; N],
+        task: impl FnOnce(&mut Self, [&mut [f64]; N]) -> Result<(), DynamicsError>,
+    ) -> Result<(), DynamicsError> {
+        let mut results = results;
+        let done = task(self, results.each_mut().map(|own| &mut **own));
+        done.map_err(|error| self.mechanism.first_cause(error, q, speeds))?;
+        let named: [_; N] = core::array::from_fn(|i| (names[i], Space::Speeds, &*results[i]));
+        Ok(self.mechanism.check_finite((q, speeds), &named)?)
     }
 
     /// `S̄ᵀτ` of every joint.
@@ -175,10 +199,14 @@ impl Recursive {
         speeds: &[f64],
         efforts: &mut dyn FnMut(&[f64], &mut [f64]),
         rates: &mut [f64],
-    ) {
+    ) -> Result<(), DynamicsError> {
         let mut tau = core::mem::take(&mut self.inputs);
         tau.fill(0.0);
         efforts(speeds, &mut tau);
+        if let Err(cause) = self.check_efforts(q, speeds, &tau) {
+            self.inputs = tau;
+            return Err(cause.into());
+        }
         self.act(q, speeds, Some(&tau));
         let coupled = self.with_coupling(|dynamics, coupling| {
             dynamics.coupled_rates(q, speeds, rates, coupling);
@@ -189,6 +217,7 @@ impl Recursive {
         self.set_driven_rates(&tau);
         self.copy_driven(&self.driven, rates);
         self.inputs = tau;
+        Ok(())
     }
 
     /// Loads of the forces, against the wrenches of the nodes, to rates.
@@ -209,26 +238,15 @@ impl Recursive {
     }
 }
 
-impl Dynamics for Recursive {
-    fn mechanism(&self) -> &Arc<Mechanism> {
-        &self.mechanism
-    }
-
-    fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
-        self.check(q, &[("speeds", speeds.len())])?;
-        self.with_coupling(|dynamics, coupling| dynamics.complete(q, speeds, coupling))
-            .unwrap_or(Ok(()))
-    }
-
-    fn accelerations(
+impl Recursive {
+    /// v̄̇ of arguments that have been checked.
+    fn solve_accelerations(
         &mut self,
         q: &[f64],
         speeds: &[f64],
         efforts: &[f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("speeds", speeds.len()), ("rates", rates.len())])?;
-        self.check_efforts(efforts)?;
         if self.plain {
             self.advance(q, speeds, None);
             return self.solve(efforts, rates);
@@ -252,13 +270,13 @@ impl Dynamics for Recursive {
         solved
     }
 
-    fn momenta(
+    /// p̄ of arguments that have been checked.
+    fn weigh_momenta(
         &mut self,
         q: &[f64],
         speeds: &[f64],
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("speeds", speeds.len()), ("momenta", momenta.len())])?;
         let coupled = self.with_coupling(|dynamics, coupling| {
             dynamics.coupled_momenta(q, speeds, momenta, coupling)
         });
@@ -274,13 +292,13 @@ impl Dynamics for Recursive {
         Ok(())
     }
 
-    fn speeds(
+    /// v̄ of arguments that have been checked.
+    fn solve_speeds(
         &mut self,
         q: &[f64],
         momenta: &[f64],
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("momenta", momenta.len()), ("speeds", speeds.len())])?;
         let coupled = self.with_coupling(|dynamics, coupling| {
             dynamics.coupled_speeds(q, momenta, speeds, coupling)
         });
@@ -301,6 +319,74 @@ impl Dynamics for Recursive {
         self.set_twists(speeds);
         solved
     }
+}
+
+/// What stands for speeds where none are known yet.
+const RESTING: &[f64] = &[];
+
+impl Dynamics for Recursive {
+    fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.mechanism
+    }
+
+    fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
+        self.check(q, &[("speeds", speeds)])?;
+        if self.coupling.is_none() {
+            return Ok(());
+        }
+        self.finite((q, RESTING), ["speed"], [speeds], |dynamics, [speeds]| {
+            dynamics
+                .with_coupling(|dynamics, coupling| dynamics.complete(q, speeds, coupling))
+                .unwrap_or(Ok(()))
+        })
+    }
+
+    fn accelerations(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("speeds", speeds)])?;
+        self.check_room("rates", rates)?;
+        self.check_efforts(q, speeds, efforts)?;
+        self.finite(
+            (q, speeds),
+            ["acceleration"],
+            [rates],
+            |dynamics, [rates]| dynamics.solve_accelerations(q, speeds, efforts, rates),
+        )
+    }
+
+    fn momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        momenta: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("speeds", speeds)])?;
+        self.check_room("momenta", momenta)?;
+        self.finite(
+            (q, speeds),
+            ["momentum"],
+            [momenta],
+            |dynamics, [momenta]| dynamics.weigh_momenta(q, speeds, momenta),
+        )
+    }
+
+    fn speeds(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        speeds: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        self.check(q, &[("momenta", momenta)])?;
+        self.check_room("speeds", speeds)?;
+        self.finite((q, RESTING), ["speed"], [speeds], |dynamics, [speeds]| {
+            dynamics.solve_speeds(q, momenta, speeds)
+        })
+    }
 
     fn momentum_rates(
         &mut self,
@@ -310,10 +396,15 @@ impl Dynamics for Recursive {
         speeds: &mut [f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("rates", rates.len())])?;
+        self.check_room("rates", rates)?;
         self.speeds(q, momenta, speeds)?;
-        self.rates_of_momenta(q, speeds, efforts, rates);
-        Ok(())
+        let speeds = &*speeds;
+        self.finite(
+            (q, speeds),
+            ["momentum rate"],
+            [rates],
+            |dynamics, [rates]| dynamics.rates_of_momenta(q, speeds, efforts, rates),
+        )
     }
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {

@@ -33,13 +33,13 @@ impl Recursive {
     /// Places all bodies at `q`, moving with v̄ = `speeds`, for reading.
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub fn readings<'a>(
         &'a mut self,
         q: &'a [f64],
         speeds: &'a [f64],
     ) -> Result<Readings<'a>, StateError> {
-        self.check(q, &[("speeds", speeds.len())])?;
+        self.check(q, &[("speeds", speeds)])?;
         self.weigh(q);
         self.set_twists(speeds);
         Ok(Readings {

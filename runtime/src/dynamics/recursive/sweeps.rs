@@ -3,7 +3,7 @@
 use super::Recursive;
 use super::link::{Link, Node};
 use crate::dynamics::DynamicsError;
-use crate::dynamics::error::Space;
+use crate::mechanism::Space;
 use crate::spatial::{ArticulatedInertia, add_weighted, shift_twist, shift_wrench};
 use crate::steps::{Motion, PivotFailure};
 use nalgebra::Vector6;

@@ -1,7 +1,7 @@
 //! What Theorems 2 and 3 need of a mechanism at one configuration, to first order in ϕ.
 
 use super::tree::Tree;
-use crate::mechanism::{Body, Mechanism, StateError, WHOLE, check_size};
+use crate::mechanism::{Body, Mechanism, Space, StateError};
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -39,7 +39,10 @@ pub struct Expansion {
 impl Expansion {
     pub(super) fn new(mechanism: &Mechanism, q: &[f64]) -> Result<Self, StateError> {
         let layout = mechanism.layout();
-        check_size(WHOLE, "configuration", layout.configuration, q.len())?;
+        mechanism.check_vector("configuration", Space::Configuration, q)?;
+        if let Some(cause) = mechanism.no_value(q, &vec![0.0; layout.speeds]) {
+            return Err(cause);
+        }
         let (freedoms, speeds) = (layout.freedoms, layout.speeds);
         let mut expansion = Self {
             mass_matrix: DMatrix::zeros(freedoms, freedoms),

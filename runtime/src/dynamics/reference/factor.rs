@@ -1,8 +1,7 @@
 //! Factorisation of mass matrices, with a name for what makes one singular.
 
 use super::DynamicsError;
-use crate::dynamics::error::Space;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, Space};
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
 /// Cholesky factors of `matrix`, when its pivots stand above its rounding.

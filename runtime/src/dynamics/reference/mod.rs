@@ -14,7 +14,7 @@ mod tree;
 pub use expansion::Expansion;
 
 use super::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive};
-use crate::mechanism::{Mechanism, StateError, WHOLE, check_size};
+use crate::mechanism::{Mechanism, Space, StateError};
 use alloc::sync::Arc;
 use alloc::vec;
 use equipment::{ElementForces, driven, driven_freedoms};
@@ -35,7 +35,7 @@ impl Reference {
     /// All that Theorems 2 and 3 need at `q`, to first order in ϕ.
     ///
     /// # Errors
-    /// When `q` has the wrong size.
+    /// When `q` has the wrong size, or a kernel of a joint is not finite there.
     pub fn expansion(&self, q: &[f64]) -> Result<Expansion, StateError> {
         Expansion::new(&self.mechanism, q)
     }
@@ -51,9 +51,8 @@ impl Reference {
         speeds: &[f64],
         efforts: &[f64],
     ) -> Result<DVector<f64>, DynamicsError> {
-        let layout = self.mechanism.layout();
-        let speeds = sized("speeds", layout.speeds, speeds)?;
-        let efforts = vector("efforts", layout.freedoms, efforts)?;
+        let speeds = self.speeds_of("speeds", speeds)?;
+        let efforts = self.efforts_of(efforts)?;
         let expansion = self.expansion(q)?;
         let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
         let reduced = expansion.select(speeds);
@@ -61,27 +60,30 @@ impl Reference {
     }
 }
 
-/// A slice of the right size as a vector.
-fn vector(
-    quantity: &'static str,
-    expected: usize,
-    slice: &[f64],
-) -> Result<DVector<f64>, StateError> {
-    check_size(WHOLE, quantity, expected, slice.len())?;
-    Ok(DVector::from_column_slice(slice))
-}
-
-/// A slice of the right size.
-fn sized<'a>(
-    quantity: &'static str,
-    expected: usize,
-    slice: &'a [f64],
-) -> Result<&'a [f64], StateError> {
-    check_size(WHOLE, quantity, expected, slice.len())?;
-    Ok(slice)
-}
-
 impl Reference {
+    /// Numbers with one entry a speed: of the right size, and finite.
+    fn speeds_of<'a>(
+        &self,
+        quantity: &'static str,
+        slice: &'a [f64],
+    ) -> Result<&'a [f64], StateError> {
+        self.mechanism
+            .check_vector(quantity, Space::Speeds, slice)?;
+        Ok(slice)
+    }
+
+    /// τ as a vector, of the right size and finite.
+    fn efforts_of(&self, slice: &[f64]) -> Result<DVector<f64>, StateError> {
+        self.mechanism
+            .check_vector("efforts", Space::Freedoms, slice)?;
+        Ok(DVector::from_column_slice(slice))
+    }
+
+    /// Whether room for results has one entry a speed.
+    fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
+        self.mechanism.check_room(quantity, Space::Speeds, room)
+    }
+
     /// v̄ of the joints, and the independent among it, from p̄.
     fn solve_speeds(
         &self,
@@ -103,7 +105,7 @@ impl Dynamics for Reference {
     }
 
     fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
-        sized("speeds", self.mechanism.layout().speeds, speeds)?;
+        self.speeds_of("speeds", speeds)?;
         let expansion = self.expansion(q)?;
         let reduced = expansion.select(speeds);
         let whole = expansion.whole_speeds(&self.mechanism, q, &reduced);
@@ -120,10 +122,9 @@ impl Dynamics for Reference {
         efforts: &[f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let layout = self.mechanism.layout();
-        let speeds = sized("speeds", layout.speeds, speeds)?;
-        let efforts = vector("efforts", layout.freedoms, efforts)?;
-        sized("rates", layout.speeds, rates)?;
+        let speeds = self.speeds_of("speeds", speeds)?;
+        let efforts = self.efforts_of(efforts)?;
+        self.check_room("rates", rates)?;
         let expansion = self.expansion(q)?;
         let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
         let known = driven_freedoms(&self.mechanism, &expansion, efforts.as_slice());
@@ -141,9 +142,8 @@ impl Dynamics for Reference {
         speeds: &[f64],
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let size = self.mechanism.layout().speeds;
-        let speeds = sized("speeds", size, speeds)?;
-        sized("momenta", size, momenta)?;
+        let speeds = self.speeds_of("speeds", speeds)?;
+        self.check_room("momenta", momenta)?;
         let expansion = self.expansion(q)?;
         let mut product = expansion.reduced_mass_matrix() * expansion.select(speeds);
         for (index, speed) in driven(&self.mechanism, &expansion, speeds) {
@@ -159,9 +159,8 @@ impl Dynamics for Reference {
         momenta: &[f64],
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let size = self.mechanism.layout().speeds;
-        let momenta = sized("momenta", size, momenta)?;
-        sized("speeds", size, speeds)?;
+        let momenta = self.speeds_of("momenta", momenta)?;
+        self.check_room("speeds", speeds)?;
         let expansion = self.expansion(q)?;
         let (solution, _) = self.solve_speeds(&expansion, q, momenta)?;
         speeds.copy_from_slice(solution.as_slice());
@@ -176,15 +175,15 @@ impl Dynamics for Reference {
         speeds: &mut [f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let layout = self.mechanism.layout();
-        let momenta = sized("momenta", layout.speeds, momenta)?;
-        sized("speeds", layout.speeds, speeds)?;
-        sized("rates", layout.speeds, rates)?;
+        let momenta = self.speeds_of("momenta", momenta)?;
+        self.check_room("speeds", speeds)?;
+        self.check_room("rates", rates)?;
         let expansion = self.expansion(q)?;
         let (whole, reduced) = self.solve_speeds(&expansion, q, momenta)?;
         speeds.copy_from_slice(whole.as_slice());
-        let mut tau = vec![0.0; layout.freedoms];
+        let mut tau = vec![0.0; self.mechanism.layout().freedoms];
         efforts(speeds, &mut tau);
+        self.efforts_of(&tau)?;
         let known = driven_freedoms(&self.mechanism, &expansion, &tau);
         let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
         let tau = DVector::from_vec(tau) + elements.efforts;
@@ -197,7 +196,7 @@ impl Dynamics for Reference {
     }
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
-        let momenta = sized("momenta", self.mechanism.layout().speeds, momenta)?;
+        let momenta = self.speeds_of("momenta", momenta)?;
         let expansion = self.expansion(q)?;
         let (whole, reduced) = self.solve_speeds(&expansion, q, momenta)?;
         let elements = ElementForces::new(&self.mechanism, &expansion, q, whole.as_slice())?;

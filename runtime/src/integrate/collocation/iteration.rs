@@ -6,6 +6,7 @@ use crate::integrate::discrete_gradient::Correction;
 use crate::integrate::flow::Flow;
 use crate::integrate::standing::{Standing, add};
 use crate::integrate::stepper::Span;
+use crate::mechanism::StateError;
 use alloc::vec::Vec;
 use num_traits::Float;
 
@@ -215,6 +216,12 @@ impl Collocation {
         let mut worst = (0, 0.0);
         for change in &self.changes {
             for (row, size) in self.sizes(change, standing).enumerate() {
+                if !size.is_finite() {
+                    return StepFailure::State(StateError::NoValue {
+                        joint: flow.row_name(row),
+                        what: "iteration",
+                    });
+                }
                 if size > worst.1 {
                     worst = (row, size);
                 }

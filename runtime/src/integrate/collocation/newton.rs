@@ -74,6 +74,8 @@ impl Newton {
         solves: &mut Solves,
     ) -> Result<(), StepFailure> {
         if self.stale {
+            // Also where they cannot be evaluated: there is nothing newer to try.
+            self.is_fresh = true;
             if let System::Tree(tree) = &mut self.system {
                 tree.evaluate(standing);
                 if tree.leaves_out() && flow.mechanism.layout().speeds < LARGE_COUPLED {
@@ -84,14 +86,14 @@ impl Newton {
                 dense.evaluate(standing, flow, time)?;
             }
             solves.jacobians += 1;
-            (self.stale, self.is_fresh, self.step) = (false, true, f64::NAN);
+            (self.stale, self.step) = (false, f64::NAN);
         }
         if self.step == step {
             return Ok(());
         }
         self.step = f64::NAN;
         solves.factorizations += match &mut self.system {
-            System::Tree(tree) => tree.factorize(step)?,
+            System::Tree(tree) => tree.factorize(step, standing)?,
             System::Dense(dense) => dense.factorize(flow, step)?,
         };
         self.step = step;

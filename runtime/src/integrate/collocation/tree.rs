@@ -151,7 +151,11 @@ impl Tree {
     }
 
     /// Factorises for steps of `step`; how many matrices.
-    pub(super) fn factorize(&mut self, step: f64) -> Result<usize, StepFailure> {
+    pub(super) fn factorize(
+        &mut self,
+        step: f64,
+        standing: &Standing,
+    ) -> Result<usize, StepFailure> {
         let Self {
             dynamics,
             blocks,
@@ -169,7 +173,11 @@ impl Tree {
                 let at = j * block.stiffness.len().isqrt() + i;
                 tau * (tau * block.stiffness[at] + block.damping[at])
             };
-            dynamics.factorize_loaded(load, &mut factors.mass)?;
+            let factorized = dynamics.factorize_loaded(load, &mut factors.mass);
+            factorized.map_err(|cause| {
+                let (q, speeds) = (&standing.configuration, &standing.rates.speeds);
+                dynamics.mechanism().first_cause(cause, q, speeds)
+            })?;
         }
         Ok(count)
     }

@@ -61,7 +61,7 @@ impl Charts {
                 rate_by_speeds: &mut own.rate_by_speeds,
             };
             let (phi, speeds) = (&phi[own.freedoms.clone()], &speeds[own.speeds.clone()]);
-            body.joint()
+            body.kernels()
                 .differentiate(body.configuration(base), phi, speeds, &mut out);
         }
     }

@@ -19,10 +19,11 @@ mod charts;
 mod equations;
 
 use super::flow::{Rates, retract};
-use super::turns::{Turns, check_finite};
+use super::turns::Turns;
 use super::{Form, StepFailure, Tableau};
 use crate::dynamics::{Dynamics, DynamicsError, Recursive, Sensitivity};
-use crate::mechanism::{Mechanism, WHOLE, check_size};
+use crate::mechanism::{Mechanism, Space};
+use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -35,6 +36,8 @@ pub struct LinearStep {
     dynamics: Recursive,
     equations: Equations,
     tableau: &'static Tableau,
+    /// What is wrong with its coefficients.
+    fault: Option<String>,
     turns: Turns,
     charts: Charts,
     stages: Vec<Stage>,
@@ -117,6 +120,7 @@ impl LinearStep {
             charts: Charts::new(mechanism),
             stages: vec![stage; tableau.nodes.len()],
             tableau,
+            fault: tableau.fault(),
             phi: vec![0.0; freedoms],
             configuration: vec![0.0; layout.configuration],
             y: vec![0.0; speeds],
@@ -223,8 +227,12 @@ impl LinearStep {
         }
         mechanism.check_configuration(q)?;
         mechanism.check_speeds(self.equations.y(), y)?;
-        let freedoms = mechanism.layout().freedoms;
-        Ok(check_size(WHOLE, "efforts", freedoms, efforts.len())?)
+        if let Some(reason) = &self.fault {
+            return Err(StepFailure::Tableau {
+                reason: reason.clone(),
+            });
+        }
+        Ok(mechanism.check_vector("efforts", Space::Freedoms, efforts)?)
     }
 
     /// ϕ, Q and y of a stage, and how they change.
@@ -255,7 +263,15 @@ impl LinearStep {
         self.charts
             .set(&mechanism, start.q, &self.phi, &rates.speeds);
         self.charts.rates(&rates.speeds, &mut rates.phi);
-        check_finite(&mechanism, &rates.phi, &rates.y)?;
+        let found = [
+            (
+                "rate of the local coordinates",
+                Space::Freedoms,
+                &*rates.phi,
+            ),
+            ("acceleration", Space::Speeds, &*rates.y),
+        ];
+        mechanism.check_finite((&self.configuration, &rates.speeds), &found)?;
         self.charts.localize(&self.change.phi, &mut self.local);
         self.charts.carry(&mut self.local);
         self.equations

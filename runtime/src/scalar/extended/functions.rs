@@ -56,11 +56,7 @@ fn stumpff(s: Extended, order: usize) -> Extended {
             let (sine, cosine) = angle.sin_cos();
             (cosine, sine / angle)
         }
-        false => {
-            let (grown, faded) = (angle.exp(), (-angle).exp());
-            let half = |sum: Extended| sum.scaled(0.5);
-            (half(grown + faded), half(grown - faded) / angle)
-        }
+        false => (angle.cosh(), angle.sinh() / angle),
     };
     let first = if order.is_multiple_of(2) { even } else { odd };
     (order % 2..order).step_by(2).fold(first, |value, k| {
@@ -93,6 +89,17 @@ fn dexp_inverse(s: Extended, derivative: usize) -> Extended {
 impl Extended {
     fn abs(self) -> Self {
         if self.high < 0.0 { -self } else { self }
+    }
+
+    /// `e^x / 2` and `e^(−x) / 2`: e^x alone may be out of range where the hyperbolic functions are not.
+    fn half_exponentials(self) -> (Self, Self) {
+        ((self - LN_2).exp(), (-self - LN_2).exp())
+    }
+
+    /// `e^x − 1 = 2 e^(x/2) sinh(x/2)`.
+    fn exp_m1(self) -> Self {
+        let half = self.scaled(0.5);
+        (half.exp() * half.sinh()).scaled(2.0)
     }
 
     /// Sine and cosine from −π/4 to π/4.
@@ -188,6 +195,59 @@ impl Scalar for Extended {
         // The third power of what is missing is below the last place: ln x = y + 2 (x − e^y) / (x + e^y).
         let near = start.exp();
         start + ((self - near) / (self + near)).scaled(2.0)
+    }
+
+    fn ln_1p(self) -> Self {
+        // The sum is exact there, and the logarithm large.
+        if self.high <= -0.5 {
+            return (Self::one() + self).ln();
+        }
+        let start = Self::from(Float::ln_1p(self.high));
+        if !start.high.is_finite() {
+            return start;
+        }
+        // As for the logarithm, with what the exponential is beyond 1.
+        let near = start.exp_m1();
+        start + ((self - near) / (self + near + number(2.0))).scaled(2.0)
+    }
+
+    fn sinh(self) -> Self {
+        let size = self.abs();
+        if size.high <= 1.0 {
+            return self * alternating(-(self * self), 1, CIRCULAR_TERMS);
+        }
+        let (grown, faded) = size.half_exponentials();
+        let sine = grown - faded;
+        if self.high < 0.0 { -sine } else { sine }
+    }
+
+    fn cosh(self) -> Self {
+        let (grown, faded) = self.abs().half_exponentials();
+        grown + faded
+    }
+
+    fn sech(self) -> Self {
+        let faded = (-self.abs()).exp();
+        faded.scaled(2.0) / (Self::one() + faded * faded)
+    }
+
+    fn tanh(self) -> Self {
+        let size = self.abs();
+        if size.high <= 1.0 {
+            return self.sinh() / self.cosh();
+        }
+        let faded = size.scaled(-2.0).exp();
+        let tangent = (Self::one() - faded) / (Self::one() + faded);
+        if self.high < 0.0 { -tangent } else { tangent }
+    }
+
+    fn ln_cosh(self) -> Self {
+        let size = self.abs();
+        if size.high <= 1.0 {
+            let sine = size.sinh();
+            return (sine * sine).ln_1p().scaled(0.5);
+        }
+        (size - LN_2) + size.scaled(-2.0).exp().ln_1p()
     }
 
     fn stumpff(self, order: usize) -> Self {

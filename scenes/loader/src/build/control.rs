@@ -1,5 +1,6 @@
 //! The controller of a scene, fitted to its mechanism.
 
+use super::by_joint;
 use super::state::Stand;
 use crate::control::{
     Control, ControlLaw, ControllerDescription, Goal, GoalDescription, LawDescription,
@@ -13,6 +14,8 @@ use crate::source::{Located, Span};
 use hamel::control::{Port, Pump, Weights};
 use hamel::elements::Law;
 use hamel::mechanism::Mechanism;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// Looks the joints up in the mechanism, which begins at `q`, and tries the law over `t_end` (s); every error is noted.
@@ -22,7 +25,11 @@ pub(crate) fn control(
     (q, t_end): (&[f64], f64),
     sink: &mut Sink,
 ) -> Option<Control> {
-    let fit = Fit { mechanism, q };
+    let fit = Fit {
+        joints: by_joint(mechanism),
+        mechanism,
+        q,
+    };
     let control = Control {
         period: description.period,
         kind: description.law.name(),
@@ -39,6 +46,8 @@ pub(crate) fn control(
 /// The mechanism that the controller is fitted to.
 struct Fit<'a> {
     mechanism: &'a Mechanism,
+    /// Its bodies by the names of their joints.
+    joints: HashMap<&'a str, usize>,
     q: &'a [f64],
 }
 
@@ -98,10 +107,7 @@ impl Fit<'_> {
 
     /// The body whose joint has that name; the parser has seen to it that there is one.
     fn find(&self, joint: &Located<String>) -> Option<usize> {
-        let bodies = self.mechanism.bodies();
-        bodies
-            .iter()
-            .position(|body| body.joint_name() == joint.value)
+        self.joints.get(joint.value.as_str()).copied()
     }
 
     /// The configuration of the joint under `body` that `position` means.
@@ -224,16 +230,16 @@ impl Fit<'_> {
 
 /// Whether no joint is named twice.
 fn unique<'a>(names: impl Iterator<Item = &'a Located<String>>, sink: &mut Sink) -> bool {
-    let mut seen: Vec<&Located<String>> = Vec::new();
+    let mut seen: HashMap<&str, &Located<String>> = HashMap::new();
     let mut sound = true;
     for name in names {
-        match seen.iter().find(|other| other.value == name.value) {
-            None => seen.push(name),
-            Some(other) => {
+        match seen.entry(&name.value) {
+            Entry::Vacant(entry) => _ = entry.insert(name),
+            Entry::Occupied(entry) => {
                 sound = false;
                 let message = format!("controller: joint `{}` is named twice", name.value);
                 let error = Diagnostic::new(name.span.clone(), message);
-                sink.push(error.context(other.span.clone(), "here"));
+                sink.push(error.context(entry.get().span.clone(), "here"));
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The events of a scene, fitted to its mechanism.
 
+use super::by_joint;
 use crate::diagnostics::Diagnostic;
 use crate::event::{EventDescription, Quantity, QuantityDescription, SceneEvent};
 use crate::read::Sink;
@@ -14,12 +15,18 @@ pub(super) fn events(
     mechanism: &Mechanism,
     sink: &mut Sink,
 ) -> Option<Vec<SceneEvent>> {
+    let joints = by_joint(mechanism);
+    // The parser has seen to it that there is one.
+    let find = |joint: &Located<String>| {
+        let index = *joints.get(joint.value.as_str())?;
+        mechanism.bodies().get(index)
+    };
     let found: Vec<_> = descriptions
         .iter()
         .map(|description| {
             Some(SceneEvent {
                 name: description.name.value.clone(),
-                quantity: quantity(&description.quantity, mechanism, sink)?,
+                quantity: quantity(&description.quantity, &find, sink)?,
                 value: description.value,
                 direction: description.direction,
                 stops: description.stops,
@@ -29,16 +36,11 @@ pub(super) fn events(
     found.into_iter().collect()
 }
 
-fn quantity(
+fn quantity<'a>(
     description: &QuantityDescription,
-    mechanism: &Mechanism,
+    find: &impl Fn(&Located<String>) -> Option<&'a Body>,
     sink: &mut Sink,
 ) -> Option<Quantity> {
-    let find = |joint: &Located<String>| {
-        let mut bodies = mechanism.bodies().iter();
-        // The parser has seen to it that there is one.
-        bodies.find(|body| body.joint_name() == joint.value)
-    };
     match description {
         QuantityDescription::Point(point) => Some(Quantity::Point(*point)),
         QuantityDescription::Coordinate { joint, name } => {

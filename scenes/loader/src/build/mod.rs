@@ -14,7 +14,10 @@ pub(crate) use state::{State, state};
 use crate::description::SceneDescription;
 use crate::read::Sink;
 use crate::scene::Scene;
+use hamel::dynamics::DynamicsError;
 use hamel::mechanism::{BodySpec, Mechanism};
+use place::Places;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Puts the mechanism together; `states` go with the bodies of `description`.
@@ -41,18 +44,22 @@ pub(crate) fn scene(
             mass: body.mass,
         });
     }
+    let places = Places::new(description);
     let mechanism = Mechanism::new(description.gravity, bodies)
         .and_then(|mechanism| equip::equip(mechanism, description, &acting))
         .and_then(|mechanism| equip::couple(mechanism, description, &configuration))
         .map_err(|errors| {
             let errors = errors.into_iter();
-            errors.for_each(|error| sink.push(place::refused(description, &error)));
+            errors.for_each(|error| sink.push(places.refused(&error)));
         })
         .ok()?;
     let mechanism = Arc::new(mechanism);
-    mechanism.set_driven_speeds(0.0, &mut speeds);
-    equip::complete(&mechanism, &configuration, &mut speeds)
-        .map_err(|error| sink.push(place::undetermined(description, &error)))
+    let driven = mechanism.set_driven_speeds(0.0, &mut speeds);
+    let completed = driven
+        .map_err(DynamicsError::from)
+        .and_then(|()| equip::complete(&mechanism, &configuration, &mut speeds));
+    completed
+        .map_err(|error| sink.push(places.undetermined(&error)))
         .ok()?;
     let control = match &description.controller {
         Some(controller) => {
@@ -74,4 +81,12 @@ pub(crate) fn scene(
         settings: description.settings,
         notices: Vec::new(),
     })
+}
+
+/// The bodies by the names of their joints.
+fn by_joint(mechanism: &Mechanism) -> HashMap<&str, usize> {
+    let bodies = mechanism.bodies().iter().enumerate();
+    bodies
+        .map(|(index, body)| (body.joint_name(), index))
+        .collect()
 }

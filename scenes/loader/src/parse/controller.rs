@@ -11,20 +11,33 @@ use crate::diagnostics::Diagnostic;
 use crate::forces::PerFreedom;
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
-use crate::suggest::{nearest, one_of};
 use hamel::control::{Curve, ErrorDynamics, PathGains, PortSpring};
 use hamel::elements::Law;
+use std::collections::HashSet;
 
 /// Periods that a horizon has at most: the optimisation is dense.
 const LONGEST_HORIZON: u64 = 200;
 
-/// Names of the joints that a controller may speak of; `None` where some are in error themselves.
-pub(crate) type Joints<'a> = Option<Vec<&'a str>>;
+/// The joints that controllers and events may speak of.
+pub(crate) struct Joints<'a> {
+    names: Vec<&'a str>,
+    known: HashSet<&'a str>,
+}
+
+impl<'a> FromIterator<&'a str> for Joints<'a> {
+    fn from_iter<I: IntoIterator<Item = &'a str>>(names: I) -> Self {
+        let names: Vec<&str> = names.into_iter().collect();
+        Self {
+            known: names.iter().copied().collect(),
+            names,
+        }
+    }
+}
 
 /// Reads the controller, if there is one; `None` also where it is in error.
 pub(super) fn controller(
     fields: &mut Fields<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<ControllerDescription> {
     let value = fields.optional("controller")?;
@@ -60,7 +73,7 @@ pub(super) fn controller(
 
 fn computed_torque(
     table: &mut Fields<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<LawDescription> {
     let frequency = required(table, "frequency", positive, sink);
@@ -77,7 +90,7 @@ fn computed_torque(
 
 fn reference(
     fields: &mut Fields<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<ReferenceDescription> {
     let joint = joint(fields, joints, sink);
@@ -106,7 +119,7 @@ fn laws(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<Law>>> {
 
 fn regulator(
     table: &mut Fields<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<RegulatorDescription> {
     let actuated = match table.optional("actuated") {
@@ -132,7 +145,7 @@ fn regulator(
 
 fn energy_shaping(
     table: &mut Fields<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<LawDescription> {
     let ports = list(table, "port", |f, s| port(f, joints, s), sink);
@@ -150,7 +163,11 @@ fn energy_shaping(
     })
 }
 
-fn port(fields: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option<PortDescription> {
+fn port(
+    fields: &mut Fields<'_>,
+    joints: Option<&Joints<'_>>,
+    sink: &mut Sink,
+) -> Option<PortDescription> {
     let joint = joint(fields, joints, sink);
     let stiffness = or(fields, "stiffness", 0.0, not_negative, sink);
     let kind = match fields.optional("kind") {
@@ -170,7 +187,11 @@ fn port(fields: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option
     })
 }
 
-fn path(table: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option<LawDescription> {
+fn path(
+    table: &mut Fields<'_>,
+    joints: Option<&Joints<'_>>,
+    sink: &mut Sink,
+) -> Option<LawDescription> {
     let joint = joint(table, joints, sink);
     let x = required(table, "x", coordinate, sink);
     let y = required(table, "y", coordinate, sink);
@@ -206,7 +227,11 @@ fn coordinate(value: &Value<'_>, sink: &mut Sink) -> Option<(f64, Law)> {
     Some((start?, law))
 }
 
-fn mpc(table: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option<LawDescription> {
+fn mpc(
+    table: &mut Fields<'_>,
+    joints: Option<&Joints<'_>>,
+    sink: &mut Sink,
+) -> Option<LawDescription> {
     let regulator = regulator(table, joints, sink);
     let horizon = required(table, "horizon", horizon, sink);
     let limits = required(table, "limits", per_freedom, sink);
@@ -242,7 +267,11 @@ fn all_positive(limits: &Located<PerFreedom>, sink: &mut Sink) -> bool {
     positive
 }
 
-fn goal(fields: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option<GoalDescription> {
+fn goal(
+    fields: &mut Fields<'_>,
+    joints: Option<&Joints<'_>>,
+    sink: &mut Sink,
+) -> Option<GoalDescription> {
     let joint = joint(fields, joints, sink);
     let position = initial::position(fields, sink);
     Some(GoalDescription {
@@ -251,7 +280,11 @@ fn goal(fields: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option
     })
 }
 
-fn joint(fields: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option<Located<String>> {
+fn joint(
+    fields: &mut Fields<'_>,
+    joints: Option<&Joints<'_>>,
+    sink: &mut Sink,
+) -> Option<Located<String>> {
     let value = fields.required("joint", sink)?;
     known(&value, joints, sink)
 }
@@ -259,14 +292,14 @@ fn joint(fields: &mut Fields<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Optio
 /// The name of a joint that there is.
 pub(super) fn known(
     value: &Value<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<Located<String>> {
     let name = value.text(sink)?;
     let Some(joints) = joints else {
         return Some(name);
     };
-    if joints.contains(&name.value.as_str()) {
+    if joints.known.contains(name.value.as_str()) {
         return Some(name);
     }
     let message = format!(
@@ -275,15 +308,15 @@ pub(super) fn known(
         name.value
     );
     let error = Diagnostic::new(name.span, message);
-    let names = joints.iter().copied();
-    sink.push(match nearest(&name.value, names.clone()) {
-        Some(near) => error.label(format!("did you mean `{near}`?")),
-        None => error.help(format!("a joint is {}", one_of(names))),
-    });
+    sink.unknown(error, &name.value, &joints.names, "a joint is");
     None
 }
 
-fn names(value: &Value<'_>, joints: &Joints<'_>, sink: &mut Sink) -> Option<Vec<Located<String>>> {
+fn names(
+    value: &Value<'_>,
+    joints: Option<&Joints<'_>>,
+    sink: &mut Sink,
+) -> Option<Vec<Located<String>>> {
     let items = value.items("entry", "a list of names", sink)?;
     let names: Vec<_> = items.iter().map(|item| known(item, joints, sink)).collect();
     names.into_iter().collect()

@@ -13,7 +13,6 @@ use crate::forces::{
 use crate::read::{Fields, Sink, Value};
 use crate::shape::ShapeDescription;
 use crate::source::Located;
-use crate::suggest::{nearest, one_of};
 use hamel::spatial::Pose;
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -32,7 +31,7 @@ pub(crate) struct Elements {
 /// Reads all of them.
 pub(super) fn elements(
     fields: &mut Fields<'_>,
-    (drafts, joints): (&[BodyDraft], &Joints<'_>),
+    (drafts, joints): (&[BodyDraft], Option<&Joints<'_>>),
     tree: Option<&Tree>,
     sink: &mut Sink,
 ) -> Elements {
@@ -71,6 +70,7 @@ fn each<T>(
 
 /// The bodies by name; those of a scene whose tree is wrong have no index.
 pub(super) struct Bodies<'a> {
+    /// All names, and the world.
     names: Vec<&'a str>,
     indices: HashMap<&'a str, Option<usize>>,
 }
@@ -78,7 +78,7 @@ pub(super) struct Bodies<'a> {
 impl<'a> Bodies<'a> {
     fn new(drafts: &'a [BodyDraft], tree: Option<&Tree>) -> Self {
         let named = |draft: &'a BodyDraft| Some(draft.name.as_ref()?.value.as_str());
-        let names: Vec<&str> = drafts.iter().filter_map(named).collect();
+        let mut names: Vec<&str> = drafts.iter().filter_map(named).collect();
         let mut indices: HashMap<&str, Option<usize>> =
             names.iter().map(|&name| (name, None)).collect();
         for (index, &place) in tree.iter().flat_map(|tree| &tree.order).enumerate() {
@@ -86,6 +86,7 @@ impl<'a> Bodies<'a> {
                 indices.insert(name, Some(index));
             }
         }
+        names.push(WORLD);
         Self { names, indices }
     }
 
@@ -104,11 +105,7 @@ impl<'a> Bodies<'a> {
             name.value
         );
         let error = Diagnostic::new(name.span, message);
-        let names = self.names.iter().copied().chain([WORLD]);
-        sink.push(match nearest(&name.value, names.clone()) {
-            Some(near) => error.label(format!("did you mean `{near}`?")),
-            None => error.help(format!("a body is {}", one_of(names))),
-        });
+        sink.unknown(error, &name.value, &self.names, "a body is");
         None
     }
 

@@ -13,7 +13,7 @@ use hamel::integrate::Direction;
 pub(super) fn event(
     fields: &mut Fields<'_>,
     bodies: &Bodies<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<EventDescription> {
     let name = name(fields, "event", sink);
@@ -76,7 +76,7 @@ fn point(
 fn of_joint(
     fields: &mut Fields<'_>,
     joint: &Value<'_>,
-    joints: &Joints<'_>,
+    joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<QuantityDescription> {
     let joint = known(joint, joints, sink);

@@ -25,7 +25,7 @@ use crate::forces::JointForces;
 use crate::read::{Fields, Sink};
 use crate::settings::Settings;
 use crate::source::Located;
-use controller::Joints;
+pub(crate) use controller::Joints;
 use elements::Elements;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::Vector3;
@@ -87,8 +87,8 @@ pub(crate) fn draft(text: &str, sink: &mut Sink) -> Option<Draft> {
     Some(scene(&mut fields, sink)).inspect(|_| fields.finish(sink))
 }
 
-/// The joints of bodies that could all be read.
-fn joints(bodies: &[BodyDraft]) -> Joints<'_> {
+/// The joints of bodies; `None` where some could not be read, which may be the ones that are spoken of.
+fn joints(bodies: &[BodyDraft]) -> Option<Joints<'_>> {
     let joints = bodies.iter().map(|body| body.joint.as_ref());
     joints
         .map(|joint| Some(joint?.name.value.as_str()))
@@ -108,7 +108,7 @@ pub(crate) fn controller(
     }
     let mut fields = Fields::new(String::new(), 0..0, root.get_ref());
     version(&mut fields, sink);
-    let found = controller::controller(&mut fields, joints, sink);
+    let found = controller::controller(&mut fields, Some(joints), sink);
     if found.is_none() && sink.len() == 0 {
         let error = Diagnostic::new(0..0, "the file has no controller");
         sink.push(error.help("a controller is a table that begins with `[controller]`"));
@@ -124,7 +124,9 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
     let gravity = gravity(fields, sink);
     let bodies = bodies(fields, sink);
     let tree = tree::tree(&bodies, sink);
-    let elements = elements::elements(fields, (&bodies, &joints(&bodies)), tree.as_ref(), sink);
+    let joints = joints(&bodies);
+    let elements = elements::elements(fields, (&bodies, joints.as_ref()), tree.as_ref(), sink);
+    let controller = controller::controller(fields, joints.as_ref(), sink);
     Draft {
         name: name.map(|name| name.value),
         description: description
@@ -133,7 +135,7 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
         gravity: gravity.unwrap_or_else(Vector3::zeros),
         tree,
         elements,
-        controller: controller::controller(fields, &joints(&bodies), sink),
+        controller,
         bodies,
         settings: simulation::settings(fields, sink),
     }

@@ -3,6 +3,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::source::Located;
+use hamel::shown::Number;
 use hamel::spatial::{Pose, hat, so3};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
@@ -31,7 +32,8 @@ pub(crate) fn from_quaternion(
     let norm = quaternion.value.norm();
     if (norm - 1.0).abs() > QUATERNION_TOLERANCE || !norm.is_finite() {
         let message = format!(
-            "{path} has length {norm}, which differs from 1 by more than {QUATERNION_TOLERANCE:e}"
+            "{path} has length {}, which differs from 1 by more than {QUATERNION_TOLERANCE:e}",
+            Number(norm)
         );
         sink.push(Diagnostic::new(quaternion.span, message));
         return None;

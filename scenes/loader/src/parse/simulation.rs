@@ -7,6 +7,7 @@ use crate::settings::{
     form_named, sampling_named,
 };
 use hamel::integrate::{Control, Method, Scheme};
+use hamel::shown::Number;
 
 /// Reads the settings; the defaults where the table or a key of it is absent or in error.
 pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
@@ -79,7 +80,7 @@ fn positive(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Optio
 
 fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
     let (least, largest) = (Control::LEAST_TOLERANCE, Control::LARGEST_TOLERANCE);
-    let limit = format!("between {least:?} and {largest:?}");
+    let limit = format!("between {:?} and {:?}", Number(least), Number(largest));
     let holds = |number| (least..=largest).contains(&number);
     let number = table.optional("tol")?.number_within(holds, &limit, sink)?;
     Some(number.value)

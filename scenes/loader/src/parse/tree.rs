@@ -5,7 +5,6 @@ use super::{BodyDraft, Tree};
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::source::Located;
-use crate::suggest::{nearest, one_of};
 use std::cmp::Reverse;
 use std::collections::hash_map::Entry;
 use std::collections::{BinaryHeap, HashMap};
@@ -72,9 +71,13 @@ fn parents(
     places: &HashMap<&str, usize>,
     sink: &mut Sink,
 ) -> Option<Vec<Option<usize>>> {
+    let names = bodies
+        .iter()
+        .filter_map(|body| Some(body.name.as_ref()?.value.as_str()));
+    let names: Vec<&str> = names.chain([WORLD]).collect();
     let parents: Vec<_> = bodies
         .iter()
-        .map(|body| parent(body, bodies, places, sink))
+        .map(|body| parent(body, &names, places, sink))
         .collect();
     parents.into_iter().collect()
 }
@@ -82,7 +85,7 @@ fn parents(
 /// The outer `None` is an error, the inner one the world.
 fn parent(
     body: &BodyDraft,
-    bodies: &[BodyDraft],
+    names: &[&str],
     places: &HashMap<&str, usize>,
     sink: &mut Sink,
 ) -> Option<Option<usize>> {
@@ -99,14 +102,7 @@ fn parent(
         parent.value
     );
     let error = Diagnostic::new(parent.span.clone(), message);
-    let names = bodies
-        .iter()
-        .filter_map(|body| Some(body.name.as_ref()?.value.as_str()));
-    let names = names.chain([WORLD]);
-    sink.push(match nearest(&parent.value, names.clone()) {
-        Some(near) => error.label(format!("did you mean `{near}`?")),
-        None => error.help(format!("a parent is {}", one_of(names))),
-    });
+    sink.unknown(error, &parent.value, names, "a parent is");
     None
 }
 

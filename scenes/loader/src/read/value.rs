@@ -1,9 +1,11 @@
 //! One value of the tree, read as a number, a text, a vector, a matrix or a table.
 
-use super::{Fields, Sink};
+use super::{Fields, LONGEST_NAME, Sink};
 use crate::diagnostics::Diagnostic;
 use crate::source::{Located, Span};
 use crate::suggest::{nearest, one_of};
+use crate::text::is_hidden;
+use hamel::shown::Number;
 use nalgebra::{DMatrix, Matrix3, SVector};
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
@@ -75,9 +77,17 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A text in one line.
+    /// A text in one line, of [`LONGEST_NAME`] bytes at most.
     pub(crate) fn text(&self, sink: &mut Sink) -> Option<Located<String>> {
-        self.text_where(str::to_owned, char::is_control, sink)
+        let text = self.text_where(str::to_owned, is_hidden, sink)?;
+        let length = text.value.len();
+        if length <= LONGEST_NAME {
+            return Some(text);
+        }
+        let path = self.path();
+        let message = format!("{path} has {length} bytes, but may have {LONGEST_NAME} at most");
+        sink.push(Diagnostic::new(text.span, message));
+        None
     }
 
     /// A text that may have several lines, and tabs in them. Lines end in `\n`, whichever ends the file has.
@@ -103,7 +113,7 @@ impl<'a> Value<'a> {
         None
     }
 
-    /// Names and descriptions go to terminals and into tables, where control characters would do harm.
+    /// Names and descriptions go to terminals and into tables, where characters that are not seen would do harm.
     fn text_where(
         &self,
         normal: impl Fn(&str) -> String,
@@ -116,7 +126,11 @@ impl<'a> Value<'a> {
         let text = normal(text);
         if let Some(character) = text.chars().find(|&c| refused(c)) {
             let path = self.path();
-            let message = format!("{path} contains the control character {character:?}");
+            let kind = match character.is_control() {
+                true => "the control character",
+                false => "a character that is not seen,",
+            };
+            let message = format!("{path} contains {kind} {character:?}");
             sink.push(Diagnostic::new(self.span(), message));
             return None;
         }
@@ -165,12 +179,14 @@ impl<'a> Value<'a> {
         let items = self.items("row", "rows of numbers", sink)?;
         let size = items.len();
         let rows: Vec<_> = items.iter().map(|row| row.numbers(sink)).collect();
-        let mut matrix = DMatrix::zeros(size, size);
-        for (index, (row, item)) in rows.into_iter().zip(&items).enumerate() {
+        let mut entries = Vec::new();
+        for (row, item) in rows.into_iter().zip(&items) {
             let row = row?.value;
+            // Before there is room for all rows: a list of short ones may be long.
             item.check_length(row.len(), size, sink)?;
-            matrix.row_mut(index).copy_from_slice(&row);
+            entries.extend(row);
         }
+        let matrix = DMatrix::from_row_slice(size, size, &entries);
         Some(Located::new(matrix, self.span()))
     }
 
@@ -186,7 +202,7 @@ impl<'a> Value<'a> {
             return Some(number);
         }
         let (path, value) = (self.path(), number.value);
-        let message = format!("{path} is {value:?}, but must be {limit}");
+        let message = format!("{path} is {:?}, but must be {limit}", Number(value));
         sink.push(Diagnostic::new(number.span, message));
         None
     }

@@ -1,12 +1,15 @@
-//! Compares a document with the schema: all errors at once, notices of what is not read, and the rest written out for the
-//! parser, which would stop at the first error and drop what it does not know.
+//! Compares a document with the schema: all errors at once, and notices of what is not read. What it finds sound is then read from
+//! the same tree.
 
-use super::document::tag;
+use super::document::{finite, parse, tag};
 use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need, SHOWN};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
+use crate::read::LONGEST_NAME;
 use crate::read::Sink;
 use crate::suggest::{nearest, one_of};
+use crate::text::{is_hidden, visible_line};
+use hamel::shown::Number;
 use roxmltree::Node;
 
 /// Reads a document element by element.
@@ -17,15 +20,12 @@ pub(super) struct Audit<'s> {
     pub(super) notices: &'s mut Notices,
     /// Major and minor version of URDF.
     pub(super) version: (u32, u32),
-    /// What is read, as XML.
-    pub(super) distilled: String,
 }
 
 impl Audit<'_> {
     /// Reads `node`, which has the name of `schema`. Messages begin with `owner`.
     pub(super) fn element(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
         let owner = owner_of(node, owner);
-        self.distilled.push_str(&format!("<{}", schema.name));
         for attribute in schema.attributes {
             self.attribute(node, attribute, &owner);
         }
@@ -33,13 +33,11 @@ impl Audit<'_> {
         if schema.name == "limit" && self.version >= (1, 2) {
             self.limits(node, &owner);
         }
-        self.distilled.push('>');
         self.text(node, &owner);
         for child in node.children().filter(Node::is_element) {
             self.child(child, node, schema, &owner);
         }
         self.missing_children(node, schema, &owner);
-        self.distilled.push_str(&format!("</{}>", schema.name));
     }
 
     fn child(&mut self, node: Node<'_, '_>, parent: Node<'_, '_>, schema: &Element, owner: &str) {
@@ -106,7 +104,7 @@ impl Audit<'_> {
         };
         let message = format!(
             "elements <{}> in <{}> are not read{hint}",
-            safe(name),
+            visible_line(name),
             schema.name
         );
         self.notices.add(message, element);
@@ -122,7 +120,7 @@ impl Audit<'_> {
                 Some(near) => format!(" (did you mean `{near}`?)"),
                 None => String::new(),
             };
-            let name = safe(attribute.name());
+            let name = visible_line(attribute.name());
             let message = format!(
                 "attributes `{name}` of <{}> are not read{hint}",
                 schema.name
@@ -152,28 +150,21 @@ impl Audit<'_> {
             return;
         };
         let value = found.value();
-        match refusal(value, attribute.kind) {
-            Some((why, hint)) => {
-                let path = format!("{owner}`{name}` of <{element}>");
-                let message = format!("{path} is {}, {why}", quoted(value));
-                let error = Diagnostic::new(found.range_value(), message);
-                self.sink.push(match hint {
-                    Some(hint) => error.label(hint),
-                    None => error,
-                });
-            }
-            // The parser turns quaternions into angles, with rounding or worse; they are read from the tree.
-            None if name == "quat_xyzw" => {}
-            None => {
-                let text = format!(" {name}=\"{}\"", escaped(value));
-                self.distilled.push_str(&text);
-            }
-        }
+        let Some((why, hint)) = refusal(value, attribute.kind) else {
+            return;
+        };
+        let path = format!("{owner}`{name}` of <{element}>");
+        let message = format!("{path} is {}, {why}", quoted(value));
+        let error = Diagnostic::new(found.range_value(), message);
+        self.sink.push(match hint {
+            Some(hint) => error.label(hint),
+            None => error,
+        });
     }
 
     /// Since version 1.2 limits must make sense; before, URDF does not say so.
     fn limits(&mut self, node: Node<'_, '_>, owner: &str) {
-        let number = |name: &str| node.attribute(name)?.trim().parse::<f64>().ok();
+        let number = |name: &str| node.attribute(name).and_then(parse);
         let place = |name: &str| {
             node.attribute_node(name)
                 .map_or(tag(node), |a| a.range_value())
@@ -181,12 +172,19 @@ impl Audit<'_> {
         if let (Some(lower), Some(upper)) = (number("lower"), number("upper"))
             && lower > upper
         {
-            let message = format!("{owner}`lower` is {lower:?}, above `upper`, which is {upper:?}");
+            let message = format!(
+                "{owner}`lower` is {:?}, above `upper`, which is {:?}",
+                Number(lower),
+                Number(upper)
+            );
             self.sink.push(Diagnostic::new(place("lower"), message));
         }
         for name in ["effort", "velocity", "acceleration", "deceleration", "jerk"] {
             if let Some(value) = number(name).filter(|value| *value < 0.0) {
-                let message = format!("{owner}`{name}` is {value:?}, but must be at least 0");
+                let message = format!(
+                    "{owner}`{name}` is {:?}, but must be at least 0",
+                    Number(value)
+                );
                 self.sink.push(Diagnostic::new(place(name), message));
             }
         }
@@ -219,10 +217,10 @@ fn owner_of(node: Node<'_, '_>, owner: &str) -> String {
 
 /// What messages call an element of the robot: by its name, or by what it refers to.
 fn named(node: Node<'_, '_>) -> String {
-    let kind = safe(node.tag_name().name());
+    let kind = visible_line(node.tag_name().name());
     let name = node.attribute("name").or(node.attribute("reference"));
     match name {
-        Some(name) => format!("{kind} `{}`", safe(name)),
+        Some(name) => format!("{kind} `{}`", visible_line(name)),
         None => {
             let before = node.prev_siblings().skip(1);
             let place = before
@@ -236,24 +234,25 @@ fn named(node: Node<'_, '_>) -> String {
 /// Why the text of an attribute is refused, and a hint.
 fn refusal(text: &str, kind: Kind) -> Option<(String, Option<String>)> {
     let plain = |why: &str| Some((why.to_owned(), None));
-    let number = |text: &str| text.trim().parse::<f64>().ok();
     match kind {
         Kind::Name if text.is_empty() => plain("but must be a name"),
         Kind::Name if text.contains(char::is_control) => plain("with a control character"),
+        Kind::Name if text.contains(is_hidden) => plain("with a character that is not seen"),
+        Kind::Name if text.len() > LONGEST_NAME => plain(&format!(
+            "of {} bytes, but {LONGEST_NAME} are possible",
+            text.len()
+        )),
         Kind::Name => None,
-        Kind::Number => match number(text) {
+        Kind::Number => match parse(text) {
             Some(number) if number.is_finite() => None,
             _ => plain("not a finite number"),
         },
-        Kind::Bound => match number(text) {
+        Kind::Bound => match parse(text) {
             Some(number) if !number.is_nan() => None,
             _ => plain("not a number"),
         },
         Kind::Vector(size) => {
-            let numbers: Option<Vec<f64>> = text.split_whitespace().map(number).collect();
-            let sound = numbers.is_some_and(|numbers| {
-                numbers.len() == size && numbers.iter().all(|number| number.is_finite())
-            });
+            let sound = finite(text).is_some_and(|numbers| numbers.len() == size);
             (!sound).then(|| (format!("not {size} finite numbers"), None))
         }
         Kind::Choice(words) if words.contains(&text) => None,
@@ -272,25 +271,4 @@ fn quoted(text: &str) -> String {
         0..=LONGEST => format!("{text:?}"),
         _ => format!("{:?}…", text.chars().take(LONGEST).collect::<String>()),
     }
-}
-
-/// A name as messages show it: control characters would do harm on a terminal.
-pub(super) fn safe(name: &str) -> String {
-    let shown = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    name.chars().map(shown).collect()
-}
-
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&apos;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }

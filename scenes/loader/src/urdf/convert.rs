@@ -1,9 +1,10 @@
 //! From links and joints to bodies: moving joints make bodies, fixed joints join links to one.
 
-use super::document::{child, place, tag};
+use super::document::{place, tag};
 use super::joint::{self, JointFacts};
 use super::masses::Part;
-use super::tree::{self, Links, Parsed};
+use super::robot::Robot;
+use super::tree::{self, Links, name_span};
 use super::{Import, Options, mass, masses, shapes};
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, SceneDescription, Source,
@@ -17,12 +18,14 @@ use crate::scene::stem;
 use crate::settings::Settings;
 use crate::shape::ShapeDescription;
 use crate::source::{Located, Span};
+use crate::text::visible_line;
+use hamel::shown::Number;
 use hamel::spatial::{MassProperties, Pose};
 use std::path::Path;
 
 /// The robot as a scene.
 pub(super) fn convert(
-    parsed: &Parsed<'_, '_>,
+    robot: &Robot<'_, '_>,
     version: (u32, u32),
     source: Source,
     options: &Options,
@@ -30,14 +33,14 @@ pub(super) fn convert(
     sink: &mut Sink,
 ) -> Option<Import> {
     let errors_before = sink.len();
-    let links = tree::links(parsed, sink);
-    let facts = facts(parsed, sink);
+    let links = tree::links(robot, sink);
+    let facts = facts(robot, version, sink);
     let links = links?;
     let errors_before_masses = sink.len();
-    let mut robot = Converter::new(parsed, version, &mut notices, sink);
-    robot.root(&links, options);
+    let mut converter = Converter::new(robot, version, &mut notices, sink);
+    converter.root(&links, options);
     for &link in links.order.iter().skip(1) {
-        robot.link(link, &links, &facts);
+        converter.link(link, &links, &facts);
     }
     let Converter {
         mut bodies,
@@ -45,27 +48,26 @@ pub(super) fn convert(
         parts,
         shapes,
         ..
-    } = robot;
+    } = converter;
     // A mass that was refused is missing on what moves.
     let complete = sink.len() == errors_before_masses;
-    masses::settle(parsed, &mut bodies, &parts, &mut notices, sink);
+    masses::settle(robot, &mut bodies, &parts, &mut notices, sink);
     if complete {
         masses::refuse_massless(&bodies, sink);
     }
     if bodies.is_empty() && sink.len() == errors_before {
-        let error = Diagnostic::new(tag(parsed.links[0]), "no joint of the robot moves");
+        let error = Diagnostic::new(tag(robot.links[0].node), "no joint of the robot moves");
         sink.push(error.help("with a floating base it can move as a whole"));
     }
     if sink.len() > errors_before {
         return None;
     }
-    let name = Some(parsed.robot.name.clone()).filter(|name| !name.is_empty());
     let file = Path::new(&source.name).file_name().unwrap_or_default();
     let description = format!("Imported from the URDF {}", file.to_string_lossy());
     Some(Import {
         scene: SceneDescription {
-            description: description.replace(char::is_control, " "),
-            name: name.unwrap_or_else(|| stem(&source.name)),
+            description: visible_line(&description),
+            name: robot.name.map_or_else(|| stem(&source.name), str::to_owned),
             gravity: options.gravity,
             bodies,
             frames,
@@ -79,20 +81,21 @@ pub(super) fn convert(
 }
 
 /// What the file says of every joint beyond its motion, checked.
-fn facts(parsed: &Parsed<'_, '_>, sink: &mut Sink) -> Vec<JointFacts> {
-    let joints = parsed.robot.joints.iter().zip(&parsed.joints);
-    let facts: Vec<JointFacts> = joints
-        .clone()
-        .map(|(joint, &node)| joint::facts(joint, node))
-        .collect();
-    for (facts, (_, node)) in facts.iter().zip(joints) {
+fn facts(robot: &Robot<'_, '_>, version: (u32, u32), sink: &mut Sink) -> Vec<JointFacts> {
+    let joints = robot.joints.iter();
+    let facts: Vec<JointFacts> = joints.map(|joint| joint::facts(joint, version)).collect();
+    for (facts, joint) in facts.iter().zip(&robot.joints) {
         let losses = [("damping", facts.damping), ("friction", facts.friction)];
         for (what, value) in losses.into_iter().filter(|(_, value)| *value < 0.0) {
             let message = format!(
-                "joint `{}`: `{what}` is {value:?}, but must be at least 0",
-                facts.name
+                "joint `{}`: `{what}` is {:?}, but must be at least 0",
+                facts.name,
+                Number(value)
             );
-            sink.push(Diagnostic::new(place(*node, "dynamics", what), message));
+            sink.push(Diagnostic::new(
+                place(joint.node, "dynamics", what),
+                message,
+            ));
         }
     }
     facts
@@ -106,7 +109,7 @@ struct Anchor {
 }
 
 struct Converter<'c, 'a, 'i> {
-    parsed: &'c Parsed<'a, 'i>,
+    robot: &'c Robot<'a, 'i>,
     version: (u32, u32),
     notices: &'c mut Notices,
     sink: &'c mut Sink,
@@ -120,14 +123,14 @@ struct Converter<'c, 'a, 'i> {
 
 impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     fn new(
-        parsed: &'c Parsed<'a, 'i>,
+        robot: &'c Robot<'a, 'i>,
         version: (u32, u32),
         notices: &'c mut Notices,
         sink: &'c mut Sink,
     ) -> Self {
         Self {
-            anchors: vec![None; parsed.links.len()],
-            parsed,
+            anchors: vec![None; robot.links.len()],
+            robot,
             version,
             notices,
             sink,
@@ -150,12 +153,12 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             };
             return self.attach(root, anchor);
         }
-        let joints = &self.parsed.robot.joints;
+        let joints = &self.robot.joints;
         let mut name = String::from("floating_base");
         while joints.iter().any(|joint| joint.name == name) {
             name.push('_');
         }
-        let joint = (name, "free", self.name_span(root));
+        let joint = (name, "free", name_span(self.robot.links[root].node));
         self.body(
             root,
             None,
@@ -170,31 +173,30 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         let Some((index, parent)) = links.parents[link] else {
             return;
         };
-        let (joint, node) = (&self.parsed.robot.joints[index], self.parsed.joints[index]);
+        let joint = self.robot.joints[index];
         let owner = format!("joint `{}`", joint.name);
-        let origin = joint::origin(&owner, &joint.origin, node, self.version, self.sink);
-        let axis = joint::axis(joint, node, self.sink).map(Pose::from_rotation);
+        let origin = joint::origin(&owner, joint.node, self.version, self.sink);
+        let axis = joint::axis(&joint, self.sink).map(Pose::from_rotation);
         let Some(parent) = self.anchors[parent] else {
             return;
         };
         // An error there must not hide those of the links below.
         let origin = parent.pose * origin.unwrap_or_else(Pose::identity);
         let axis = axis.unwrap_or_else(Pose::identity);
-        let Some(kind) = joint::kind(&joint.joint_type) else {
+        let Some(kind) = joint.kind.of_library() else {
             let message = "fixed joints join links to one body, on which the link is a named frame";
             self.notices.add(message, owner);
             let body = parent.body;
             return self.attach(link, Anchor { body, pose: origin });
         };
-        let joints = &self.parsed.robot.joints;
-        joint::tell(joint, joints, &facts[index], node, self.notices);
+        joint::tell(&joint, self.robot, &facts[index], self.notices);
         let damping = Some(facts[index].damping).filter(|&damping| damping != 0.0);
-        let span = place(node, "dynamics", "damping");
+        let span = place(joint.node, "dynamics", "damping");
         let forces = JointForces {
             damping: damping.map(|damping| Located::new(PerFreedom::All(damping), span)),
             ..JointForces::default()
         };
-        let joint = (joint.name.clone(), kind, tag(node));
+        let joint = (joint.name.to_owned(), kind, tag(joint.node));
         self.body(
             link,
             parent.body,
@@ -215,10 +217,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     ) {
         let body = self.bodies.len();
         self.bodies.push(BodyDescription {
-            name: Located::new(
-                self.parsed.robot.links[link].name.clone(),
-                self.name_span(link),
-            ),
+            name: self.name(link),
             parent,
             mass: MassProperties::massless(),
             joint: JointDescription {
@@ -243,12 +242,12 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
 
     /// Adds a link to what is already there.
     fn attach(&mut self, link: usize, anchor: Anchor) {
-        let name = &self.parsed.robot.links[link].name;
+        let name = self.robot.links[link].name;
         let is_world = name == WORLD && anchor.body.is_none() && anchor.pose == Pose::identity();
         if !is_world {
             self.refuse_world(link);
             self.frames.push(FrameDescription {
-                name: Located::new(name.clone(), self.name_span(link)),
+                name: self.name(link),
                 body: anchor.body,
                 at: anchor.pose,
             });
@@ -258,7 +257,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
 
     /// A link that moves, or stands elsewhere, may not have the name of the world.
     fn refuse_world(&mut self, link: usize) {
-        if self.parsed.robot.links[link].name != WORLD {
+        if self.robot.links[link].name != WORLD {
             return;
         }
         let is_root = self.anchors.iter().all(Option::is_none);
@@ -267,7 +266,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             false => "it is not the root of the robot",
         };
         let message = format!("link `{WORLD}` cannot be the inertial frame: {why}");
-        let error = Diagnostic::new(self.name_span(link), message);
+        let error = Diagnostic::new(self.name(link).span, message);
         self.sink.push(error.help(format!(
             "`{WORLD}` is the inertial frame: give the link another name"
         )));
@@ -276,7 +275,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     /// Notes where a link is, and gives its mass and its shapes to that body.
     fn place(&mut self, link: usize, anchor: Anchor) {
         self.anchors[link] = Some(anchor);
-        let (node, owner) = (self.parsed.links[link], self.owner(link));
+        let (node, owner) = (self.robot.links[link].node, self.owner(link));
         let Anchor { body, pose } = anchor;
         let shapes = shapes::of_link(node, &owner, body, &pose, self.notices);
         self.shapes.extend(shapes);
@@ -295,29 +294,28 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
 
     /// Mass properties in link axes; `None` without an `<inertial>` and with one that is refused.
     fn mass(&mut self, link: usize) -> Option<MassProperties> {
-        let node = child(self.parsed.links[link], "inertial")?;
-        let inertial = &self.parsed.robot.links[link].inertial;
+        let inertial = self.robot.links[link].inertial()?;
         let owner = self.owner(link);
-        let origin = joint::origin(&owner, &inertial.origin, node, self.version, self.sink)?;
-        if inertial.mass.value < 0.0 {
+        let origin = joint::origin(&owner, inertial, self.version, self.sink)?;
+        let mass = mass::of_inertial(inertial)?;
+        if mass.mass < 0.0 {
             let message = format!(
                 "{owner}: mass is {:?} kg: it must be at least 0",
-                inertial.mass.value
+                Number(mass.mass)
             );
-            self.sink
-                .push(Diagnostic::new(place(node, "mass", "value"), message));
+            let place = place(inertial, "mass", "value");
+            self.sink.push(Diagnostic::new(place, message));
             return None;
         }
-        Some(mass::of_link(inertial, &origin))
+        Some(mass::moved(&mass, &origin))
     }
 
     fn owner(&self, link: usize) -> String {
-        format!("link `{}`", self.parsed.robot.links[link].name)
+        format!("link `{}`", self.robot.links[link].name)
     }
 
-    fn name_span(&self, link: usize) -> Span {
-        let node = self.parsed.links[link];
-        let name = node.attribute_node("name");
-        name.map_or_else(|| tag(node), |name| name.range_value())
+    fn name(&self, link: usize) -> Located<String> {
+        let link = self.robot.links[link];
+        Located::new(link.name.to_owned(), name_span(link.node))
     }
 }

@@ -1,4 +1,4 @@
-//! The XML under a URDF: a tree that knows the place of everything, or its syntax error.
+//! The XML under a URDF: a tree that knows the place of everything, or its syntax error; and the texts and numbers of its attributes.
 
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
@@ -6,7 +6,7 @@ use crate::source::Span;
 use roxmltree::{Document, Error, Node};
 
 /// Reads the tree. Of several syntax errors XML tells the first.
-pub(super) fn parse<'a>(text: &'a str, sink: &mut Sink) -> Option<Document<'a>> {
+pub(super) fn tree<'a>(text: &'a str, sink: &mut Sink) -> Option<Document<'a>> {
     Document::parse(text)
         .map_err(|error| sink.push(refusal(text, &error)))
         .ok()
@@ -65,4 +65,35 @@ pub(super) fn place(node: Node<'_, '_>, name: &str, attribute: &str) -> Span {
         (None, Some(child)) => tag(child),
         (None, None) => tag(node),
     }
+}
+
+/// The text of an attribute of the child element.
+pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str, attribute: &str) -> Option<&'a str> {
+    child(node, name)?.attribute(attribute)
+}
+
+/// The number in an attribute of the child element.
+pub(super) fn number(node: Node<'_, '_>, name: &str, of: &str) -> Option<f64> {
+    parse(attribute(node, name, of)?)
+}
+
+/// The `N` finite numbers in an attribute of the child element.
+pub(super) fn vector<const N: usize>(node: Node<'_, '_>, name: &str, of: &str) -> Option<[f64; N]> {
+    numbers(attribute(node, name, of)?)
+}
+
+/// A number, infinite and NaN among them.
+pub(super) fn parse(text: &str) -> Option<f64> {
+    text.trim().parse().ok()
+}
+
+/// `N` finite numbers.
+pub(super) fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    finite(text)?.try_into().ok()
+}
+
+/// Finite numbers between white space.
+pub(super) fn finite(text: &str) -> Option<Vec<f64>> {
+    let numbers: Option<Vec<f64>> = text.split_whitespace().map(parse).collect();
+    numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()))
 }

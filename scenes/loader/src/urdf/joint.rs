@@ -1,15 +1,16 @@
-//! Joint types of URDF in the library, and what else a file says of a joint.
+//! Where a joint stands and how it moves, and what else a file says of it.
 
-use super::document::{child, place};
+use super::document::{attribute, child, number, numbers, place, vector};
+use super::robot::{Joint, JointType, Robot};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::parse::rotation;
 use crate::read::Sink;
 use crate::source::Located;
+use hamel::shown::Number;
 use hamel::spatial::Pose;
 use nalgebra::{Matrix3, Vector3, Vector4};
 use roxmltree::Node;
-use urdf_rs::{Joint, JointType};
 
 /// What a file says of a joint beyond its motion. None of it but `damping` is simulated.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,11 +41,13 @@ impl JointFacts {
         }) = &self.mimic
         {
             lines.push(format!(
-                "mimics `{joint}`: {multiplier:?} times its position, and {offset:?}"
+                "mimics `{joint}`: {:?} times its position, and {:?}",
+                Number(*multiplier),
+                Number(*offset)
             ));
         }
         if self.friction != 0.0 {
-            lines.push(format!("dry friction {:?}", self.friction));
+            lines.push(format!("dry friction {:?}", Number(self.friction)));
         }
         lines
     }
@@ -54,11 +57,13 @@ impl Limits {
     fn line(&self) -> Option<String> {
         let position = self
             .position
-            .map(|[lower, upper]| format!("position {lower:?} to {upper:?}"));
+            .map(|[lower, upper]| format!("position {:?} to {:?}", Number(lower), Number(upper)));
         let velocity = self
             .velocity
-            .map(|velocity| format!("velocity {velocity:?}"));
-        let effort = self.effort.map(|effort| format!("effort {effort:?}"));
+            .map(|velocity| format!("velocity {:?}", Number(velocity)));
+        let effort = self
+            .effort
+            .map(|effort| format!("effort {:?}", Number(effort)));
         let parts: Vec<String> = [position, velocity, effort].into_iter().flatten().collect();
         (!parts.is_empty()).then(|| format!("limits: {}", parts.join(", ")))
     }
@@ -86,48 +91,34 @@ pub struct Mimic {
     pub offset: f64,
 }
 
-/// The library's joint type; `None` for a fixed joint. All of them act about or along the z axis of their frame.
-pub(super) const fn kind(joint: &JointType) -> Option<&'static str> {
-    match joint {
-        JointType::Fixed => None,
-        JointType::Revolute => Some("revolute"),
-        JointType::Continuous => Some("revolute_circle"),
-        JointType::Prismatic => Some("prismatic"),
-        JointType::Planar => Some("planar"),
-        JointType::Floating => Some("free"),
-        JointType::Spherical => Some("ball_child"),
-    }
-}
-
 /// The rotation that turns z onto the joint's axis; the identity where the joint has none.
-pub(super) fn axis(joint: &Joint, node: Node<'_, '_>, sink: &mut Sink) -> Option<Matrix3<f64>> {
-    match joint.joint_type {
-        JointType::Fixed | JointType::Floating | JointType::Spherical => Some(Matrix3::identity()),
-        _ => {
-            let axis = Vector3::from(joint.axis.xyz.0);
-            let axis = Located::new(axis, place(node, "axis", "xyz"));
-            rotation::from_axis(&format!("joint `{}`: its axis", joint.name), axis, sink)
-        }
+pub(super) fn axis(joint: &Joint<'_, '_>, sink: &mut Sink) -> Option<Matrix3<f64>> {
+    if !joint.kind.has_axis() {
+        return Some(Matrix3::identity());
     }
+    // The default of URDF.
+    let axis = vector(joint.node, "axis", "xyz").map_or(Vector3::x(), Vector3::from);
+    let axis = Located::new(axis, place(joint.node, "axis", "xyz"));
+    rotation::from_axis(&format!("joint `{}`: its axis", joint.name), axis, sink)
 }
 
 /// The pose that an `<origin>` inside `node` says; the identity without one.
 pub(super) fn origin(
     owner: &str,
-    origin: &urdf_rs::Pose,
     node: Node<'_, '_>,
     version: (u32, u32),
     sink: &mut Sink,
 ) -> Option<Pose<f64>> {
-    let element = child(node, "origin");
-    let rotation = match element.and_then(|element| element.attribute("quat_xyzw")) {
+    let or_zero =
+        |name: &str| vector(node, "origin", name).map_or_else(Vector3::zeros, Vector3::from);
+    let rotation = match attribute(node, "origin", "quat_xyzw") {
         Some(text) => quaternion(owner, text, node, version, sink)?,
         None => {
-            let rpy = Located::new(Vector3::from(origin.rpy.0), place(node, "origin", "rpy"));
+            let rpy = Located::new(or_zero("rpy"), place(node, "origin", "rpy"));
             rotation::from_roll_pitch_yaw(&format!("{owner}: `rpy`"), rpy, sink)?
         }
     };
-    Some(Pose::new(rotation, Vector3::from(origin.xyz.0)))
+    Some(Pose::new(rotation, or_zero("xyz")))
 }
 
 /// The rotation of a `quat_xyzw`, whose text has been found to be four numbers.
@@ -150,63 +141,63 @@ fn quaternion(
         sink.push(Diagnostic::new(span, message));
         return None;
     }
-    let words = text.split_whitespace();
-    let mut numbers = words.map(|word| word.parse().unwrap_or(f64::NAN));
-    let [x, y, z, w] = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
+    let [x, y, z, w] = numbers(text)?;
     let wxyz = Located::new(Vector4::new(w, x, y, z), span);
     rotation::from_any_quaternion(&format!("{owner}: `quat_xyzw`"), wxyz, sink)
 }
 
 /// What the file says of the joint beyond its motion.
-pub(super) fn facts(joint: &Joint, node: Node<'_, '_>) -> JointFacts {
-    let limit = child(node, "limit");
-    let has = |name: &str| limit.is_some_and(|limit| limit.has_attribute(name));
-    let positions = has("lower") || has("upper");
-    let ends = [joint.limit.lower, joint.limit.upper];
-    let dynamics = joint.dynamics.clone().unwrap_or_default();
+pub(super) fn facts(joint: &Joint<'_, '_>, version: (u32, u32)) -> JointFacts {
+    let node = joint.node;
+    let has_limits = child(node, "limit").is_some();
+    let mimic = attribute(node, "mimic", "joint").map(|followed| Mimic {
+        joint: followed.to_owned(),
+        multiplier: number(node, "mimic", "multiplier").unwrap_or(1.0),
+        offset: number(node, "mimic", "offset").unwrap_or(0.0),
+    });
     JointFacts {
-        name: joint.name.clone(),
-        limits: limit.map(|_| Limits {
-            position: (positions && joint.joint_type != JointType::Continuous).then_some(ends),
-            velocity: has("velocity").then_some(joint.limit.velocity),
-            effort: has("effort").then_some(joint.limit.effort),
-        }),
-        mimic: joint.mimic.as_ref().map(|mimic| Mimic {
-            joint: mimic.joint.clone(),
-            multiplier: mimic.multiplier.unwrap_or(1.0),
-            offset: mimic.offset.unwrap_or(0.0),
-        }),
-        damping: dynamics.damping,
-        friction: dynamics.friction,
+        name: joint.name.to_owned(),
+        limits: has_limits.then(|| limits(joint, version)),
+        mimic,
+        damping: number(node, "dynamics", "damping").unwrap_or(0.0),
+        friction: number(node, "dynamics", "friction").unwrap_or(0.0),
     }
 }
 
-/// Tells what of a moving joint, one of `joints`, is not simulated, and what URDF leaves open.
+/// The `<limit>` element. An end that it does not say is at 0, and since version 1.2 nowhere.
+fn limits(joint: &Joint<'_, '_>, version: (u32, u32)) -> Limits {
+    let limit = |name: &str| number(joint.node, "limit", name);
+    let ends = [limit("lower"), limit("upper")];
+    let is_limited = ends.iter().any(Option::is_some) && joint.kind != JointType::Continuous;
+    let open = if version < (1, 2) { 0.0 } else { f64::INFINITY };
+    let [lower, upper] = ends;
+    Limits {
+        position: is_limited.then(|| [lower.unwrap_or(-open), upper.unwrap_or(open)]),
+        velocity: limit("velocity"),
+        effort: limit("effort"),
+    }
+}
+
+/// Tells what of a moving joint is not simulated, and what URDF leaves open.
 pub(super) fn tell(
-    joint: &Joint,
-    joints: &[Joint],
+    joint: &Joint<'_, '_>,
+    robot: &Robot<'_, '_>,
     facts: &JointFacts,
-    node: Node<'_, '_>,
     notices: &mut Notices,
 ) {
     let limits = facts.limits.as_ref();
     let follows = |mimic: &Mimic| {
-        let mut names = joints.iter().map(|joint| &joint.name);
-        mimic.joint != joint.name && names.any(|name| *name == mimic.joint)
+        let mut names = robot.joints.iter().map(|joint| joint.name);
+        mimic.joint != joint.name && names.any(|name| name == mimic.joint)
     };
     let mimic = facts.mimic.as_ref().map(follows);
-    let has_axis = matches!(
-        joint.joint_type,
-        JointType::Revolute | JointType::Continuous | JointType::Prismatic | JointType::Planar
-    );
+    let has = |name: &str| child(joint.node, name).is_some();
+    let owner = format!("joint `{}`", joint.name);
+    // What moves otherwise than the file says.
     for (holds, message) in [
         (
             limits.is_some_and(|limits| limits.position.is_some()),
             "limits of position are not simulated: the joint moves past them",
-        ),
-        (
-            limits.is_some_and(|limits| limits.velocity.is_some() || limits.effort.is_some()),
-            "limits of velocity and effort are not simulated",
         ),
         (
             mimic == Some(true),
@@ -217,22 +208,32 @@ pub(super) fn tell(
             "mimic joints follow no other joint of the robot: the joint moves by itself",
         ),
         (facts.friction != 0.0, "dry friction is not simulated"),
+    ] {
+        if holds {
+            notices.warn(message, &owner);
+        }
+    }
+    for (holds, message) in [
         (
-            joint.safety_controller.is_some(),
+            limits.is_some_and(|limits| limits.velocity.is_some() || limits.effort.is_some()),
+            "limits of velocity and effort are not simulated",
+        ),
+        (
+            has("safety_controller"),
             "safety controllers are not simulated",
         ),
-        (joint.calibration.is_some(), "calibrations are not read"),
+        (has("calibration"), "calibrations are not read"),
         (
-            joint.joint_type == JointType::Planar,
+            joint.kind == JointType::Planar,
             "URDF does not say whether a planar joint turns: it turns about its axis and slides across it",
         ),
         (
-            has_axis && child(node, "axis").is_none(),
+            joint.kind.has_axis() && !has("axis"),
             "the axis is not given: it is x, the default of URDF",
         ),
     ] {
         if holds {
-            notices.add(message, format!("joint `{}`", joint.name));
+            notices.add(message, &owner);
         }
     }
 }

@@ -1,19 +1,20 @@
 //! Mass properties: of a link from its `<inertial>`, moved between frames, and added up.
 
+use super::document::number;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
+use roxmltree::Node;
 
-/// Mass properties in link axes; `origin` is the inertial frame in the link frame.
-pub(super) fn of_link(inertial: &urdf_rs::Inertial, origin: &Pose<f64>) -> MassProperties {
-    let i = &inertial.inertia;
-    let local = MassProperties {
-        mass: inertial.mass.value,
+/// Mass properties that an `<inertial>` element says, in its own axes.
+pub(super) fn of_inertial(inertial: Node<'_, '_>) -> Option<MassProperties> {
+    let moment = |name: &str| number(inertial, "inertia", name);
+    let [xx, yy, zz] = [moment("ixx")?, moment("iyy")?, moment("izz")?];
+    let [xy, xz, yz] = [moment("ixy")?, moment("ixz")?, moment("iyz")?];
+    Some(MassProperties {
+        mass: number(inertial, "mass", "value")?,
         com: Vector3::zeros(),
-        inertia_com: Matrix3::new(
-            i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz,
-        ),
-    };
-    moved(&local, origin)
+        inertia_com: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+    })
 }
 
 /// The same body in the frame in which its own frame stands at `pose`.

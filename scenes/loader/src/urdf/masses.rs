@@ -2,7 +2,7 @@
 
 use super::document::place;
 use super::mass::{is_nothing, sum};
-use super::tree::Parsed;
+use super::robot::Robot;
 use crate::description::BodyDescription;
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
@@ -20,7 +20,7 @@ pub(super) struct Part {
 
 /// Adds up the parts of each body, and checks the sums.
 pub(super) fn settle(
-    parsed: &Parsed<'_, '_>,
+    robot: &Robot<'_, '_>,
     bodies: &mut [BodyDescription],
     parts: &[Vec<Part>],
     notices: &mut Notices,
@@ -30,22 +30,22 @@ pub(super) fn settle(
         let masses: Vec<MassProperties> = parts.iter().map(|part| part.mass).collect();
         body.mass = sum(&masses);
         match body.mass.check() {
-            Err(error) => sink.push(refusal(parsed, body, parts, &error)),
-            Ok(()) => tell_odd(parsed, parts, notices),
+            Err(error) => sink.push(refusal(robot, body, parts, &error)),
+            Ok(()) => tell_odd(robot, parts, notices),
         }
     }
 }
 
 fn refusal(
-    parsed: &Parsed<'_, '_>,
+    robot: &Robot<'_, '_>,
     body: &BodyDescription,
     parts: &[Part],
     error: &MassError,
 ) -> Diagnostic {
     let culprit = parts.iter().find(|part| part.mass.check().is_err());
     let link = culprit.or(parts.first()).map_or(0, |part| part.link);
-    let message = format!("link `{}`: {error}", parsed.robot.links[link].name);
-    let refusal = Diagnostic::new(place(parsed.links[link], "inertial", ""), message);
+    let message = format!("link `{}`: {error}", robot.links[link].name);
+    let refusal = Diagnostic::new(place(robot.links[link].node, "inertial", ""), message);
     match parts.len() {
         1 => refusal,
         count => refusal.help(format!(
@@ -56,11 +56,11 @@ fn refusal(
 }
 
 /// A link that no rigid body could be by itself may still be part of one that is.
-fn tell_odd(parsed: &Parsed<'_, '_>, parts: &[Part], notices: &mut Notices) {
+fn tell_odd(robot: &Robot<'_, '_>, parts: &[Part], notices: &mut Notices) {
     let message =
         "no rigid body has such an inertia, but the body that the link is part of is sound";
     for part in parts.iter().filter(|part| part.mass.check().is_err()) {
-        let name = &parsed.robot.links[part.link].name;
+        let name = robot.links[part.link].name;
         notices.add(message, format!("link `{name}`"));
     }
 }

@@ -19,6 +19,7 @@ mod document;
 mod joint;
 mod mass;
 mod masses;
+mod robot;
 mod schema;
 mod shapes;
 mod tree;
@@ -30,14 +31,14 @@ use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::notice::{Notice, Notices};
 use crate::read::Sink;
 use crate::scene::{Scene, read_file};
+use crate::text::visible_line;
 use audit::Audit;
 use document::tag;
 use hamel::registry::JointRegistry;
 use nalgebra::Vector3;
+use robot::Robot;
 use roxmltree::{Document, Node};
 use std::path::Path;
-use tree::Parsed;
-use urdf_rs::Robot;
 
 /// What a URDF does not say.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +77,7 @@ pub struct Import {
 /// make no tree; mass properties that no body can have; a link without mass at the end of a moving joint.
 pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, Diagnostics> {
     let mut sink = Sink::default();
-    let import = document::parse(text, &mut sink).and_then(|document| {
+    let import = document::tree(text, &mut sink).and_then(|document| {
         let source = Source {
             name: source_name.to_owned(),
             text: text.to_owned(),
@@ -133,7 +134,7 @@ fn import(
 ) -> Option<Import> {
     let root = document.root_element();
     if !root.has_tag_name("robot") {
-        let name = audit::safe(root.tag_name().name());
+        let name = visible_line(root.tag_name().name());
         let message = format!("the document is a <{name}>, not a <robot>");
         sink.push(Diagnostic::new(tag(root), message));
         return None;
@@ -144,18 +145,17 @@ fn import(
         sink,
         notices: &mut notices,
         version,
-        distilled: String::new(),
     };
     audit.element(root, &schema::ROBOT, "");
-    let distilled = audit.distilled;
     if sink.len() > 0 {
         return None;
     }
-    let robot = urdf_rs::read_from_string(&distilled)
-        .map_err(|error| sink.push(Diagnostic::new(tag(root), error.to_string())))
-        .ok()?;
-    let parsed = parsed(&robot, root, sink)?;
-    convert::convert(&parsed, version, source, options, notices, sink)
+    let robot = Robot::read(root)?;
+    if robot.links.is_empty() {
+        sink.push(Diagnostic::new(tag(root), "the robot has no link"));
+        return None;
+    }
+    convert::convert(&robot, version, source, options, notices, sink)
 }
 
 /// Versions of URDF, in their order.
@@ -172,34 +172,10 @@ fn version(root: Node<'_, '_>, notices: &mut Notices) -> (u32, u32) {
     let before = |known: &&(u32, u32)| given.is_some_and(|given| **known <= given);
     let found = *VERSIONS.iter().rfind(before).unwrap_or(&oldest);
     if given != Some(found) {
-        let (text, (major, minor)) = (audit::safe(text), found);
+        let (text, (major, minor)) = (visible_line(text), found);
         let message =
             format!("version `{text}` of URDF is not known: it is read as {major}.{minor}");
         notices.add(message, "<robot>");
     }
     found
-}
-
-/// Joins what the parser read with the document.
-fn parsed<'a, 'i>(robot: &'a Robot, root: Node<'a, 'i>, sink: &mut Sink) -> Option<Parsed<'a, 'i>> {
-    let named = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
-    let links: Vec<_> = named("link").collect();
-    let joints: Vec<_> = named("joint").collect();
-    if links.is_empty() {
-        sink.push(Diagnostic::new(tag(root), "the robot has no link"));
-        return None;
-    }
-    // Should the parser ever leave one out, places and elements would not fit.
-    if (links.len(), joints.len()) != (robot.links.len(), robot.joints.len()) {
-        sink.push(Diagnostic::new(
-            tag(root),
-            "not every link and joint was read",
-        ));
-        return None;
-    }
-    Some(Parsed {
-        robot,
-        links,
-        joints,
-    })
 }

@@ -1,5 +1,7 @@
 //! The part of URDF that decides how a robot moves: its elements, their attributes, and which of them must be there.
 
+use super::robot::JointType;
+
 /// An element that is read.
 #[derive(Debug)]
 pub(super) struct Element {
@@ -58,17 +60,6 @@ pub(super) struct Child {
     /// Whether there may be several.
     pub(super) several: bool,
 }
-
-/// Joint types, as URDF writes them.
-pub(super) const JOINT_TYPES: [&str; 7] = [
-    "revolute",
-    "continuous",
-    "prismatic",
-    "fixed",
-    "floating",
-    "planar",
-    "spherical",
-];
 
 /// Elements of URDF that say nothing about motion, with what messages call them.
 pub(super) const NOT_READ: [(&str, &str); 3] = [
@@ -135,7 +126,7 @@ static JOINT: Element = Element {
     name: "joint",
     attributes: &[
         required("name", Kind::Name),
-        required("type", Kind::Choice(&JOINT_TYPES)),
+        required("type", Kind::Choice(&JointType::NAMES)),
     ],
     children: &[
         one(&PARENT),

@@ -1,7 +1,7 @@
 //! The visual shapes of links: simple ones are kept for pictures. They have no effect on the motion, so nothing in them is a
 //! mistake; what cannot be drawn is told.
 
-use super::document::child;
+use super::document::{child, numbers, parse};
 use crate::notice::Notices;
 use crate::parse::rotation;
 use crate::read::Sink;
@@ -40,12 +40,14 @@ fn shape(visual: Node<'_, '_>) -> Result<(Pose<f64>, Geometry), &'static str> {
     let geometry = child(visual, "geometry").ok_or(ODD)?;
     let found = geometry.children().find(Node::is_element).ok_or(ODD)?;
     let size = |name: &str| {
-        let number = found.attribute(name)?.trim().parse::<f64>().ok()?;
+        let number = parse(found.attribute(name)?)?;
         (number > 0.0 && number.is_finite()).then_some(number)
     };
     let round = || size("radius").zip(size("length"));
     let geometry = match found.tag_name().name() {
-        "box" => numbers::<3>(found.attribute("size"))
+        "box" => found
+            .attribute("size")
+            .and_then(numbers::<3>)
             .filter(|sides| sides.iter().all(|side| *side > 0.0))
             .map(|sides| Geometry::Box(sides.into())),
         "sphere" => size("radius").map(Geometry::Sphere),
@@ -66,12 +68,12 @@ fn origin(visual: Node<'_, '_>) -> Option<Pose<f64>> {
         return Some(Pose::identity());
     };
     let or_zero = |name: &str| match origin.attribute(name) {
-        Some(text) => numbers::<3>(Some(text)).map(Vector3::from),
+        Some(text) => numbers::<3>(text).map(Vector3::from),
         None => Some(Vector3::zeros()),
     };
     let rotation = match origin.attribute("quat_xyzw") {
         Some(text) => {
-            let [x, y, z, w] = numbers(Some(text))?;
+            let [x, y, z, w] = numbers(text)?;
             quiet(|sink| rotation::from_any_quaternion("", at(Vector4::new(w, x, y, z)), sink))
         }
         None => {
@@ -101,18 +103,7 @@ fn color(visual: Node<'_, '_>) -> Option<[u8; 3]> {
         materials.find(|node| node.has_tag_name("material") && node.attribute("name") == Some(name))
     };
     let color = child(material, "color").or_else(|| child(named()?, "color"))?;
-    let [red, green, blue, _] = numbers(color.attribute("rgba"))?;
+    let [red, green, blue, _] = numbers(color.attribute("rgba")?)?;
     let byte = |part: f64| (part.clamp(0.0, 1.0) * 255.0).round() as u8;
     Some([byte(red), byte(green), byte(blue)])
-}
-
-/// `N` finite numbers.
-fn numbers<const N: usize>(text: Option<&str>) -> Option<[f64; N]> {
-    let words = text?.split_whitespace();
-    let numbers: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
-    let numbers: [f64; N] = numbers?.try_into().ok()?;
-    numbers
-        .iter()
-        .all(|number| number.is_finite())
-        .then_some(numbers)
 }

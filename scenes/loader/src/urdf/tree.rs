@@ -1,23 +1,14 @@
 //! The links as a tree: names that are unique, joints between links that exist, one root, no cycle.
 
 use super::document::{place, tag};
+use super::robot::{Joint, Robot};
 use crate::diagnostics::Diagnostic;
 use crate::parse::{cycles, order};
 use crate::read::Sink;
+use crate::source::Span;
 use crate::suggest::{all_of, nearest};
 use roxmltree::Node;
 use std::collections::HashMap;
-use urdf_rs::{Joint, Link, Robot};
-
-/// A robot as its parser and its document have it: entries of one index belong together.
-pub(super) struct Parsed<'a, 'i> {
-    /// What the parser read.
-    pub(super) robot: &'a Robot,
-    /// The `<link>` elements.
-    pub(super) links: Vec<Node<'a, 'i>>,
-    /// The `<joint>` elements.
-    pub(super) joints: Vec<Node<'a, 'i>>,
-}
 
 /// The links in order.
 #[derive(Debug)]
@@ -29,22 +20,13 @@ pub(super) struct Links {
 }
 
 /// Orders the links.
-pub(super) fn links(parsed: &Parsed<'_, '_>, sink: &mut Sink) -> Option<Links> {
+pub(super) fn links(robot: &Robot<'_, '_>, sink: &mut Sink) -> Option<Links> {
     let errors_before = sink.len();
-    let robot = parsed.robot;
-    let names = unique(
-        "links",
-        robot.links.iter().map(|l| &l.name),
-        &parsed.links,
-        sink,
-    );
-    unique(
-        "joints",
-        robot.joints.iter().map(|j| &j.name),
-        &parsed.joints,
-        sink,
-    );
-    let parents = parents(parsed, &names, sink);
+    let named = robot.links.iter().map(|link| (link.name, link.node));
+    let names = unique("links", named, sink);
+    let named = robot.joints.iter().map(|joint| (joint.name, joint.node));
+    unique("joints", named, sink);
+    let parents = parents(robot, &names, sink);
     if sink.len() > errors_before {
         return None;
     }
@@ -52,48 +34,52 @@ pub(super) fn links(parsed: &Parsed<'_, '_>, sink: &mut Sink) -> Option<Links> {
     let order = order(&links);
     cycles(&links, &order)
         .iter()
-        .for_each(|cycle| sink.push(cycle_error(parsed, &parents, cycle)));
-    roots(parsed, &links, sink);
+        .for_each(|cycle| sink.push(cycle_error(robot, &parents, cycle)));
+    roots(robot, &links, sink);
     (sink.len() == errors_before).then_some(Links { order, parents })
 }
 
-fn unique<'r>(
+/// The place of every name among the elements.
+fn unique<'a>(
     elements: &str,
-    names: impl Iterator<Item = &'r String>,
-    nodes: &[Node<'_, '_>],
+    named: impl Iterator<Item = (&'a str, Node<'a, 'a>)>,
     sink: &mut Sink,
-) -> HashMap<&'r str, usize> {
-    let mut places: HashMap<&str, usize> = HashMap::new();
-    for (index, name) in names.enumerate() {
-        let first = *places.entry(name).or_insert(index);
+) -> HashMap<&'a str, usize> {
+    let mut places: HashMap<&str, (usize, Node)> = HashMap::new();
+    for (index, (name, node)) in named.enumerate() {
+        let (first, first_node) = *places.entry(name).or_insert((index, node));
         if first == index {
             continue;
         }
-        let span = |index: usize| match nodes[index].attribute_node("name") {
-            Some(name) => name.range_value(),
-            None => tag(nodes[index]),
-        };
         let message = format!("two {elements} are called `{name}`");
-        let error = Diagnostic::new(span(index), message).label("the second one");
-        sink.push(error.context(span(first), "the first one"));
+        let error = Diagnostic::new(name_span(node), message).label("the second one");
+        sink.push(error.context(name_span(first_node), "the first one"));
     }
     places
+        .into_iter()
+        .map(|(name, (index, _))| (name, index))
+        .collect()
+}
+
+/// Where the name of a link or a joint stands.
+pub(super) fn name_span(node: Node<'_, '_>) -> Span {
+    let name = node.attribute_node("name");
+    name.map_or_else(|| tag(node), |name| name.range_value())
 }
 
 /// Joint and parent of each link.
 fn parents(
-    parsed: &Parsed<'_, '_>,
+    robot: &Robot<'_, '_>,
     names: &HashMap<&str, usize>,
     sink: &mut Sink,
 ) -> Vec<Option<(usize, usize)>> {
-    let mut parents: Vec<Option<(usize, usize)>> = vec![None; parsed.links.len()];
-    for (index, joint) in parsed.robot.joints.iter().enumerate() {
-        let node = parsed.joints[index];
-        let ends = [("parent", &joint.parent.link), ("child", &joint.child.link)];
-        let ends = ends.map(|(end, link)| match names.get(link.as_str()) {
+    let mut parents: Vec<Option<(usize, usize)>> = vec![None; robot.links.len()];
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let ends = [("parent", joint.parent), ("child", joint.child)];
+        let ends = ends.map(|(end, link)| match names.get(link) {
             Some(&link) => Some(link),
             None => {
-                sink.push(unknown_link(joint, node, end, link, &parsed.robot.links));
+                sink.push(unknown_link(joint, end, link, robot));
                 None
             }
         });
@@ -101,39 +87,33 @@ fn parents(
             continue;
         };
         match parents[child] {
-            Some((other, _)) => sink.push(second_parent(parsed, child, index, other)),
+            Some((other, _)) => sink.push(second_parent(robot, child, index, other)),
             None => parents[child] = Some((index, parent)),
         }
     }
     parents
 }
 
-fn unknown_link(
-    joint: &Joint,
-    node: Node<'_, '_>,
-    end: &str,
-    link: &str,
-    links: &[Link],
-) -> Diagnostic {
+fn unknown_link(joint: &Joint<'_, '_>, end: &str, link: &str, robot: &Robot<'_, '_>) -> Diagnostic {
     let message = format!(
         "joint `{}`: its {end} `{link}` is not a link of the robot",
         joint.name
     );
-    let error = Diagnostic::new(place(node, end, "link"), message);
-    let names = links.iter().map(|link| link.name.as_str());
+    let error = Diagnostic::new(place(joint.node, end, "link"), message);
+    let names = robot.links.iter().map(|link| link.name);
     match nearest(link, names.clone()) {
         Some(near) => error.label(format!("did you mean `{near}`?")),
         None => error.help(format!("its links are {}", all_of(names))),
     }
 }
 
-fn second_parent(parsed: &Parsed<'_, '_>, link: usize, joint: usize, other: usize) -> Diagnostic {
-    let (link, joints) = (&parsed.robot.links[link].name, &parsed.robot.joints);
+fn second_parent(robot: &Robot<'_, '_>, link: usize, joint: usize, other: usize) -> Diagnostic {
+    let (link, joints) = (robot.links[link].name, &robot.joints);
     let message = format!(
         "link `{link}` hangs on two joints, `{}` and `{}`",
         joints[other].name, joints[joint].name
     );
-    let span = |joint: usize| place(parsed.joints[joint], "child", "link");
+    let span = |joint: usize| place(robot.joints[joint].node, "child", "link");
     Diagnostic::new(span(joint), message)
         .label("the second one")
         .context(span(other), "the first one")
@@ -141,12 +121,12 @@ fn second_parent(parsed: &Parsed<'_, '_>, link: usize, joint: usize, other: usiz
 }
 
 fn cycle_error(
-    parsed: &Parsed<'_, '_>,
+    robot: &Robot<'_, '_>,
     parents: &[Option<(usize, usize)>],
     cycle: &[usize],
 ) -> Diagnostic {
     const MOST_SHOWN: usize = 12;
-    let name = |&link: &usize| format!("`{}`", parsed.robot.links[link].name);
+    let name = |&link: &usize| format!("`{}`", robot.links[link].name);
     let mut chain: Vec<String> = cycle.iter().take(MOST_SHOWN).map(name).collect();
     if cycle.len() > MOST_SHOWN {
         chain.push(format!("({} more)", cycle.len() - MOST_SHOWN));
@@ -155,27 +135,25 @@ fn cycle_error(
     let message = format!("the links' parents form a cycle: {}", chain.join(" → "));
     let joint = cycle.first().and_then(|&link| parents[link]);
     let span = joint.map_or(0..0, |(joint, _)| {
-        place(parsed.joints[joint], "parent", "link")
+        place(robot.joints[joint].node, "parent", "link")
     });
     Diagnostic::new(span, message)
 }
 
-fn roots(parsed: &Parsed<'_, '_>, parents: &[Option<usize>], sink: &mut Sink) {
+fn roots(robot: &Robot<'_, '_>, parents: &[Option<usize>], sink: &mut Sink) {
     let is_root = |link: &usize| parents[*link].is_none();
     let roots: Vec<usize> = (0..parents.len()).filter(is_root).collect();
     if let [first, second, ..] = roots.as_slice() {
-        let names = roots
-            .iter()
-            .map(|&root| parsed.robot.links[root].name.as_str());
+        let names = roots.iter().map(|&root| robot.links[root].name);
         let message = format!(
             "the robot has {} root links: {}",
             roots.len(),
             all_of(names)
         );
         sink.push(
-            Diagnostic::new(tag(parsed.links[*second]), message)
+            Diagnostic::new(tag(robot.links[*second].node), message)
                 .label("no joint has this link as its child")
-                .context(tag(parsed.links[*first]), "nor this one")
+                .context(tag(robot.links[*first].node), "nor this one")
                 .help("a URDF is one tree: every link but one is the child of a joint"),
         );
     }

@@ -28,7 +28,9 @@ pub(super) fn body(out: &mut String, body: &BodyDescription, bodies: &[BodyDescr
 
 /// Name of a body of `bodies`, or of the world.
 pub(super) fn name_of(body: Option<usize>, bodies: &[BodyDescription]) -> &str {
-    body.map_or(WORLD, |index| bodies[index].name.value.as_str())
+    // No body is called as one that is not there, so that a reader refuses it.
+    let name = |index: usize| bodies.get(index).map_or("", |own| &own.name.value);
+    body.map_or(WORLD, name)
 }
 
 fn mass(out: &mut String, mass: &MassProperties) {

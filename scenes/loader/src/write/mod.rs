@@ -9,6 +9,7 @@ mod value;
 
 use crate::description::SceneDescription;
 use crate::settings::{Arithmetic, Settings};
+use crate::text::visible_line;
 use hamel::integrate::{Method, Sampling};
 use value::{list, number, text};
 
@@ -43,9 +44,7 @@ impl SceneDescription {
 
 fn comments(out: &mut String, lines: &[String]) {
     for line in lines.iter().flat_map(|lines| lines.lines()) {
-        // TOML allows no control characters in comments.
-        let line = line.replace(char::is_control, " ");
-        out.push_str(&format!("# {line}\n"));
+        out.push_str(&format!("# {}\n", visible_line(line)));
     }
 }
 

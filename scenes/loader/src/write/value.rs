@@ -1,5 +1,6 @@
 //! Numbers, texts and lists as TOML.
 
+use crate::text::is_hidden;
 use toml_writer::{ToTomlKey, ToTomlValue, TomlKeyBuilder, TomlStringBuilder};
 
 /// The shortest digits that read back as the same number; zero has no sign.
@@ -10,9 +11,17 @@ pub(super) fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// A text in quotes, in one line.
+/// A text in quotes, in one line, in which all is seen.
 pub(super) fn text(value: &str) -> String {
-    TomlStringBuilder::new(value).as_basic().to_toml_value()
+    let quoted = TomlStringBuilder::new(value).as_basic().to_toml_value();
+    let mut shown = String::with_capacity(quoted.len());
+    for c in quoted.chars() {
+        match is_hidden(c) {
+            true => shown.push_str(&format!("\\U{:08X}", u32::from(c))),
+            false => shown.push(c),
+        }
+    }
+    shown
 }
 
 /// Numbers in brackets.

@@ -1,5 +1,6 @@
 //! The statements of a spec as text, with their lines.
 
+use crate::spec::comments::without_comments;
 use std::ops::Range;
 
 /// One statement.
@@ -63,27 +64,4 @@ pub fn statements(source: &str) -> Vec<Statement> {
         }
     }
     found
-}
-
-/// The spec with blanks in place of comments: every byte keeps its place, every line its number.
-fn without_comments(source: &str) -> String {
-    let mut bare = String::with_capacity(source.len());
-    let (mut depth, mut in_line) = (0_usize, false);
-    let mut characters = source.char_indices().peekable();
-    while let Some((at, c)) = characters.next() {
-        let rest = &source[at..];
-        let opens = !in_line && rest.starts_with("/*");
-        let closes = depth > 0 && rest.starts_with("*/");
-        in_line = c != '\n' && (in_line || (depth == 0 && rest.starts_with("//")));
-        depth += usize::from(opens);
-        match in_line || depth > 0 {
-            true if c != '\n' => bare.extend(std::iter::repeat_n(' ', c.len_utf8())),
-            _ => bare.push(c),
-        }
-        if opens || closes {
-            bare.extend(characters.next().map(|_| ' '));
-        }
-        depth -= usize::from(closes);
-    }
-    bare
 }

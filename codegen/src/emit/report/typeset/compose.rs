@@ -125,7 +125,14 @@ fn call(
         Function::Cos => Math::Word("cos".into()),
         Function::Sin => Math::Word("sin".into()),
         Function::Exp => Math::Word("exp".into()),
+        Function::Sinh => Math::Word("sinh".into()),
+        Function::Cosh => Math::Word("cosh".into()),
+        Function::Sech => Math::Word("sech".into()),
+        Function::Tanh => Math::Word("tanh".into()),
+        Function::LnCosh => Math::Word("ln cosh".into()),
         Function::Ln => Math::Word("ln".into()),
+        Function::Ln1p => Math::Word("ln1p".into()),
+        Function::Larger => Math::Word("max".into()),
         Function::Atan2 => Math::Word("atan2".into()),
         Function::Stumpff(order) => Math::Letter('c').with_index(Math::integer(order.into())),
         Function::DexpInverse(0) => Math::Letter('G'),
@@ -137,7 +144,14 @@ fn call(
     let bare = matches!(
         (function, arguments),
         (
-            Function::Cos | Function::Sin | Function::Ln,
+            Function::Cos
+                | Function::Sin
+                | Function::Sinh
+                | Function::Cosh
+                | Function::Sech
+                | Function::Tanh
+                | Function::LnCosh
+                | Function::Ln,
             [Node::Symbol(_)]
         )
     );

@@ -26,6 +26,9 @@ pub struct Used {
     arguments: BTreeSet<Argument>,
     mul_add: bool,
     dexp_inverse: bool,
+    sech: bool,
+    ln_cosh: bool,
+    ln_1p_scaled: bool,
     /// Orders of Stumpff functions.
     stumpff: Option<u8>,
     primitives: Vec<Primitive>,
@@ -36,6 +39,9 @@ pub struct Used {
 pub struct Helpers {
     mul_add: bool,
     dexp_inverse: bool,
+    sech: bool,
+    ln_cosh: bool,
+    ln_1p_scaled: bool,
     stumpff: bool,
     rotation_vector: bool,
     quaternion_vector: bool,
@@ -70,6 +76,9 @@ impl Used {
                 self.stumpff = self.stumpff.max(Some(*order));
             }
             Formula::Call(Known::DexpInverse(_), _) => self.dexp_inverse = true,
+            Formula::Call(Known::Sech, _) => self.sech = true,
+            Formula::Call(Known::LnCosh, _) => self.ln_cosh = true,
+            Formula::Call(Known::Ln1p, _) => self.ln_1p_scaled = true,
             Formula::Several(primitive, _) => self.primitives.push(*primitive),
             _ => {}
         }
@@ -89,6 +98,9 @@ impl Used {
         Helpers {
             mul_add: self.mul_add || self.dexp_inverse || self.stumpff.is_some(),
             dexp_inverse: self.dexp_inverse,
+            sech: self.sech,
+            ln_cosh: self.ln_cosh,
+            ln_1p_scaled: self.ln_1p_scaled,
             stumpff: self.stumpff.is_some(),
             rotation_vector,
             quaternion_vector: rotation_vector || has(Primitive::QuaternionVector),

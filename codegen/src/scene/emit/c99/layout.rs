@@ -1,6 +1,6 @@
 //! Where each body's share lies in the arguments, for the header.
 
-use super::statement::comment;
+use crate::emit::text::one_line;
 use crate::scene::model::{Body, Model};
 use serde::Serialize;
 use std::ops::Range;
@@ -34,9 +34,9 @@ pub fn layout(model: &Model) -> Vec<Share> {
     bodies
         .map(|(index, (body, share))| Share {
             index,
-            body: comment(&body.name),
-            joint: comment(&body.joint_name),
-            joint_type: comment(&body.joint.spec.name.value),
+            body: one_line(&body.name),
+            joint: one_line(&body.joint_name),
+            joint_type: one_line(&body.joint.spec.name.value),
             is_driven: body.driven,
             configuration: part(share.configuration, stored(body)),
             freedoms: part(share.freedoms, freedoms(body)),

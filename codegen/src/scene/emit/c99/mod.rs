@@ -11,13 +11,14 @@ mod layout;
 mod statement;
 
 use super::{Function, Lowered, argument_size, identifier, identifiers};
+use crate::emit::text::one_line;
 use crate::scene::graph::Argument;
 use crate::scene::model::Model;
 use breaks::broken;
 use formula::value;
 use helpers::Used;
 use serde::Serialize;
-use statement::{Array, Statement, comment};
+use statement::{Array, Statement};
 use tera::{Context, Tera};
 
 const TEMPLATES: [(&str, &str); 4] = [
@@ -105,8 +106,8 @@ pub fn module(
 
     let mut context = Context::new();
     let [configuration, freedoms, speeds] = model.sizes();
-    context.insert("label", &comment(label));
-    context.insert("scene", &comment(&model.name));
+    context.insert("label", &one_line(label));
+    context.insert("scene", &one_line(&model.name));
     context.insert("name", name);
     context.insert("prefix", &prefix);
     context.insert("macros", &macros);
@@ -167,7 +168,7 @@ impl Written {
         let outputs = lowered.outputs.iter().flatten().map(value);
         Self {
             name: function.name,
-            summary: comment(&function.summary),
+            summary: one_line(&function.summary),
             operations: function.operations().to_string(),
             parameters: parameters.chain([results]).collect(),
             unused: unused.chain((count == 0).then_some("results")).collect(),

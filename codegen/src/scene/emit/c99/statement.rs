@@ -4,6 +4,7 @@ use super::super::lines::{Formula, Line, Loop};
 use super::super::{Lowered, array, list};
 use super::formula::{index, literal, value};
 use super::helpers::{Used, several};
+use crate::emit::text::one_line;
 use serde::Serialize;
 
 /// A statement, its parts as text.
@@ -77,19 +78,10 @@ pub fn statements(lines: &[Line], used: &Used) -> Vec<Statement> {
     lines.iter().flat_map(|line| of_line(line, used)).collect()
 }
 
-/// Text that can stand in a comment.
-pub fn comment(text: &str) -> String {
-    let plain = text.replace("*/", "* /").replace("/*", "/ *");
-    plain
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect()
-}
-
 fn of_line(line: &Line, used: &Used) -> Vec<Statement> {
     match line {
         Line::Heading(heading) => vec![Statement::Comment {
-            text: comment(&format!(
+            text: one_line(&format!(
                 "{}: {} ({})",
                 heading.body, heading.topic, heading.operations
             )),
@@ -174,7 +166,7 @@ fn turns(looped: &Loop, used: &Used) -> Statement {
         row: format!("{}[{}]", array(*width), index(*place)),
     });
     Statement::Loop {
-        bodies: comment(&list(&looped.bodies)),
+        bodies: one_line(&list(&looped.bodies)),
         count: looped.bodies.len(),
         tables: numbers.into_iter().chain(places).collect(),
         sources: sources.collect(),

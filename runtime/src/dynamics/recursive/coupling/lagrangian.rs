@@ -108,8 +108,8 @@ impl Recursive {
     ) -> Result<(), DynamicsError> {
         let count = self.mechanism.constraints().len();
         check_size(WHOLE, "constraint forces", count, forces.len())?;
-        self.check(q, &[("speeds", speeds.len()), ("rates", rates.len())])?;
-        self.check_efforts(efforts)?;
+        self.check(q, &[("speeds", speeds), ("rates", rates)])?;
+        self.check_efforts(q, speeds, efforts)?;
         self.with_coupling(|dynamics, coupling| {
             dynamics.coupling_force_with(q, speeds, rates, efforts, forces, coupling)
         })

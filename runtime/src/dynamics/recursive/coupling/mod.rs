@@ -9,9 +9,8 @@ mod lagrangian;
 
 use super::Recursive;
 use crate::dynamics::DynamicsError;
-use crate::dynamics::error::Space;
 use crate::lu::Lu;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, Space};
 use crate::spatial::fused::{apply, cross};
 use crate::spatial::join;
 use alloc::vec;

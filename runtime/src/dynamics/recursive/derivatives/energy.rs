@@ -11,7 +11,7 @@ impl Recursive {
     /// fixed v̄ into `kinetic`; the latter's derivative in v̄ is p̄. What elements store is no part of either.
     ///
     /// # Errors
-    /// When a vector has the wrong size.
+    /// When a vector has the wrong size, or is not finite.
     pub fn energy_gradients(
         &mut self,
         q: &[f64],
@@ -19,7 +19,7 @@ impl Recursive {
         potential: &mut [f64],
         kinetic: &mut [f64],
     ) -> Result<(), StateError> {
-        self.check(q, &[("speeds", speeds.len())])?;
+        self.check(q, &[("speeds", speeds)])?;
         let freedoms = self.mechanism.layout().freedoms;
         check_size(WHOLE, "potential gradient", freedoms, potential.len())?;
         check_size(WHOLE, "kinetic gradient", freedoms, kinetic.len())?;

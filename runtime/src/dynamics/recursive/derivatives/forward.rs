@@ -179,7 +179,7 @@ impl Recursive {
         efforts: &[f64],
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
-        self.check_differentiable(&[&out.by_local, &out.by_speeds, &out.by_efforts])?;
+        self.check_differentiable(&out.responses.branches)?;
         self.check_coupled(out.coupled.as_ref().map_or(0, Coupled::room))?;
         self.accelerations(q, speeds, efforts, &mut out.rates)?;
         if !self.mechanism.constraints().is_empty() {

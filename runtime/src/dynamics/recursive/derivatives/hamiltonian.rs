@@ -125,9 +125,10 @@ impl Recursive {
         efforts: &[f64],
         out: &mut HamiltonianDerivatives,
     ) -> Result<(), DynamicsError> {
-        self.check_differentiable(&[&out.rates_by_local, &out.rates_by_speeds])?;
+        self.check_differentiable(&out.responses.branches)?;
         self.check_coupled(out.coupled.as_ref().map_or(0, CoupledMomenta::room))?;
-        self.check_efforts(efforts)?;
+        self.check(q, &[("momenta", momenta)])?;
+        self.check_efforts(q, &[], efforts)?;
         self.speeds(q, momenta, &mut out.speeds)?;
         if !self.mechanism.constraints().is_empty() {
             return self.differentiate_coupled_momenta(q, efforts, out);

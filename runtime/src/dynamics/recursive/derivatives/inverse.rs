@@ -120,12 +120,8 @@ impl Recursive {
         accelerations: &[f64],
         out: &mut InverseDerivatives,
     ) -> Result<(), DynamicsError> {
-        let sizes = [
-            ("speeds", speeds.len()),
-            ("accelerations", accelerations.len()),
-        ];
-        self.check(q, &sizes)?;
-        self.check_differentiable(&[&out.by_local, &out.by_speeds])?;
+        self.check(q, &[("speeds", speeds), ("accelerations", accelerations)])?;
+        self.check_differentiable(&out.branches)?;
         self.advance(q, speeds, Some(accelerations));
         self.differentiate_needed(q, speeds, accelerations, out);
         Ok(())

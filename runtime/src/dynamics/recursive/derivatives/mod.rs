@@ -49,7 +49,7 @@ pub use hamiltonian::HamiltonianDerivatives;
 pub use inverse::InverseDerivatives;
 
 use super::Recursive;
-use super::link::Node;
+use super::link::{Link, Node};
 use crate::dynamics::DynamicsError;
 use crate::mechanism::Mechanism;
 use crate::steps::Variation;
@@ -164,21 +164,18 @@ impl Sensitivity {
     fn set(&mut self, i: usize, j: usize, value: f64) {
         self.entries[i * self.columns + j] = value;
     }
-
-    /// What `other` is handed to [`Recursive`] for must have been made for a mechanism of the same size.
-    fn fits(&self, rows: usize, columns: usize) -> bool {
-        (self.rows, self.columns) == (rows, columns)
-    }
 }
 
 impl Recursive {
-    /// Whether derivatives cover all that acts on the mechanism, and `results` belong to a mechanism of its size.
-    fn check_differentiable(&self, results: &[&Sensitivity]) -> Result<(), DynamicsError> {
-        let layout = self.mechanism.layout();
-        let fits = |result: &&Sensitivity| {
-            result.fits(layout.speeds, layout.freedoms) || result.fits(layout.speeds, layout.speeds)
+    /// Whether derivatives cover all that acts on the mechanism, and results were made for a tree like its own, of these `branches`.
+    fn check_differentiable(&self, branches: &[Branch]) -> Result<(), DynamicsError> {
+        let fits = |(branch, link): (&Branch, &Link)| {
+            branch.parent == link.parent.unwrap_or(WORLD)
+                && branch.freedoms == (link.freedoms.start, link.freedoms.end)
+                && branch.speeds == (link.speeds.start, link.speeds.end)
         };
-        if !results.iter().all(fits) {
+        let is_own = branches.len() == self.links.len();
+        if !(is_own && branches.iter().zip(&self.links).all(fits)) {
             return Err(DynamicsError::ForeignResults);
         }
         let mut elements = self.mechanism.elements().iter();
@@ -256,7 +253,7 @@ fn branches(mechanism: &Mechanism) -> Vec<Branch> {
             parent: body.parent().unwrap_or(WORLD),
             freedoms: (ranges.freedoms.start, ranges.freedoms.end),
             speeds: (ranges.speeds.start, ranges.speeds.end),
-            parts: body.joint().parts(),
+            parts: body.kernels().parts(),
             forks: false,
         }
     };

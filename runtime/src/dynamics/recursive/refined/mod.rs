@@ -222,9 +222,9 @@ impl Dynamics for Refined {
         if self.is_coupled() {
             return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
         }
+        self.tree.check_room("rates", rates)?;
         self.refined_speeds(q, momenta, speeds)?;
-        self.tree.rates_of_momenta(q, speeds, efforts, rates);
-        Ok(())
+        self.tree.rates_of_momenta(q, speeds, efforts, rates)
     }
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {

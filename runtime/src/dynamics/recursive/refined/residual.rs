@@ -2,7 +2,7 @@
 
 use super::super::Recursive;
 use super::super::link::Link;
-use crate::erased::AnyJoint;
+use crate::erased::Kernels;
 use crate::scalar::Extended;
 use crate::spatial::{Pose, SpatialInertia, Symmetric3, join, nearest_rotation, shift_wrench};
 use crate::steps::{Motion, Placement};
@@ -17,7 +17,7 @@ type E = Extended;
 /// One body and its joint, in extended numbers.
 #[derive(Clone, Debug)]
 struct Body {
-    joint: Arc<dyn AnyJoint>,
+    joint: Arc<dyn Kernels>,
     parent: Option<usize>,
     configuration: Range<usize>,
     speeds: Range<usize>,

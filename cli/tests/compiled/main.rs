@@ -1,6 +1,11 @@
 //! `hamel simulate --compiled`: the motion is that of the tree, by every method and in both forms; and what is told where there is no compiler.
 
+#[cfg(unix)]
+mod attack;
+#[path = "../common/mod.rs"]
 mod common;
+#[cfg(unix)]
+mod compiler;
 
 use common::{hamel, stdout};
 use hamel::integrate::Scheme;

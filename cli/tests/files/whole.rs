@@ -1,0 +1,103 @@
+//! How files take their names.
+
+use super::place::Place;
+use std::fs;
+
+#[test]
+fn nothing_but_the_files_stays() {
+    let place = Place::new();
+    let before = place.names();
+    place.done("simulate top.toml --t-end 0.1 --csv a.csv --parquet b.parquet --html c.html");
+    place.done("compile top.toml --function momenta -o d.c");
+    let mut names = place.names();
+    names.retain(|name| !before.contains(name));
+    assert_eq!(names, ["a.csv", "b.parquet", "c.html", "d.c", "d.h"]);
+}
+
+#[test]
+fn a_folder_that_is_not_there_is_told() {
+    let place = Place::new();
+    let told = place.refused("simulate top.toml --t-end 0.1 --csv none/a.csv", 1);
+    assert!(told.contains("none/a.csv"), "{told}");
+    let told = place.refused("import panda.urdf -o .", 1);
+    assert!(told.contains("cannot write ."), "{told}");
+}
+
+#[cfg(unix)]
+mod unix {
+    use super::{Place, fs};
+    use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
+    use std::process::Command;
+
+    fn mode(place: &Place, name: &str) -> u32 {
+        let found = fs::metadata(place.path(name)).expect("a file");
+        found.permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn a_new_file_has_the_permissions_of_new_files_and_an_old_one_keeps_its_own() {
+        let place = Place::new();
+        let program = env!("CARGO_BIN_EXE_hamel");
+        let script = format!("umask 027 && '{program}' import panda.urdf -o a.toml 2> told");
+        let mut shell = Command::new("sh");
+        let shell = shell.current_dir(place.path("."));
+        let status = shell.args(["-c", &script]).status().expect("a shell");
+        assert!(status.success());
+        assert_eq!(mode(&place, "a.toml"), 0o640);
+        let own = fs::Permissions::from_mode(0o604);
+        fs::set_permissions(place.path("a.toml"), own).expect("they can be set");
+        place.done("import panda.urdf -o a.toml");
+        assert_eq!(mode(&place, "a.toml"), 0o604);
+        // What is read-only is not replaced.
+        let own = fs::Permissions::from_mode(0o444);
+        fs::set_permissions(place.path("a.toml"), own).expect("they can be set");
+        let told = place.refused("import panda.urdf -o a.toml", 2);
+        assert!(told.contains("read-only"), "{told}");
+        place.done("import panda.urdf -o a.toml --force");
+    }
+
+    #[test]
+    fn a_link_stays_a_link_and_hard_links_keep_what_they_had() {
+        let place = Place::new();
+        fs::create_dir(place.path("folder")).expect("a folder");
+        symlink("folder/a.csv", place.path("a.csv")).expect("a link");
+        for end in ["0.1", "0.2"] {
+            place.done(&format!("simulate top.toml --t-end {end} --csv a.csv"));
+            let link = fs::read_link(place.path("a.csv")).expect("a link");
+            assert_eq!(link.to_str(), Some("folder/a.csv"));
+        }
+        assert_eq!(
+            fs::read_dir(place.path("folder"))
+                .expect("a folder")
+                .count(),
+            1
+        );
+        let before = place.read("folder/a.csv");
+        fs::hard_link(place.path("folder/a.csv"), place.path("b.csv")).expect("a link");
+        place.done("simulate top.toml --t-end 0.3 --csv a.csv");
+        assert_eq!(place.read("b.csv"), before);
+        assert!(place.read("a.csv").len() > before.len());
+    }
+
+    #[test]
+    fn devices_and_pipes_take_what_is_written() {
+        let place = Place::new();
+        let found = || fs::metadata("/dev/null").expect("a device");
+        let before = found().ino();
+        place.done("simulate top.toml --t-end 0.1 --csv /dev/null --html /dev/null");
+        assert!(found().file_type().is_char_device() && found().ino() == before);
+        let made = Command::new("mkfifo").arg(place.path("pipe")).status();
+        assert!(made.expect("a program of every system").success());
+        let pipe = place.path("pipe");
+        let reader = std::thread::spawn(move || fs::read_to_string(pipe).expect("text"));
+        place.done("simulate top.toml --t-end 0.1 --quiet --csv pipe");
+        let text = reader.join().expect("it reads");
+        assert!(text.starts_with("t_s,energy_J,") && text.lines().count() > 10);
+        assert!(
+            fs::metadata(place.path("pipe"))
+                .expect("a pipe")
+                .file_type()
+                .is_fifo()
+        );
+    }
+}

@@ -1,0 +1,81 @@
+//! Enclosures of expressions: what they can be while each symbol stays in an interval of its own.
+
+use super::{Interval, Precise};
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Number, Symbol};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
+
+/// An interval for each symbol, and the functions of them met so far. A symbol without one may be any number.
+#[derive(Clone, Debug)]
+pub struct Enclosure {
+    unit: Interval,
+    bound: BTreeMap<Symbol, Interval>,
+    functions: RefCell<HashMap<Atom, Interval>>,
+}
+
+impl Enclosure {
+    /// Nothing is bound yet; ends have `bits` bits.
+    pub fn new(bits: usize) -> Self {
+        Self {
+            unit: Interval::point(Precise::integer(1, bits)),
+            bound: BTreeMap::new(),
+            functions: RefCell::default(),
+        }
+    }
+
+    /// Confines a symbol.
+    pub fn bind(&mut self, symbol: &Symbol, interval: Interval) {
+        self.bound.insert(symbol.clone(), interval);
+        self.functions.borrow_mut().clear();
+    }
+
+    /// The interval of a symbol.
+    pub fn interval(&self, symbol: &Symbol) -> Interval {
+        let known = self.bound.get(symbol).cloned();
+        known.unwrap_or_else(|| Interval::whole(self.unit.bits()))
+    }
+
+    /// What the expression can be.
+    pub fn of(&self, expression: &Expr) -> Interval {
+        self.of_terms(expression).0
+    }
+
+    /// What the expression can be, and what the sum of the sizes of its terms can be: beside that a residual is small or not.
+    pub fn of_terms(&self, expression: &Expr) -> (Interval, Interval) {
+        let zero = Interval::point(self.unit.low().same(0));
+        expression
+            .terms()
+            .fold((zero.clone(), zero), |(sum, sizes), (m, coefficient)| {
+                let term = self.unit.rational(coefficient).times(&self.monomial(m));
+                (sum.plus(&term), sizes.plus(&term.abs()))
+            })
+    }
+
+    fn monomial(&self, monomial: &Monomial) -> Interval {
+        let start = self.unit.clone();
+        monomial.factors().fold(start, |product, (atom, power)| {
+            product.times(&self.atom(atom).power(power))
+        })
+    }
+
+    fn atom(&self, atom: &Atom) -> Interval {
+        let application = match atom {
+            Atom::Symbol(symbol) => return self.interval(symbol),
+            Atom::Apply(application) => application,
+        };
+        if let Some(known) = self.functions.borrow().get(atom) {
+            return known.clone();
+        }
+        let value = self.apply(application);
+        let mut functions = self.functions.borrow_mut();
+        functions.insert(atom.clone(), value.clone());
+        value
+    }
+
+    fn apply(&self, application: &Application) -> Interval {
+        let arguments = application.arguments.iter();
+        let arguments: Vec<Interval> = arguments.map(|argument| self.of(argument)).collect();
+        let function: Function = application.function;
+        self.unit.function(function, &arguments)
+    }
+}

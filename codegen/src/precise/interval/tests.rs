@@ -1,0 +1,163 @@
+//! Enclosures hold every value: against twelve times as many bits.
+
+use super::Interval;
+use crate::expr::{Function, Number, Rational};
+use crate::precise::Precise;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+const BITS: usize = 64;
+const FINE: usize = 768;
+const ROUNDS: usize = 400;
+
+struct Draw(ChaCha8Rng);
+
+impl Draw {
+    fn new() -> Self {
+        Self(ChaCha8Rng::seed_from_u64(7))
+    }
+
+    /// A double of any size between 2⁻⁴⁰ and 2⁴⁰, or a small integer.
+    fn number(&mut self) -> f64 {
+        let (size, sign) = (self.0.next_u32() % 80, self.0.next_u32());
+        let fraction = f64::from(self.0.next_u32()) / f64::from(u32::MAX);
+        let value = match sign % 5 {
+            0 => f64::from(size) - 40.0,
+            _ => fraction * f64::powi(2.0, size as i32 - 40),
+        };
+        if sign % 2 == 0 { value } else { -value }
+    }
+
+    /// An interval, and a number in it.
+    fn interval(&mut self) -> (Interval, f64) {
+        let (a, b) = (self.number(), self.number());
+        let b = if self.0.next_u32().is_multiple_of(2) {
+            a + b * 1e-6
+        } else {
+            b
+        };
+        let part = f64::from(self.0.next_u32()) / f64::from(u32::MAX);
+        let inside = (a + part * (b - a)).clamp(a.min(b), a.max(b));
+        let end = |x| Precise::from_f64(x, BITS);
+        (Interval::between(end(a), end(b)), inside)
+    }
+}
+
+fn fine(x: f64) -> Precise {
+    Precise::from_f64(x, FINE)
+}
+
+/// Whether the interval holds the number; numbers without a value are not asked for.
+fn holds(interval: &Interval, value: &Precise) -> bool {
+    let above = |low: &Precise| {
+        !low.is_finite() || low.to_bits(FINE).compare(value).is_some_and(|o| o.is_le())
+    };
+    let below = |high: &Precise| {
+        !high.is_finite() || high.to_bits(FINE).compare(value).is_some_and(|o| o.is_ge())
+    };
+    !value.is_finite() || (above(interval.low()) && below(interval.high()))
+}
+
+#[test]
+fn arithmetic_encloses_every_value() {
+    let mut draw = Draw::new();
+    for _ in 0..ROUNDS {
+        let ((a, x), (b, y)) = (draw.interval(), draw.interval());
+        let (x, y) = (fine(x), fine(y));
+        assert!(holds(&a.plus(&b), &(&x + &y)), "{a:?} + {b:?}");
+        assert!(holds(&a.times(&b), &(&x * &y)), "{a:?} * {b:?}");
+        assert!(holds(&a.over(&b), &(&x / &y)), "{a:?} / {b:?}");
+        for power in [-3, -2, 0, 1, 2, 3, 8] {
+            assert!(holds(&a.power(power), &x.power(power)), "{a:?}^{power}");
+        }
+    }
+}
+
+#[test]
+fn functions_enclose_every_value() {
+    let mut draw = Draw::new();
+    let one = [
+        Function::Cos,
+        Function::Sin,
+        Function::Exp,
+        Function::Ln,
+        Function::Sqrt,
+        Function::Recip,
+        Function::Sinh,
+        Function::Cosh,
+        Function::Tanh,
+        Function::Sech,
+        Function::LnCosh,
+        Function::Stumpff(0),
+        Function::Stumpff(3),
+    ];
+    for _ in 0..ROUNDS {
+        let ((a, x), (b, y)) = (draw.interval(), draw.interval());
+        let (x, y) = (fine(x), fine(y));
+        for function in one {
+            if matches!(function, Function::Stumpff(_)) && x.abs().to_f64() > 1e4 {
+                continue;
+            }
+            let value = x.function(function, std::slice::from_ref(&x));
+            let interval = a.function(function, std::slice::from_ref(&a));
+            assert!(holds(&interval, &value), "{function:?} of {a:?}: {value}");
+        }
+        let angle = a.function(Function::Atan2, &[a.clone(), b.clone()]);
+        assert!(holds(&angle, &x.atan2(&y)), "atan2({a:?}, {b:?})");
+    }
+}
+
+/// What is thin stays thin: otherwise nothing would ever be decided.
+#[test]
+fn enclosures_of_single_numbers_are_narrow() {
+    let point = |x| Interval::point(Precise::from_f64(x, 256));
+    let x = point(1.25);
+    for function in [
+        Function::Cos,
+        Function::Sin,
+        Function::Exp,
+        Function::Ln,
+        Function::Sqrt,
+        Function::Stumpff(2),
+    ] {
+        let value = x.function(function, std::slice::from_ref(&x));
+        let width = (value.high() - value.low()).to_f64();
+        assert!(width < f64::powi(2.0, -240), "{function:?}: {width:e}");
+    }
+}
+
+/// Numbers far beyond doubles neither vanish nor overflow, and what is beyond 2^(2³¹) is enclosed still.
+#[test]
+fn small_numbers_are_not_lost() {
+    let point = |x| Interval::point(Precise::from_f64(x, BITS));
+    let tiny = point(-1e6).function(Function::Exp, &[point(-1e6)]);
+    assert!(tiny.is_positive() && tiny.power(2).is_positive());
+    let less = point(-1e300).function(Function::Exp, &[point(-1e300)]);
+    assert!(
+        !less.is_negative()
+            && less
+                .high()
+                .compare(&Precise::integer(1, BITS))
+                .is_some_and(|o| o.is_lt())
+    );
+    assert!(!less.high().is_zero(), "exp is never 0");
+    let more = point(1e300).function(Function::Exp, &[point(1e300)]);
+    assert!(more.is_positive() && !more.high().is_finite());
+    assert!(less.times(&more).low().is_zero() || less.times(&more).is_positive());
+}
+
+#[test]
+fn rationals_are_enclosed() {
+    let unit = Interval::point(Precise::integer(1, BITS));
+    let digits = "123456789".repeat(20);
+    let long: num_bigint::BigInt = digits.parse().expect("a number");
+    for value in [
+        Rational::new(1.into(), 3.into()),
+        Rational::new(long.clone(), 7.into()),
+        Rational::new(7.into(), long.clone()),
+        Rational::from_integer(long),
+    ] {
+        let exact = Precise::integer(1, FINE).rational(&value);
+        assert!(holds(&unit.rational(&value), &exact), "{value}");
+    }
+}

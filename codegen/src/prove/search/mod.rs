@@ -1,0 +1,216 @@
+//! Identities that algebra does not decide: a search for a place where they fail.
+//!
+//! A place refutes an identity where an enclosure of its residual excludes 0. That many places agree proves nothing: a spec that
+//! wants to rest on it has to say so, by `unproved`. The search therefore looks everywhere that it can:
+//! at random points near home, far from it and beside each exception; in cells of every sign pattern of exceptions and
+//! requirements; and where enclosures leave room for a large residual, however narrow.
+
+mod axes;
+mod cells;
+mod narrow;
+mod place;
+
+use super::Identities;
+use crate::expr::{Expr, budget};
+use crate::precise::{Enclosure, Interval, Point, Precise, Sampler};
+use place::Place;
+use std::cell::{Cell, OnceCell};
+
+/// Bits of the numbers, and of a few more where the first leave open what cancels.
+const BITS: usize = 512;
+const MORE_BITS: usize = 2048;
+/// Random points near home and as many far from it, in the first number of bits and in the second.
+const POINTS: usize = 50;
+const FEW_POINTS: usize = 3;
+/// Bits by which a random point may miss the manifold: see `Sampler`.
+const MISSED_BITS: usize = 32;
+/// Bits to which the terms of a residual must cancel before a point is said to agree.
+const CANCELLED_BITS: i32 = 128;
+/// What a point costs in term operations, and each term of a residual there.
+const COST: (u64, u64) = (150, 15);
+/// Most terms of a residual.
+const MOST_TERMS: usize = 400;
+
+/// What the search showed.
+pub enum Verdict {
+    /// An identity fails at a place.
+    Refuted(Box<Place>),
+    /// No place refutes it, among so many.
+    Agrees { points: usize },
+    /// Some part of the domain could not be looked at, or nothing be said there.
+    Undecided(String),
+}
+
+/// What one point says.
+enum Said {
+    Refutes(Place),
+    Agrees,
+    Nothing,
+}
+
+/// An entry of which the normal form is not 0, as it was defined and in normal form.
+type Open = (Expr, Expr);
+
+/// A search for one claim.
+struct Search<'s> {
+    identities: &'s Identities<'s>,
+    open: &'s [Open],
+    sides: Vec<Expr>,
+    agreeing: Cell<usize>,
+}
+
+/// The random points of a joint, drawn when the first claim needs them.
+#[derive(Default)]
+pub(super) struct Points(OnceCell<Vec<Point>>);
+
+impl Points {
+    fn all(&self, identities: &Identities<'_>) -> &[Point] {
+        self.0.get_or_init(|| {
+            let draw = |bits, count, far| {
+                let sampler = Sampler::new(identities.spec, bits)
+                    .beside(identities.sides())
+                    .single();
+                let mut sampler = if far { sampler.far() } else { sampler };
+                let affordable = move || sampler.point().filter(|_| budget::spend(COST.0));
+                std::iter::repeat_with(affordable)
+                    .take(count)
+                    .map_while(|point| point)
+            };
+            let few = draw(MORE_BITS, FEW_POINTS, false).chain(draw(MORE_BITS, FEW_POINTS, true));
+            let many = draw(BITS, POINTS, false).chain(draw(BITS, POINTS, true));
+            few.chain(many).collect()
+        })
+    }
+}
+
+/// Looks for a place where an entry is not 0.
+pub(super) fn search(identities: &Identities<'_>, open: &[Open]) -> Verdict {
+    let terms: usize = open.iter().map(|(entry, _)| entry.terms().len()).sum();
+    if terms > MOST_TERMS {
+        return Verdict::Undecided(format!(
+            "its residual has {terms} terms; at most {MOST_TERMS} are evaluated"
+        ));
+    }
+    let search = Search {
+        identities,
+        open,
+        sides: identities.sides(),
+        agreeing: Cell::new(0),
+    };
+    search.run()
+}
+
+impl Search<'_> {
+    fn run(&self) -> Verdict {
+        let mut refuting = None;
+        for point in self.identities.points.all(self.identities) {
+            match self.at(point) {
+                Said::Refutes(place) => refuting = Place::larger(refuting, place),
+                Said::Agrees => self.agreeing.set(self.agreeing.get() + 1),
+                Said::Nothing => {}
+            }
+            if budget::is_exhausted() {
+                break;
+            }
+        }
+        // Where a residual is largest says more than where it was first met.
+        refuting = match self.narrow() {
+            Some(place) => Place::larger(refuting, place),
+            None => refuting,
+        };
+        let (beyond, unreached) = self.cells();
+        if let Some(place) = beyond {
+            refuting = Place::larger(refuting, place);
+        }
+        match (refuting, unreached, self.agreeing.get()) {
+            (Some(place), ..) => Verdict::Refuted(Box::new(place)),
+            (None, Some(reason), _) => Verdict::Undecided(reason),
+            (None, None, 0) => Verdict::Undecided("no point was found where it has a value".into()),
+            (None, None, points) => Verdict::Agrees { points },
+        }
+    }
+
+    /// What a point of the domain says.
+    fn at(&self, point: &Point) -> Said {
+        let terms: usize = self.open.iter().map(|(entry, _)| entry.terms().len()).sum();
+        if !budget::spend(COST.0 + COST.1 * terms as u64) {
+            return Said::Nothing;
+        }
+        let enclosure = self.around(point);
+        let mut said = Said::Agrees;
+        for (entry, normal) in self.open {
+            let (value, size) = enclosure.of_terms(entry);
+            let of_normal = enclosure.of(normal);
+            if value.excludes_zero() || of_normal.excludes_zero() {
+                let tighter = if value.excludes_zero() {
+                    &value
+                } else {
+                    &of_normal
+                };
+                return Said::Refutes(Place::new(
+                    self.identities.spec,
+                    entry,
+                    point,
+                    tighter,
+                    &size,
+                ));
+            }
+            let cancelled = size.largest_size().halved(CANCELLED_BITS);
+            let agrees = value.is_bounded()
+                && (value.largest_size().compare(&cancelled)).is_some_and(|order| order.is_le());
+            if !agrees {
+                said = Said::Nothing;
+            }
+        }
+        said
+    }
+
+    /// The point with as much room as it may miss the manifold by.
+    fn around(&self, point: &Point) -> Enclosure {
+        let mut enclosure = Enclosure::new(point.bits());
+        let spec = self.identities.spec;
+        for parameter in &spec.parameters {
+            let value = point.value(&parameter.symbol);
+            enclosure.bind(&parameter.symbol, Interval::point(value));
+        }
+        let manifold = &spec.manifold.value;
+        let exact = |kind| matches!(kind, crate::manifold::Kind::Real(_));
+        for factor in manifold.factors() {
+            let free = exact(factor.kind) && manifold.declared().is_empty();
+            for symbol in &factor.coordinates {
+                let value = point.value(symbol);
+                enclosure.bind(
+                    symbol,
+                    if free {
+                        Interval::point(value)
+                    } else {
+                        room(&value)
+                    },
+                );
+            }
+        }
+        enclosure
+    }
+
+    /// Whether the point meets every requirement, keeps off every exception and lies on the side of home.
+    fn admits(&self, point: &Point) -> bool {
+        let enclosure = self.around(point);
+        let spec = self.identities.spec;
+        let required = spec.requirements.iter().map(|r| &r.value.value);
+        let mut positive = required.chain(&self.sides);
+        let mut loci = spec.loci.iter().map(|locus| &locus.value.function);
+        positive.all(|e| enclosure.of(e).is_positive())
+            && loci.all(|e| enclosure.of(e).excludes_zero())
+    }
+}
+
+/// All numbers that differ from this by rounding of the point.
+fn room(value: &Precise) -> Interval {
+    let one = value.same(1);
+    let size = match value.abs().compare(&one) {
+        Some(std::cmp::Ordering::Greater) => value.abs(),
+        _ => one,
+    };
+    let rounding = size.halved((value.bits() - MISSED_BITS.min(value.bits())) as i32);
+    Interval::between(value - &rounding, value + &rounding)
+}

@@ -1,0 +1,90 @@
+//! Narrow features: cells in which an enclosure leaves room for the largest residual are cut first, so that the search ends where
+//! a bump is, however narrow.
+
+use super::axes::{self, Cell as Box};
+use super::place::Place;
+use super::{Said, Search};
+use crate::expr::{Symbol, budget};
+use crate::precise::{Enclosure, Point, Sampler};
+use std::collections::BTreeSet;
+
+/// Bits of the ends of cells.
+const BITS: usize = 128;
+/// Most cells of one search.
+const MOST_CELLS: usize = 400;
+/// Most variables that are cut together; more are cut one at a time, the others held.
+const MOST_AXES: usize = 2;
+/// Points from which one variable is varied at a time.
+const LINES: usize = 2;
+
+impl Search<'_> {
+    /// The place with the largest residual that was found.
+    pub(super) fn narrow(&self) -> Option<Place> {
+        let entries = self.open.iter().flat_map(|(entry, normal)| [entry, normal]);
+        let symbols: BTreeSet<Symbol> = entries.flat_map(|e| e.symbols()).collect();
+        let (whole, complete) = axes::whole(self.identities.spec, &symbols);
+        if whole.is_empty() {
+            return None;
+        }
+        let mut sampler = Sampler::new(self.identities.spec, super::BITS).single();
+        if complete && whole.len() <= MOST_AXES {
+            return self.largest_in(whole, &sampler.anywhere()?, MOST_CELLS);
+        }
+        let mut found = None;
+        for _ in 0..LINES {
+            let Some(base) = sampler.point() else {
+                break;
+            };
+            for side in &whole {
+                let line = vec![side.clone()];
+                if let Some(place) = self.largest_in(line, &base, MOST_CELLS / whole.len()) {
+                    found = Place::larger(found, place);
+                }
+            }
+        }
+        found
+    }
+
+    fn largest_in(&self, whole: Box, base: &Point, most: usize) -> Option<Place> {
+        let mut open = vec![(f64::INFINITY, whole)];
+        let mut found: Option<Place> = None;
+        for _ in 0..most {
+            let largest = (0..open.len()).max_by(|a, b| open[*a].0.total_cmp(&open[*b].0))?;
+            let (_, cell) = open.swap_remove(largest);
+            let mut point = base.clone();
+            axes::move_to_middle(&mut point, &cell);
+            if self.admits(&point)
+                && let Said::Refutes(place) = self.at(&point)
+            {
+                found = Place::larger(found, place);
+            }
+            let large = found.as_ref().is_some_and(Place::is_large);
+            if large || !budget::spend(super::COST.0) {
+                break;
+            }
+            for half in axes::halves(&cell).into_iter().flatten() {
+                let bound = self.room_in(&half, base);
+                // What is exactly 0 in a cell needs no more looks.
+                if bound > f64::NEG_INFINITY {
+                    open.push((bound, half));
+                }
+            }
+        }
+        found
+    }
+
+    /// The binary logarithm of the largest residual that an enclosure does not exclude in the cell.
+    fn room_in(&self, cell: &Box, base: &Point) -> f64 {
+        let mut enclosure = Enclosure::new(BITS);
+        for symbol in self.identities.spec.symbols() {
+            let value = base.value(&symbol).to_bits(BITS);
+            enclosure.bind(&symbol, super::room(&value));
+        }
+        axes::bind(&mut enclosure, cell, BITS);
+        let sizes = self.open.iter().map(|(entry, normal)| {
+            let sizes = [entry, normal].map(|e| enclosure.of(e).largest_size().log2());
+            sizes[0].min(sizes[1])
+        });
+        sizes.fold(f64::NEG_INFINITY, f64::max)
+    }
+}

@@ -1,0 +1,14 @@
+//! What of compiled scenes touches memory, for tests under AddressSanitizer: batches of states in their lanes, and libraries in C behind the functions
+//! that the program calls.
+#![cfg(test)]
+
+mod batches;
+mod libraries;
+/// How the program loads libraries, as it stands there.
+#[path = "../../../cli/src/compiled/library.rs"]
+mod library;
+/// A committed module with functions of many states.
+#[path = "../../src/emitted/plate_cart_arm.rs"]
+#[rustfmt::skip]
+#[allow(dead_code, reason = "not all of its functions are called here")]
+mod module;

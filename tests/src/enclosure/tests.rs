@@ -1,0 +1,116 @@
+//! The judge on joints that are true, on joints with a false kernel, and on functions without a value.
+
+use super::{Point, Verdict, judge};
+use hamel_codegen::derived::{Derived, KernelKind};
+use hamel_codegen::expr::Expr;
+
+/// Kernels that no law here evaluates: finite maps beside Φ, home, and what tells how far a configuration is from where it belongs.
+const UNJUDGED: [KernelKind; 10] = [
+    KernelKind::Home,
+    KernelKind::Local,
+    KernelKind::RetractTangent,
+    KernelKind::RetractDifferential,
+    KernelKind::RetractDifferentialInverse,
+    KernelKind::Relations,
+    KernelKind::RelationGradient,
+    KernelKind::Project,
+    KernelKind::Residual,
+    KernelKind::Singularity,
+];
+
+fn at(chart: &[f64], parameters: &[f64]) -> Point {
+    Point {
+        parameters: parameters.to_vec(),
+        chart: chart.to_vec(),
+    }
+}
+
+/// The library at points near and far; parameters that all of its requirements allow.
+#[test]
+fn the_library_holds() {
+    for name in crate::spec_names() {
+        let derived = crate::derived(&name);
+        let count = super::dimensions(&derived.spec);
+        let parameters: Vec<f64> = (0..derived.spec.parameters.len())
+            .map(|i| 1.5 / (1.0 + i as f64))
+            .collect();
+        for size in [0.3, 17.0] {
+            let chart: Vec<f64> = (0..count).map(|i| size / (1.0 + 0.7 * i as f64)).collect();
+            assert_eq!(
+                judge(&derived, &at(&chart, &parameters)),
+                Verdict::Holds,
+                "{name}"
+            );
+        }
+    }
+}
+
+/// The joint with 1e-30 exp(−1e6 (x − 5)²) added to the first entry of one kernel.
+fn with_false(derived: &Derived, kind: KernelKind) -> Option<Derived> {
+    let mut falsified = derived.clone();
+    let x = Expr::symbol(falsified.arguments.configuration.get(1)?);
+    let off = &x - &Expr::integer(5);
+    let tiny = Expr::fraction(1, 1_000_000_000_000_000).square();
+    let bump = &tiny * &(&Expr::integer(-1_000_000) * &off.square()).exp();
+    let kernel = falsified
+        .kernels
+        .iter_mut()
+        .find(|kernel| kernel.kind == kind)?;
+    let output = kernel.outputs.first_mut()?;
+    if output.entries().is_empty() {
+        return None;
+    }
+    let mut first = true;
+    *output = output.map(|entry| match std::mem::take(&mut first) {
+        true => entry + &bump,
+        false => entry.clone(),
+    });
+    Some(falsified)
+}
+
+#[test]
+fn a_small_narrow_error_of_any_kernel_is_told() {
+    let derived = crate::derived("knife_edge");
+    let there = at(&[0.3, 5.0, 1.0], &[]);
+    let mut judged = 0;
+    for kernel in &derived.kernels {
+        let Some(falsified) = with_false(&derived, kernel.kind) else {
+            continue;
+        };
+        if UNJUDGED.contains(&kernel.kind) {
+            continue;
+        }
+        let verdict = judge(&falsified, &there);
+        assert!(
+            matches!(verdict, Verdict::Violated(..)),
+            "{:?}: {verdict:?}",
+            kernel.kind
+        );
+        judged += 1;
+    }
+    assert!(judged > 20, "{judged} kernels");
+}
+
+/// 1 / (x − 5) in H, which the generator does not accept: put into a derived joint.
+#[test]
+fn a_value_that_is_missing_is_told() {
+    let mut derived = crate::derived("knife_edge");
+    let x = Expr::symbol(&derived.arguments.configuration[1]);
+    let pole = (&x - &Expr::integer(5)).recip().unwrap_or_default();
+    let pose = &mut derived.spec.pose.value;
+    pose.translation = pose.translation.map(|entry| entry + &pole);
+    let verdict = judge(&derived, &at(&[0.3, 5.0, 1.0], &[]));
+    assert!(matches!(verdict, Verdict::Undefined(_)), "{verdict:?}");
+}
+
+#[test]
+fn points_beyond_ranges_and_exceptions_are_outside() {
+    let gimbal = crate::derived("gimbal");
+    assert_eq!(judge(&gimbal, &at(&[0.3, 2.0, 1.0], &[])), Verdict::Holds);
+    let disk = crate::derived("falling_disk");
+    // The identity: the disk lies flat.
+    assert_eq!(
+        judge(&disk, &at(&[0.0, 0.0, 0.0, 1.0, 2.0], &[0.5])),
+        Verdict::Outside
+    );
+}
