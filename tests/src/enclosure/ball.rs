@@ -459,10 +459,12 @@ const LARGEST_SERIES: i64 = 4;
 mod tests {
     use super::{Ball, with_precision};
 
+    type Function = fn(&Ball) -> Ball;
+
     /// A number with its neighbours ±2⁻⁶⁰: functions of the ball hold the functions of all.
     #[test]
     fn functions_of_a_ball_hold_those_of_its_numbers() {
-        let functions: [(&str, fn(&Ball) -> Ball); 8] = [
+        let functions: [(&str, Function); 8] = [
             ("sqrt", Ball::sqrt),
             ("ln", Ball::ln),
             ("exp", Ball::exp),
