@@ -1,6 +1,6 @@
 //! Factors that are never zero, because the spec says so: what is left without them vanishes in the same places.
 
-use crate::expr::{Expr, Monomial};
+use crate::expr::{Atom, Expr, Function, Monomial};
 use std::collections::BTreeMap;
 
 /// The expression without those factors that are powers of functions that are never 0.
@@ -14,6 +14,26 @@ pub fn without<'f>(expression: &Expr, never_zero: impl IntoIterator<Item = &'f E
             }
             rest
         })
+}
+
+/// The only term with u for `sinh(u)` and `tanh(u)`, which vanish where u does; other expressions as they stand.
+pub fn arguments_of_odd(expression: &Expr) -> Expr {
+    let odd = |atom: Atom| match &atom {
+        Atom::Apply(application)
+            if matches!(application.function, Function::Sinh | Function::Tanh) =>
+        {
+            let argument = application.arguments.first()?.clone();
+            Some((atom, argument))
+        }
+        _ => None,
+    };
+    match expression.single_term() {
+        Some(_) => {
+            let values = expression.atoms().into_iter().filter_map(odd).collect();
+            expression.replace_atoms(&values)
+        }
+        None => expression.clone(),
+    }
 }
 
 /// The function of parameters by which all coefficients are multiples of it, where one of them is that, and what is left without it.

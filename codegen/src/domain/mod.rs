@@ -7,6 +7,7 @@
 mod constant;
 mod critical;
 mod factors;
+mod harmonics;
 mod roots;
 mod sign;
 mod squares;
@@ -131,8 +132,11 @@ impl<'a> Domain<'a> {
     /// Whether the expression is positive everywhere.
     pub fn is_positive(&self, expression: &Expr) -> bool {
         let normal = self.ideal.normal_form(expression);
-        let quickly = self.signs.is_positive(expression) || self.signs.is_positive(&normal);
-        quickly || self.signs.is_positive_on_cells(&normal)
+        let has_sign = |e: &Expr| self.signs.is_positive(e) || self.signs.is_positive(&-e);
+        self.signs.is_positive(expression)
+            || self.signs.is_positive(&normal)
+            || normal.polynomial_root().is_some_and(|root| has_sign(&root))
+            || self.signs.is_positive_on_cells(&normal)
     }
 
     /// Constants of which no number of bits decided the sign.
@@ -176,11 +180,12 @@ impl<'a> Domain<'a> {
         let functions = all.len();
         let conditions = || self.signs.positive_conditions();
         let essential = |e: &Expr| {
-            let rest = factors::without(e, conditions());
-            match factors::content(&rest) {
+            let rest = factors::without(&factors::arguments_of_odd(e), conditions());
+            let rest = match factors::content(&rest) {
                 Some((content, rest)) if of_one_sign(&&content) => rest,
                 _ => rest,
-            }
+            };
+            rest.polynomial_root().unwrap_or(rest)
         };
         let mut generators: Vec<Expr> = all.iter().map(essential).collect();
         let never_zero = |e: &&Expr| self.is_unit(e) || of_one_sign(e);

@@ -1,6 +1,7 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
 use super::constant::{self, ConstantSign};
+use super::harmonics;
 use super::subdivision;
 use super::unit_vectors;
 use super::{of_monomial, roots};
@@ -18,6 +19,8 @@ use std::sync::Arc;
 
 /// Most multiples of conditions that are taken together to show that a polynomial in the parameters is positive.
 const MOST_CONDITIONS: usize = 8;
+/// Most conditions of which products are formed.
+const MOST_FACTORS: usize = 6;
 /// Most combinations of conditions that are tried.
 const MOST_TRIES: usize = 400;
 
@@ -36,6 +39,8 @@ pub struct Signs {
     vanishing: BTreeSet<Symbol>,
     /// Polynomials in the parameters that are not negative, and whether they are positive.
     conditions: Vec<(Expr, bool)>,
+    /// Products of two of them, tried where they do not suffice one by one.
+    products: Vec<(Expr, bool)>,
     /// Coordinates whose absolute value is at most 1.
     bounded: BTreeSet<Symbol>,
     /// Scalars that form vectors of length 1.
@@ -80,16 +85,21 @@ impl Signs {
             .iter()
             .flat_map(|f| bounded_coordinates(f.kind, &f.coordinates))
             .collect();
+        let conditions: Vec<(Expr, bool)> = required
+            .chain(
+                parameters
+                    .clone()
+                    .flat_map(|p| conditions_of(&p.symbol, &p.range)),
+            )
+            .collect();
         Self {
             positive_parameters: positive_parameters(spec),
             ranges: parameters
-                .clone()
                 .map(|p| (p.symbol.clone(), p.range.clone()))
                 .collect(),
             vanishing: vanishing_parameters(spec),
-            conditions: required
-                .chain(parameters.flat_map(|p| conditions_of(&p.symbol, &p.range)))
-                .collect(),
+            products: products(&conditions),
+            conditions,
             bounds: bounds(spec, &bounded),
             bounded,
             unit_vectors: unit_vectors::of_factors(factors),
@@ -114,6 +124,9 @@ impl Signs {
                 self.exceeds(expression, false)
                     || roots::is_positive(expression)
                     || self.outweighs_unit_vectors(expression, DEEPEST_BOUND)
+                    || harmonics::by_multiples(expression, &self.circles).is_some_and(|sum| {
+                        self.exceeds(&sum, false) || self.outweighs_unit_vectors(&sum, 1)
+                    })
             }
         }
     }
@@ -162,7 +175,12 @@ impl Signs {
                 },
             }
         }
-        self.exceeds_zero(&constant, strict, MOST_CONDITIONS, &mut 0)
+        let single = || self.conditions.iter();
+        let outweighs = |conditions: &[&(Expr, bool)]| {
+            self.exceeds_zero(&constant, strict, conditions, MOST_CONDITIONS, &mut 0)
+        };
+        outweighs(&single().collect::<Vec<_>>())
+            || outweighs(&single().chain(&self.products).collect::<Vec<_>>())
     }
 
     /// Whether the expression is `D + a · n` with a unit vector n and D > |a|: then D and D² − |a|² are positive.
@@ -221,6 +239,7 @@ impl Signs {
         let factors = monomial.main().iter();
         factors.fold(of_units, |sign, (atom, power)| {
             sign.times(match (self.sign_of_atom(atom), power % 2) {
+                (Sign::Unknown, 0) if is_reciprocal(atom) => Sign::Positive,
                 (Sign::Unknown, 0) => Sign::NotNegative,
                 (known, _) => known,
             })
@@ -317,7 +336,14 @@ impl Signs {
 
     /// Whether a polynomial in the parameters is positive, or not negative where that is enough: by its terms, or after subtracting
     /// multiples of conditions, each to cancel a negative term.
-    fn exceeds_zero(&self, rest: &Expr, enough: bool, left: usize, tries: &mut usize) -> bool {
+    fn exceeds_zero(
+        &self,
+        rest: &Expr,
+        enough: bool,
+        conditions: &[&(Expr, bool)],
+        left: usize,
+        tries: &mut usize,
+    ) -> bool {
         let negative = rest.terms().find(|(_, c)| c.is_negative());
         let Some((monomial, coefficient)) = negative else {
             let positive = |(m, _): (&Monomial, &Rational)| self.sign(m) == Sign::Positive;
@@ -327,7 +353,7 @@ impl Signs {
         if left == 0 || *tries > MOST_TRIES {
             return false;
         }
-        self.conditions.iter().any(|(condition, strict)| {
+        conditions.iter().any(|(condition, strict)| {
             let mut terms = condition.terms().filter(|(_, c)| c.is_negative());
             terms.any(|(of_condition, c)| {
                 let Some(units) = of_condition.recip().map(|m| monomial.times(&m)) else {
@@ -345,12 +371,18 @@ impl Signs {
                     && self.exceeds_zero(
                         &rest,
                         enough || (*strict && sign == Sign::Positive),
+                        conditions,
                         left - 1,
                         tries,
                     )
             })
         })
     }
+}
+
+/// Reciprocals are 0 nowhere.
+fn is_reciprocal(atom: &Atom) -> bool {
+    matches!(atom, Atom::Apply(application) if application.function == Function::Recip)
 }
 
 /// Enclosures of the parameters with two ends, and of scalars of at most 1.
@@ -387,6 +419,16 @@ fn conditions_of(symbol: &Symbol, range: &Interval) -> Vec<(Expr, bool)> {
     let upper = range.upper.iter();
     let below = upper.map(|end| (&Expr::rational(end.value.clone()) - &p, !end.included));
     above.chain(below).collect()
+}
+
+/// The products of two conditions each, squares among them.
+fn products(conditions: &[(Expr, bool)]) -> Vec<(Expr, bool)> {
+    let first = &conditions[..conditions.len().min(MOST_FACTORS)];
+    let with_later = first.iter().enumerate().flat_map(|(n, (a, strict))| {
+        let later = first[n..].iter();
+        later.map(move |(b, also)| (a * b, *strict && *also))
+    });
+    with_later.collect()
 }
 
 /// The parameters that are positive.

@@ -28,7 +28,7 @@ pub fn is_positive(
     circles: &[(Symbol, Symbol)],
 ) -> bool {
     let expression = by_angles(expression, circles);
-    let (expression, turning) = free_angles(&expression);
+    let (expression, turning) = free_angles(&expression, ranges);
     let symbols = expression.symbols();
     let axes: Vec<Axis> = symbols
         .iter()
@@ -109,11 +109,16 @@ fn by_angles(expression: &Expr, circles: &[(Symbol, Symbol)]) -> Expr {
     expression.substitute(&values.collect())
 }
 
-/// The expression with a symbol for each monomial that occurs as an angle alone, so that it needs no range but a turn; and those symbols.
-fn free_angles(expression: &Expr) -> (Expr, BTreeSet<Symbol>) {
+/// The expression with a symbol for each monomial that occurs as an angle alone and has no range, so that a turn is its range; and those
+/// symbols.
+fn free_angles(expression: &Expr, ranges: &BTreeMap<Symbol, Interval>) -> (Expr, BTreeSet<Symbol>) {
     let mut turning = BTreeSet::new();
     let mut current = expression.clone();
     for (index, (monomial, part)) in angles(expression).into_iter().enumerate() {
+        let held: BTreeSet<Symbol> = Expr::term(1.into(), monomial.clone()).symbols();
+        if held.iter().all(|symbol| ranges.contains_key(symbol)) {
+            continue;
+        }
         let name = format!("turn{index}");
         let symbol = Symbol::new(Role::Constant, index, &name);
         let angle = Expr::term(part.recip(), Monomial::one());
@@ -129,7 +134,6 @@ fn free_angles(expression: &Expr) -> (Expr, BTreeSet<Symbol>) {
         });
         let values: BTreeMap<Atom, Expr> = replaced.collect();
         let free = current.replace_atoms(&values);
-        let held: BTreeSet<Symbol> = Expr::term(1.into(), monomial).symbols();
         if free.symbols().is_disjoint(&held) {
             current = free;
             turning.insert(symbol);

@@ -15,6 +15,12 @@ pub fn left_inverse(m: &Matrix, domain: &Domain<'_>) -> Option<Matrix> {
     eliminated.left_inverse(domain)
 }
 
+/// What elimination by constant pivots leaves: it has full column rank where the matrix has. `None` where there is no such pivot.
+pub fn remainder(m: &Matrix, domain: &Domain<'_>) -> Option<Matrix> {
+    let eliminated = Eliminated::new(m, domain);
+    (!eliminated.pivots.is_empty()).then(|| eliminated.rest())
+}
+
 /// Rows of `E m` and of E, where elimination has got to.
 struct Eliminated {
     rows: Vec<Vec<Expr>>,
@@ -64,15 +70,26 @@ impl Eliminated {
         }
     }
 
-    fn left_inverse(&self, domain: &Domain<'_>) -> Option<Matrix> {
+    /// Rows and columns without a pivot.
+    fn left(&self) -> (Vec<usize>, Vec<usize>) {
         let columns = self.rows.first().map_or(0, Vec::len);
         let is_row = |i: &usize| self.pivots.iter().all(|(p, _)| p != i);
         let is_column = |j: &usize| self.pivots.iter().all(|(_, q)| q != j);
-        let rows: Vec<usize> = (0..self.rows.len()).filter(is_row).collect();
-        let left: Vec<usize> = (0..columns).filter(is_column).collect();
-        let rest = Matrix::from_fn(rows.len(), left.len(), |i, j| {
+        let rows = (0..self.rows.len()).filter(is_row).collect();
+        (rows, (0..columns).filter(is_column).collect())
+    }
+
+    fn rest(&self) -> Matrix {
+        let (rows, left) = self.left();
+        Matrix::from_fn(rows.len(), left.len(), |i, j| {
             self.rows[rows[i]][left[j]].clone()
-        });
+        })
+    }
+
+    fn left_inverse(&self, domain: &Domain<'_>) -> Option<Matrix> {
+        let columns = self.rows.first().map_or(0, Vec::len);
+        let (rows, left) = self.left();
+        let rest = self.rest();
         let operations = Matrix::from_fn(rows.len(), self.rows.len(), |i, j| {
             self.operations[rows[i]][j].clone()
         });

@@ -1,5 +1,6 @@
 //! Certificates that a matrix has full rank at every configuration.
 
+use super::elimination;
 use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::matrix::Matrix;
@@ -49,6 +50,13 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
     match domain.no_common_zero(&minors) {
         Some(certificate) => Ok(format!("minors: {certificate}")),
         None if domain.is_positive(&gram) => Ok(format!("det(MᵀM) = {gram}, which is of one sign")),
-        None => Err(gram),
+        None => behind_pivots(m, domain).ok_or(gram),
     }
+}
+
+/// The same for what is left behind constant pivots.
+fn behind_pivots(m: &Matrix, domain: &Domain<'_>) -> Option<String> {
+    let rest = elimination::remainder(m, domain)?;
+    let why = full_column_rank(&rest, domain).ok()?;
+    Some(format!("behind constant pivots, {why}"))
 }

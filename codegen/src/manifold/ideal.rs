@@ -249,10 +249,18 @@ impl Ideal {
     }
 
     /// The shorter of an expression and its normal form; the expression as it stands where they are alike.
+    ///
+    /// A normal form with other angles or exponents than the expression has is not taken: y and π/2 − y are as good for a proof, but in doubles
+    /// the sine of a small y loses its digits when it is the cosine of the other.
     pub fn simplest(&self, expression: &Expr) -> Expr {
         let normal = budget::scope(SIMPLIFICATION_LIMIT, || self.normal_form(expression));
         match normal {
-            Ok(normal) if weight(&normal) < weight(expression) => normal,
+            Ok(normal)
+                if weight(&normal) < weight(expression)
+                    && transcendental(&normal).is_subset(&transcendental(expression)) =>
+            {
+                normal
+            }
             _ => expression.clone(),
         }
     }
@@ -386,6 +394,14 @@ fn cleared(expression: &Expr, quotient: &Atom, denominator: &Expr) -> Expr {
         &rest * &denominator.pow((highest - power).unsigned_abs())
     };
     expression.terms().map(term).sum()
+}
+
+/// The sines, cosines, exponentials and hyperbolic functions that occur.
+fn transcendental(expression: &Expr) -> BTreeSet<Atom> {
+    let algebraic = [Function::Sqrt, Function::Recip, Function::Group];
+    let is_transcendental = |atom: &Atom| matches!(atom, Atom::Apply(application) if !algebraic.contains(&application.function));
+    let functions = expression.related_functions().into_iter();
+    functions.filter(is_transcendental).collect()
 }
 
 /// Number of operations to write the expression as it stands, each function of it once.

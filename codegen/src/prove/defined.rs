@@ -104,7 +104,21 @@ impl Prover<'_> {
                     (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
                     _ => vec![],
                 });
-        known.any(|x| x == *argument || self.ideal.vanishes(&(&x - argument)))
+        known.any(|x| x == *argument || self.are_multiples(&x, argument))
+    }
+
+    /// Whether one is a multiple of the other on the manifold, by a constant that is not 0.
+    fn are_multiples(&self, a: &Expr, b: &Expr) -> bool {
+        let coefficient = |e: &Expr| {
+            let normal = self.ideal.normal_form(e);
+            let (monomial, coefficient) = normal.leading()?;
+            let coefficient = Expr::term(coefficient.clone(), monomial.split().1);
+            self.domain.is_unit(&coefficient).then_some(coefficient)
+        };
+        match (coefficient(a), coefficient(b)) {
+            (Some(of_a), Some(of_b)) => self.ideal.vanishes(&(&(a * &of_b) - &(b * &of_a))),
+            _ => false,
+        }
     }
 }
 

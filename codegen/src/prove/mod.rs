@@ -9,6 +9,7 @@
 //! configuration.
 
 mod defined;
+mod degenerate;
 mod fibres;
 mod nonholonomic;
 mod retract;

@@ -1,6 +1,6 @@
 //! Claims about X and S: they span the velocities of H, to first order in ϕ, at every configuration.
 
-use super::{Attempt, Prover, certified, refuted};
+use super::{Attempt, Prover, certified, degenerate, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::expand::{adjoint_inverse, rank, twist_map_in_frame};
 use crate::expr::Expr;
@@ -140,7 +140,10 @@ impl Prover<'_> {
                 refuted(
                     code::VELOCITY_MAP_LOCUS,
                     &self.twist_map_span(),
-                    "S₀ is not shown to be invertible at every configuration",
+                    &match degenerate::zero(determinant, self.spec, &self.domain) {
+                        Some(place) => format!("S₀ is singular at {place}"),
+                        None => "S₀ is not shown to be invertible at every configuration".into(),
+                    },
                     "here",
                 )
                 .note(format!("generic: it is singular where {determinant} = 0"))
@@ -178,7 +181,12 @@ impl Prover<'_> {
                 refuted(
                     code,
                     &span,
-                    &format!("{what} is not shown to have full rank at every configuration"),
+                    &match degenerate::zero(&gram, self.spec, &self.domain) {
+                        Some(place) => format!("{what} has dependent columns at {place}"),
+                        None => {
+                            format!("{what} is not shown to have full rank at every configuration")
+                        }
+                    },
                     "here",
                 )
                 .note(format!(

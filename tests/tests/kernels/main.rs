@@ -7,6 +7,7 @@ mod extended;
 mod fuzz_pipeline;
 mod fuzz_specs;
 mod hyperbolic;
+mod kinds;
 mod laws;
 mod no_std;
 mod paper;
