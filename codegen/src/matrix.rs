@@ -285,3 +285,24 @@ impl Display for Matrix {
         f.write_str("]")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Matrix;
+    use crate::expr::{Expr, Role, Symbol};
+
+    /// A format's width ends at 65 535, which long entries exceed.
+    #[test]
+    fn entries_of_any_length_are_aligned() {
+        let x = |n: usize| Expr::symbol(&Symbol::new(Role::Coordinate, n, &format!("x{n}")));
+        let long: Expr = (0..12_000).map(x).sum();
+        let shown = Matrix::from_fn(2, 1, |i, _| match i {
+            0 => long.clone(),
+            _ => x(0),
+        })
+        .to_string();
+        let lines: Vec<usize> = shown.lines().map(|line| line.chars().count()).collect();
+        assert!(lines[0] > 65_536, "{lines:?}");
+        assert_eq!(lines[0], lines[1]);
+    }
+}

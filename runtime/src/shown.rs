@@ -1,6 +1,7 @@
 //! Numbers as people read them.
 
 use core::fmt::{Debug, Display, Formatter, Result};
+use num_traits::float::FloatCore;
 
 /// Sizes that are written without an exponent.
 const PLAIN: core::ops::RangeInclusive<f64> = 1e-6..=1e6;
@@ -27,7 +28,7 @@ impl Display for Number {
 
 impl Debug for Number {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        match self.is_plain() && self.0.fract() == 0.0 {
+        match self.is_plain() && FloatCore::fract(self.0) == 0.0 {
             true => write!(f, "{:?}", self.0),
             false => write!(f, "{self}"),
         }

@@ -12,6 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const BITS: usize = 64;
 /// Most cells that are looked at.
 const MOST_CELLS: usize = 2048;
+/// Most halvings of each variable: a cell that is smaller holds a zero that is touched, or something like it.
+const DEEPEST: usize = 24;
 /// Most variables that are subdivided: cells grow with their power.
 const MOST_VARIABLES: usize = 3;
 /// What a cell costs in term operations, beside that of each term.
@@ -46,11 +48,12 @@ pub fn is_positive(
 
 fn covers(expression: &Expr, axes: Vec<Axis>) -> bool {
     let cost = COST.0 + COST.1 * expression.terms().len() as u64;
-    let mut open = vec![axes];
+    let deepest = DEEPEST * axes.len();
+    let mut open = vec![(axes, 0)];
     let mut seen = 0;
-    while let Some(cell) = open.pop() {
+    while let Some((cell, depth)) = open.pop() {
         seen += 1;
-        if seen > MOST_CELLS || !budget::spend(cost) {
+        if seen > MOST_CELLS || depth > deepest || !budget::spend(cost) {
             return false;
         }
         let mut enclosure = Enclosure::new(BITS);
@@ -67,7 +70,7 @@ fn covers(expression: &Expr, axes: Vec<Axis>) -> bool {
         if !middle.of(expression).is_positive() {
             return false;
         }
-        open.extend(halves(cell));
+        open.extend(halves(cell).map(|half| (half, depth + 1)));
     }
     true
 }

@@ -31,15 +31,15 @@ fn joints_of_machines_are_proved_by_algebra_alone() {
     }
 }
 
-/// A value inside the range; without ranges each is smaller than the one before, as `require a > b;` wants it.
-fn parameters(joint: &Derived) -> Vec<f64> {
+/// A value inside the range; without both ends each is smaller than the one before, as `require a > b;` wants it, and in proportion to `size`.
+fn parameters(joint: &Derived, size: f64) -> Vec<f64> {
     let parameters = joint.spec.parameters.iter().enumerate();
     let value = |(n, parameter): (usize, &hamel_codegen::model::Parameter)| {
         let end = |end: &Option<hamel_codegen::model::End>| end.as_ref()?.value.to_f64();
         let index = u32::try_from(n).expect("few parameters");
         match (end(&parameter.range.lower), end(&parameter.range.upper)) {
             (Some(low), Some(high)) => 0.5 * (low + high),
-            _ => 1.75 * 0.7_f64.powi(index.cast_signed()),
+            _ => size * 0.7_f64.powi(index.cast_signed()),
         }
     };
     parameters.map(value).collect()
@@ -51,9 +51,10 @@ fn no_law_of_these_joints_is_violated() {
         let mut held = 0;
         for n in 0..6_u32 {
             let size = [0.4, 1.3, 7.0][n as usize % 3];
+            let scale = if n < 3 { 1.75 } else { 17.5 };
             let dimensions = u32::try_from(dimensions(&joint.spec)).expect("few dimensions");
             let point = Point {
-                parameters: parameters(&joint),
+                parameters: parameters(&joint, scale),
                 // No number occurs twice, and none is a special one.
                 chart: (0..dimensions)
                     .map(|k| size * (1.0 + 1.7 * f64::from(n + 5 * k)).sin())
@@ -67,6 +68,6 @@ fn no_law_of_these_joints_is_violated() {
         }
         // Points of a manifold by relations are not chosen freely.
         let by_relations = !joint.spec.manifold.value.declared().is_empty();
-        assert!(held > 3 || by_relations, "{file}: {held} points judged");
+        assert!(held > 1 || by_relations, "{file}: {held} points judged");
     }
 }
