@@ -135,7 +135,9 @@ impl<'a> Domain<'a> {
         let has_sign = |e: &Expr| self.signs.is_positive(e) || self.signs.is_positive(&-e);
         self.signs.is_positive(expression)
             || self.signs.is_positive(&normal)
-            || normal.polynomial_root().is_some_and(|root| has_sign(&root))
+            || [expression, &normal]
+                .iter()
+                .any(|e| e.polynomial_root().is_some_and(|root| has_sign(&root)))
             || self.signs.is_positive_on_cells(&normal)
     }
 

@@ -50,24 +50,23 @@ fn covers(expression: &Expr, axes: Vec<Axis>) -> bool {
     let cost = COST.0 + COST.1 * expression.terms().len() as u64;
     let deepest = DEEPEST * axes.len();
     let mut open = vec![(axes, 0)];
+    let mut enclosure = Enclosure::new(BITS);
     let mut seen = 0;
     while let Some((cell, depth)) = open.pop() {
         seen += 1;
         if seen > MOST_CELLS || depth > deepest || !budget::spend(cost) {
             return false;
         }
-        let mut enclosure = Enclosure::new(BITS);
         cell.iter()
             .for_each(|(symbol, range)| enclosure.bind(symbol, range.clone()));
         if enclosure.of(expression).is_positive() {
             continue;
         }
         // A middle where it is not positive settles the matter.
-        let mut middle = Enclosure::new(BITS);
         for (symbol, range) in &cell {
-            middle.bind(symbol, Interval::point(range.middle()));
+            enclosure.bind(symbol, Interval::point(range.middle()));
         }
-        if !middle.of(expression).is_positive() {
+        if !enclosure.of(expression).is_positive() {
             return false;
         }
         open.extend(halves(cell).map(|half| (half, depth + 1)));

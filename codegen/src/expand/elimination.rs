@@ -3,6 +3,7 @@
 
 use crate::domain::Domain;
 use crate::expr::Expr;
+use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 
 /// Most terms of det(YᵀY).
@@ -93,7 +94,9 @@ impl Eliminated {
         let operations = Matrix::from_fn(rows.len(), self.rows.len(), |i, j| {
             self.operations[rows[i]][j].clone()
         });
-        let of_rest = pseudo_inverse(&rest, domain)?.times(&operations);
+        let good =
+            |gram: &Expr| gram.terms().len() <= LONGEST_GRAM && domain.nonzero(gram).is_some();
+        let of_rest = pseudo_inverse(&rest, domain.ideal(), good)?.times(&operations);
         let entry = |i: usize, n: usize| match left.iter().position(|j| *j == i) {
             Some(place) => of_rest.at(place, n).clone(),
             None => self.of_pivot(i, n, &left, &of_rest),
@@ -115,18 +118,18 @@ impl Eliminated {
     }
 }
 
-/// `(YᵀY)⁻¹Yᵀ`, where det(YᵀY) is short and never 0; no columns have one without rows.
-fn pseudo_inverse(y: &Matrix, domain: &Domain<'_>) -> Option<Matrix> {
-    if y.columns() == 0 {
-        return Some(Matrix::zeros(0, y.rows()));
+/// `(MᵀM)⁻¹Mᵀ`; `None` where det(MᵀM) vanishes, or is not good. No columns have one without rows.
+pub fn pseudo_inverse(m: &Matrix, ideal: &Ideal, good: impl Fn(&Expr) -> bool) -> Option<Matrix> {
+    if m.columns() == 0 {
+        return Some(Matrix::zeros(0, m.rows()));
     }
-    let simplify = |e: &Expr| domain.ideal().normal_form(e);
-    let gram = domain.ideal().normal_forms(&y.transpose().times(y));
+    let simplify = |e: &Expr| ideal.normal_form(e);
+    let gram = ideal.normal_forms(&m.transpose().times(m));
     let determinant = gram.determinant(&simplify);
-    if determinant.terms().len() > LONGEST_GRAM {
+    let inverse = determinant.recip()?;
+    if !good(&determinant) {
         return None;
     }
-    domain.nonzero(&determinant)?;
-    let inverse = gram.adjugate(&simplify).scale(&determinant.recip()?);
-    Some(inverse.times(&y.transpose()))
+    let adjugate = gram.adjugate(&simplify);
+    Some(adjugate.times(&m.transpose()).scale(&inverse))
 }

@@ -190,7 +190,11 @@ impl Solver<'_, '_> {
         if let Some(inverse) = self.short_left_inverse() {
             return Some(solve(&inverse.matrix, &rests));
         }
-        let whole = || pseudo_inverse(self.twist_map, self.domain.ideal(), LONGEST_GRAM);
+        let whole = || {
+            elimination::pseudo_inverse(self.twist_map, self.domain.ideal(), |gram| {
+                gram.terms().len() <= LONGEST_GRAM
+            })
+        };
         if let Some(inverse) = budget::scope(GRAM_LIMIT, whole).ok().flatten() {
             return Some(solve(&inverse, &rests));
         }
@@ -213,7 +217,7 @@ impl Solver<'_, '_> {
     /// A left inverse of X that is as simple as the manifold allows: from rows of X, or of X in the child frame, whose determinant is a
     /// constant of one term; from rows whose determinant is short and never 0; by elimination; else `(XᵀX)⁻¹Xᵀ`. `None` where even det(XᵀX) vanishes.
     fn left_inverse(&self) -> Option<LeftInverse> {
-        let whole = || pseudo_inverse(self.twist_map, self.domain.ideal(), usize::MAX);
+        let whole = || elimination::pseudo_inverse(self.twist_map, self.domain.ideal(), |_| true);
         let eliminated = || {
             let in_parent = elimination::left_inverse(self.twist_map, self.domain);
             let in_child = || elimination::left_inverse(self.child, self.domain);
@@ -287,22 +291,6 @@ const LONGEST_PIVOT: usize = 2;
 const LONGEST_GRAM: usize = 6;
 /// Most term operations for finding that out.
 const GRAM_LIMIT: u64 = 100_000;
-
-/// `(MᵀM)⁻¹Mᵀ`; `None` where det(MᵀM) vanishes, or has more terms than that.
-fn pseudo_inverse(m: &Matrix, ideal: &Ideal, longest: usize) -> Option<Matrix> {
-    let simplify = |e: &Expr| ideal.normal_form(e);
-    let gram = ideal.normal_forms(&m.transpose().times(m));
-    let determinant = gram.determinant(&simplify);
-    let inverse = determinant.recip()?;
-    if determinant.terms().len() > longest {
-        return None;
-    }
-    Some(
-        gram.adjugate(&simplify)
-            .times(&m.transpose())
-            .scale(&inverse),
-    )
-}
 
 /// Puts the columns at the given places of a wider matrix of zeros.
 fn spread_columns(m: &Matrix, places: &[usize], width: usize) -> Matrix {

@@ -5,12 +5,20 @@ use crate::expr::{Application, Atom, Expr, Function, Monomial, Number, Symbol};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
+/// Most values of functions that are kept beyond a change of the intervals.
+const MOST_VALUES: usize = 1 << 14;
+
+/// Words, sign and exponent of both ends of an interval.
+type Ends = [(Vec<u64>, bool, i32); 2];
+
 /// An interval for each symbol, and the functions of them met so far. A symbol without one may be any number.
 #[derive(Clone, Debug)]
 pub struct Enclosure {
     unit: Interval,
     bound: BTreeMap<Symbol, Interval>,
     functions: RefCell<HashMap<Atom, Interval>>,
+    /// Values by the arguments' ends: cells of a partition share most of their sides.
+    values: RefCell<HashMap<(Function, Vec<Ends>), Interval>>,
 }
 
 impl Enclosure {
@@ -20,6 +28,7 @@ impl Enclosure {
             unit: Interval::point(Precise::integer(1, bits)),
             bound: BTreeMap::new(),
             functions: RefCell::default(),
+            values: RefCell::default(),
         }
     }
 
@@ -75,7 +84,25 @@ impl Enclosure {
     fn apply(&self, application: &Application) -> Interval {
         let arguments = application.arguments.iter();
         let arguments: Vec<Interval> = arguments.map(|argument| self.of(argument)).collect();
-        let function: Function = application.function;
-        self.unit.function(function, &arguments)
+        let value = || self.unit.function(application.function, &arguments);
+        let ends: Option<Vec<Ends>> = arguments.iter().map(ends).collect();
+        let Some(ends) = ends else {
+            return value();
+        };
+        let key = (application.function, ends);
+        if let Some(known) = self.values.borrow().get(&key) {
+            return known.clone();
+        }
+        let value = value();
+        let mut values = self.values.borrow_mut();
+        if values.len() >= MOST_VALUES {
+            values.clear();
+        }
+        values.insert(key, value.clone());
+        value
     }
+}
+
+fn ends(interval: &Interval) -> Option<Ends> {
+    Some([interval.low().parts()?, interval.high().parts()?])
 }

@@ -54,6 +54,12 @@ impl Precise {
             })
     }
 
+    /// Words, sign and exponent, by which equal numbers are found again; `None` of what is not finite.
+    pub fn parts(&self) -> Option<(Vec<u64>, bool, i32)> {
+        let (words, _, sign, exponent, _) = self.value.as_raw_parts()?;
+        Some((words.to_vec(), sign == Sign::Neg, exponent))
+    }
+
     /// The circle constant.
     pub fn pi(bits: usize) -> Self {
         let pi = with_constants(|constants| constants.pi(bits, ROUNDING));

@@ -114,3 +114,45 @@ fn expressions_of_few_bounded_variables_are_bounded_on_cells() {
     ));
     assert!(!check("(a: 1 in 0..=1)", "1 + a * cos(q)"));
 }
+
+#[test]
+fn powers_of_sines_are_bounded_by_those_of_multiples() {
+    let positive = "(a: m > 0, b: m > 0)";
+    // r² + r'² of r = a + b cos 2q is at least (a − b)².
+    let arc = "pow(a + b * cos(2 * q), 2) + pow(2 * b * sin(2 * q), 2)";
+    assert!(check_with(positive, "require a > b;", arc));
+    assert!(!check_with(
+        positive,
+        "",
+        "pow(a + b * cos(q), 2) + pow(b * sin(q), 2)"
+    ));
+    assert!(check(
+        positive,
+        "a * a * cos(q) * cos(q) + b * b * sin(q) * sin(q)"
+    ));
+    assert!(!check(
+        positive,
+        "a * a * cos(q) * cos(q) - b * b * sin(q) * sin(q)"
+    ));
+    assert!(check(
+        positive,
+        "1 + pow(a * (cos(q) * cos(q) - sin(q) * sin(q)) / b, 2)"
+    ));
+    assert!(check("", "3 - 4 * sin(q) * cos(q)"));
+    assert!(!check("", "2 - 4 * sin(q) * cos(q)"));
+    assert!(!check("", "1.9999 - 4 * sin(q) * cos(q)"));
+    assert!(check(
+        "(bend: rad in 0..1)",
+        "cos(bend) * cos(q) * cos(q) + sin(q) * sin(q)"
+    ));
+    assert!(!check(
+        "(bend: rad in 0..2)",
+        "cos(bend) * cos(q) * cos(q) + sin(q) * sin(q)"
+    ));
+}
+
+#[test]
+fn squares_of_what_has_a_sign_are_positive() {
+    assert!(check("", "pow(1.0000000001 + sin(q), 2)"));
+    assert!(!check("", "pow(0.9999999999 + sin(q), 2)"));
+}

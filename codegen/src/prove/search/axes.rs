@@ -140,7 +140,13 @@ fn middle(low: f64, high: f64) -> f64 {
 
 fn between_sizes(low: f64, high: f64) -> f64 {
     if low == 0.0 {
-        return if high > 2.0 { 1.0 } else { high / 2.0 };
+        // Sizes below any number are infinitely many: few cuts lead far down.
+        let square = high * high;
+        return match high > 2.0 {
+            true => 1.0,
+            false if high > 0.5 || square < f64::MIN_POSITIVE => high / 2.0,
+            false => square,
+        };
     }
     match high > 4.0 * low {
         true => low.sqrt() * high.sqrt(),

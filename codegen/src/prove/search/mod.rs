@@ -3,10 +3,11 @@
 //! A place refutes an identity where an enclosure of its residual excludes 0. That many places agree proves nothing: a spec that
 //! wants to rest on it has to say so, by `unproved`. The search therefore looks everywhere that it can:
 //! at random points near home, far from it and beside each exception; in cells of every sign pattern of exceptions and
-//! requirements; and where enclosures leave room for a large residual, however narrow.
+//! requirements; where the functions of the residual change fastest; and where enclosures leave room for a large residual, however narrow.
 
 mod axes;
 mod cells;
+mod features;
 mod narrow;
 mod place;
 
@@ -114,10 +115,9 @@ impl Search<'_> {
             }
         }
         // Where a residual is largest says more than where it was first met.
-        refuting = match self.narrow() {
-            Some(place) => Place::larger(refuting, place),
-            None => refuting,
-        };
+        for place in [self.features(), self.narrow()].into_iter().flatten() {
+            refuting = Place::larger(refuting, place);
+        }
         let (beyond, unreached) = self.cells();
         if let Some(place) = beyond {
             refuting = Place::larger(refuting, place);

@@ -27,10 +27,13 @@ impl Search<'_> {
             return None;
         }
         let mut sampler = Sampler::new(self.identities.spec, super::BITS).single();
-        if complete && whole.len() <= MOST_AXES {
-            return self.largest_in(whole, &sampler.anywhere()?, MOST_CELLS);
-        }
         let mut found = None;
+        if complete && whole.len() <= MOST_AXES {
+            found = self.largest_in(whole.clone(), &sampler.anywhere()?, MOST_CELLS);
+            if whole.len() == 1 {
+                return found;
+            }
+        }
         for _ in 0..LINES {
             let Some(base) = sampler.point() else {
                 break;

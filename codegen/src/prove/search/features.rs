@@ -1,0 +1,114 @@
+//! Narrow features by their cause: functions change fastest where their arguments are 0 or extremal. Along each variable such places are
+//! found by bisection with enclosures, and the claim is tried there, however narrow the feature is.
+
+use super::axes::{self, Axis, Cell as Box, Side};
+use super::place::Place;
+use super::{Said, Search};
+use crate::expr::{Atom, Expr, budget};
+use crate::precise::{Enclosure, Point, Sampler};
+use std::collections::BTreeSet;
+
+/// Bits of the ends of cells, enough for the middles of doubles not to be lost in what cancels.
+const BITS: usize = 256;
+/// Most cells of one function along one line.
+const MOST_CELLS: usize = 300;
+/// Most zeros of one function along one line.
+const MOST_ZEROS: usize = 4;
+/// Most arguments of functions that are looked at.
+const MOST_ARGUMENTS: usize = 12;
+/// Points through which the lines go.
+const LINES: usize = 2;
+
+impl Search<'_> {
+    /// The place with the largest residual that was found.
+    pub(super) fn features(&self) -> Option<Place> {
+        let mut arguments = BTreeSet::new();
+        for (entry, normal) in self.open {
+            collect(entry, &mut arguments);
+            collect(normal, &mut arguments);
+        }
+        let mut found = None;
+        let mut sampler = Sampler::new(self.identities.spec, super::BITS).single();
+        for _ in 0..LINES {
+            let Some(base) = sampler.point() else {
+                break;
+            };
+            for argument in arguments.iter().take(MOST_ARGUMENTS) {
+                let (whole, _) = axes::whole(self.identities.spec, &argument.symbols());
+                for side in whole {
+                    if let Some(place) = self.along(argument, &side, &base) {
+                        found = Place::larger(found, place);
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// Tries the claim where the argument is 0 or extremal on the line.
+    fn along(&self, argument: &Expr, side: &Side, base: &Point) -> Option<Place> {
+        let slope = match &side.axis {
+            Axis::Real(symbol) => Some(argument.derivative(symbol)),
+            Axis::Angle(..) => None,
+        };
+        let functions = [Some(argument.clone()), slope];
+        let mut found = None;
+        for function in functions
+            .iter()
+            .flatten()
+            .filter(|f| !f.symbols().is_empty())
+        {
+            for cell in self.zeros(function, side, base) {
+                let mut point = base.clone();
+                axes::move_to_middle(&mut point, &cell);
+                if self.admits(&point)
+                    && let Said::Refutes(place) = self.at(&point)
+                {
+                    found = Place::larger(found, place);
+                }
+            }
+        }
+        found
+    }
+
+    /// Cells of the line, as small as doubles allow, in which the function may be 0.
+    fn zeros(&self, function: &Expr, side: &Side, base: &Point) -> Vec<Box> {
+        let mut enclosure = Enclosure::new(BITS);
+        for symbol in self.identities.spec.symbols() {
+            let value = base.value(&symbol).to_bits(BITS);
+            enclosure.bind(&symbol, super::room(&value));
+        }
+        let mut open = vec![vec![side.clone()]];
+        let mut found = vec![];
+        for _ in 0..MOST_CELLS {
+            let Some(cell) = open.pop() else {
+                break;
+            };
+            if found.len() >= MOST_ZEROS || !budget::spend(super::COST.0) {
+                break;
+            }
+            axes::bind(&mut enclosure, &cell, BITS);
+            if enclosure.of(function).excludes_zero() {
+                continue;
+            }
+            match axes::halves(&cell) {
+                Some(halves) => open.extend(halves),
+                None => found.push(cell),
+            }
+        }
+        found
+    }
+}
+
+/// The arguments of all functions in an expression, and of those in them.
+fn collect(expression: &Expr, found: &mut BTreeSet<Expr>) {
+    for atom in expression.atoms() {
+        if let Atom::Apply(application) = atom {
+            for argument in &application.arguments {
+                if !argument.symbols().is_empty() && found.insert(argument.clone()) {
+                    collect(argument, found);
+                }
+            }
+        }
+    }
+}
