@@ -104,7 +104,12 @@ impl Prover<'_> {
                     (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
                     _ => vec![],
                 });
-        known.any(|x| x == *argument || self.are_multiples(&x, argument))
+        // A quotient needs no sign; roots and logarithms do, which a multiple may not have.
+        known.any(|x| {
+            x == *argument
+                || self.ideal.vanishes(&(&x - argument))
+                || of_quotient && self.are_multiples(&x, argument)
+        })
     }
 
     /// Whether one is a multiple of the other on the manifold, by a constant that is not 0.
