@@ -5,11 +5,12 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::domain::{Critical, Domain};
 use crate::expand::task;
 use crate::expand::{self, Expansion};
-use crate::expr::Expr;
 use crate::expr::budget::{self, Exhausted};
+use crate::expr::{Expr, Rational};
 use crate::matrix::Matrix;
 use crate::model::{Declared, JointSpec, Locus};
 use crate::{prove, spec};
+use num_bigint::BigInt;
 use std::path::Path;
 
 /// Bound on symbolic work for one joint, in term operations: less than a second, also on a machine that is busy. The largest joint of
@@ -82,6 +83,9 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     name_sides(&mut spec, &expansion);
     budget::begin(task::KERNELS);
     let kernels = expand::kernels(&spec, &expansion)?;
+    if let Some(number) = expand::beyond_doubles(&kernels) {
+        return Err(vec![beyond_doubles(&spec, &number)]);
+    }
     budget::begin(task::FORMULAS);
     kernels.iter().for_each(spend_on_formulas);
     Ok(Derived {
@@ -140,6 +144,15 @@ fn series(spec: &JointSpec, expansion: &Expansion) -> (Matrix, Matrix) {
 }
 
 /// What it takes to simplify a kernel and to write it, in code and in pages: in proportion to its terms.
+fn beyond_doubles(spec: &JointSpec, number: &Rational) -> Diagnostic {
+    let bits = |n: &BigInt| n.bits().cast_signed();
+    let size = bits(&number.numer()) - bits(&number.denom());
+    let message = format!("a kernel has a number of about 2^{size}, which no double holds");
+    Diagnostic::new(spec::code::TOO_LARGE, spec.pose.span.clone(), message)
+        .label("derived from this")
+        .help("use other units: doubles are between about 2^-1022 and 2^1024")
+}
+
 fn spend_on_formulas(kernel: &Kernel) {
     let entries = kernel.outputs.iter().flat_map(Matrix::entries);
     let terms: usize = entries.map(|entry| entry.terms().len()).sum();

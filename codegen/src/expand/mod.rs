@@ -13,6 +13,7 @@ mod imperceptible;
 mod kernels;
 mod motion;
 mod nonholonomic;
+mod numbers;
 pub(crate) mod rank;
 mod steps;
 pub(crate) mod task;
@@ -23,6 +24,7 @@ pub use general::is_exponential;
 pub use kernels::kernels;
 pub use motion::{Motion, exponential, local_element};
 pub use nonholonomic::{Nonholonomic, speed_names};
+pub use numbers::beyond_doubles;
 pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
 
 use crate::algebra;

@@ -264,7 +264,7 @@ fn number_literal(value: &Rational) -> TokenStream {
     quote! { #value }
 }
 
-/// The literal of a finite value; rationals of specs are far within the range of `f64`.
+/// The literal of a finite value: numbers that doubles do not hold are refused before (`expand::beyond_doubles`).
 fn float(value: Option<f64>) -> Literal {
     Literal::f64_unsuffixed(value.filter(|value| value.is_finite()).unwrap_or(f64::MAX))
 }
