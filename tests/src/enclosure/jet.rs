@@ -203,10 +203,36 @@ impl Jet {
             (Function::Group, [x]) => x.clone(),
             (Function::Recip, [x]) => x.reciprocal(),
             (Function::Atan2, [y, x]) => y.angle(x),
+            (Function::Sinh, [x]) => x.hyperbolic().0,
+            (Function::Cosh, [x]) => x.hyperbolic().1,
+            (Function::Sech, [x]) => x.hyperbolic().1.reciprocal(),
+            (Function::Tanh, [x]) => {
+                let (sinh, cosh) = x.hyperbolic();
+                sinh.over(&cosh)
+            }
+            (Function::LnCosh, [x]) => Self::apply(Function::Ln, &[x.hyperbolic().1]),
+            (Function::Ln1p, [x, m]) => {
+                let scaled = x.times(&Self::apply(Function::Exp, std::slice::from_ref(m)));
+                let sum = Self::constant(Ball::one()).plus(&scaled);
+                Self::apply(Function::Ln, &[sum])
+            }
+            // No value depends on this scale: an exact number will do.
+            (Function::Larger, [a, b]) => {
+                let larger = a.value.to_f64().max(b.value.to_f64());
+                Self::constant(Ball::exact(larger))
+            }
             (function, [x]) if !x.varies() => Self::constant(value(function, &x.value)),
             (function, [x]) => x.mapped(|| derivatives(function, &x.value)),
             _ => Self::constant(Ball::unknown()),
         }
+    }
+
+    /// Hyperbolic sine and cosine by exponentials.
+    fn hyperbolic(&self) -> (Self, Self) {
+        let up = Self::apply(Function::Exp, std::slice::from_ref(self));
+        let down = up.reciprocal();
+        let half = Self::constant(half());
+        (up.minus(&down).times(&half), up.plus(&down).times(&half))
     }
 
     /// `atan2(self, x)`: θ_i = (x y_i − y x_i) / ρ².
