@@ -9,7 +9,7 @@ use crate::precise::{Enclosure, Point, Sampler};
 use std::collections::BTreeSet;
 
 /// Bits of the ends of cells, enough for the middles of doubles not to be lost in what cancels.
-const BITS: usize = 256;
+const BITS: usize = 128;
 /// Most cells of one function along one line.
 const MOST_CELLS: usize = 300;
 /// Most zeros of one function along one line.
@@ -37,6 +37,9 @@ impl Search<'_> {
                 let (whole, _) = axes::whole(self.identities.spec, &argument.symbols());
                 for side in whole {
                     if let Some(place) = self.along(argument, &side, &base) {
+                        if place.is_large() {
+                            return Some(place);
+                        }
                         found = Place::larger(found, place);
                     }
                 }

@@ -115,13 +115,15 @@ impl Search<'_> {
             }
         }
         // Where a residual is largest says more than where it was first met.
-        for place in [self.features(), self.narrow()].into_iter().flatten() {
+        if let Some(place) = self.narrow() {
             refuting = Place::larger(refuting, place);
         }
         let (beyond, unreached) = self.cells();
         if let Some(place) = beyond {
             refuting = Place::larger(refuting, place);
         }
+        // The dearest look, where no other found anything.
+        let refuting = refuting.or_else(|| self.features());
         match (refuting, unreached, self.agreeing.get()) {
             (Some(place), ..) => Verdict::Refuted(Box::new(place)),
             (None, Some(reason), _) => Verdict::Undecided(reason),
