@@ -257,7 +257,8 @@ impl Ideal {
         match normal {
             Ok(normal)
                 if weight(&normal) < weight(expression)
-                    && transcendental(&normal).is_subset(&transcendental(expression)) =>
+                    && angles_and_exponents(&normal)
+                        .is_subset(&angles_and_exponents(expression)) =>
             {
                 normal
             }
@@ -396,12 +397,17 @@ fn cleared(expression: &Expr, quotient: &Atom, denominator: &Expr) -> Expr {
     expression.terms().map(term).sum()
 }
 
-/// The sines, cosines, exponentials and hyperbolic functions that occur.
-fn transcendental(expression: &Expr) -> BTreeSet<Atom> {
+/// The angles and exponents of sines, cosines, exponentials and hyperbolic functions.
+fn angles_and_exponents(expression: &Expr) -> BTreeSet<Expr> {
     let algebraic = [Function::Sqrt, Function::Recip, Function::Group];
-    let is_transcendental = |atom: &Atom| matches!(atom, Atom::Apply(application) if !algebraic.contains(&application.function));
-    let functions = expression.related_functions().into_iter();
-    functions.filter(is_transcendental).collect()
+    let argument = |atom: &Atom| match atom {
+        Atom::Apply(application) if !algebraic.contains(&application.function) => {
+            application.arguments.first().cloned()
+        }
+        _ => None,
+    };
+    let functions = expression.related_functions();
+    functions.iter().filter_map(argument).collect()
 }
 
 /// Number of operations to write the expression as it stands, each function of it once.
