@@ -39,8 +39,8 @@ pub struct Signs {
     vanishing: BTreeSet<Symbol>,
     /// Polynomials in the parameters that are not negative, and whether they are positive.
     conditions: Vec<(Expr, bool)>,
-    /// Products of two of them, tried where they do not suffice one by one.
-    products: Vec<(Expr, bool)>,
+    /// The same with products of two of them, tried where they do not suffice one by one.
+    with_products: Vec<(Expr, bool)>,
     /// Coordinates whose absolute value is at most 1.
     bounded: BTreeSet<Symbol>,
     /// Scalars that form vectors of length 1.
@@ -98,7 +98,7 @@ impl Signs {
                 .map(|p| (p.symbol.clone(), p.range.clone()))
                 .collect(),
             vanishing: vanishing_parameters(spec),
-            products: products(&conditions),
+            with_products: with_products(&conditions),
             conditions,
             bounds: bounds(spec, &bounded),
             bounded,
@@ -175,12 +175,11 @@ impl Signs {
                 },
             }
         }
-        let single = || self.conditions.iter();
-        let outweighs = |conditions: &[&(Expr, bool)]| {
+        let outweighs = |conditions: &[(Expr, bool)]| {
             self.exceeds_zero(&constant, strict, conditions, MOST_CONDITIONS, &mut 0)
         };
-        outweighs(&single().collect::<Vec<_>>())
-            || outweighs(&single().chain(&self.products).collect::<Vec<_>>())
+        // Without conditions there are no products either.
+        outweighs(&self.conditions) || !self.conditions.is_empty() && outweighs(&self.with_products)
     }
 
     /// Whether the expression is `D + a · n` with a unit vector n and D > |a|: then D and D² − |a|² are positive.
@@ -340,7 +339,7 @@ impl Signs {
         &self,
         rest: &Expr,
         enough: bool,
-        conditions: &[&(Expr, bool)],
+        conditions: &[(Expr, bool)],
         left: usize,
         tries: &mut usize,
     ) -> bool {
@@ -421,14 +420,14 @@ fn conditions_of(symbol: &Symbol, range: &Interval) -> Vec<(Expr, bool)> {
     above.chain(below).collect()
 }
 
-/// The products of two conditions each, squares among them.
-fn products(conditions: &[(Expr, bool)]) -> Vec<(Expr, bool)> {
+/// The conditions, and the products of two each, squares among them.
+fn with_products(conditions: &[(Expr, bool)]) -> Vec<(Expr, bool)> {
     let first = &conditions[..conditions.len().min(MOST_FACTORS)];
     let with_later = first.iter().enumerate().flat_map(|(n, (a, strict))| {
         let later = first[n..].iter();
         later.map(move |(b, also)| (a * b, *strict && *also))
     });
-    with_later.collect()
+    conditions.iter().cloned().chain(with_later).collect()
 }
 
 /// The parameters that are positive.

@@ -1,7 +1,7 @@
 //! Where a determinant is zero: home and quarter turns from it are tried, by exact arithmetic, so that an error of a rank can name a place.
 
-use crate::domain::Domain;
-use crate::expr::{Atom, Expr, Function, Monomial, Rational, Symbol};
+use crate::domain::{Critical, Domain};
+use crate::expr::{Expr, Monomial, Rational, Symbol};
 use crate::manifold::{Factor, Kind};
 use crate::model::JointSpec;
 use std::collections::{BTreeMap, BTreeSet};
@@ -88,22 +88,12 @@ fn choices(
     }
 }
 
-/// Whether no quotient of the function is one by zero there.
+/// Whether no function in it, a quotient or a root, has a singular argument there.
 fn is_regular(function: &Expr, place: &Place, domain: &Domain<'_>) -> bool {
-    let vanishes = |e: &Expr| domain.ideal().vanishes(&e.substitute(place));
-    function.atoms().iter().all(|atom| match atom {
-        Atom::Apply(application) => {
-            let singular = matches!(
-                application.function,
-                Function::Recip | Function::Sqrt | Function::Ln | Function::Atan2
-            );
-            let mut arguments = application.arguments.iter();
-            arguments.all(|argument| {
-                !(singular && vanishes(argument)) && is_regular(argument, place, domain)
-            })
-        }
-        Atom::Symbol(_) => true,
-    })
+    let mut singular = BTreeSet::new();
+    Critical::collect(function, &[], &mut singular);
+    let mut arguments = singular.iter().flat_map(|critical| &critical.arguments);
+    arguments.all(|argument| !domain.ideal().vanishes(&argument.substitute(place)))
 }
 
 /// Whether every declared exception is shown not to hold there.

@@ -1,11 +1,11 @@
 //! Narrow features by their cause: functions change fastest where their arguments are 0 or extremal. Along each variable such places are
 //! found by bisection with enclosures, and the claim is tried there, however narrow the feature is.
 
+use super::Search;
 use super::axes::{self, Axis, Cell as Box, Side};
 use super::place::Place;
-use super::{Said, Search};
 use crate::expr::{Atom, Expr, budget};
-use crate::precise::{Enclosure, Point, Sampler};
+use crate::precise::{Point, Sampler};
 use std::collections::BTreeSet;
 
 /// Bits of the ends of cells, enough for the middles of doubles not to be lost in what cancels.
@@ -62,11 +62,7 @@ impl Search<'_> {
             .filter(|f| !f.symbols().is_empty())
         {
             for cell in self.zeros(function, side, base) {
-                let mut point = base.clone();
-                axes::move_to_middle(&mut point, &cell);
-                if self.admits(&point)
-                    && let Said::Refutes(place) = self.at(&point)
-                {
+                if let Some(place) = self.fails_in(&cell, base) {
                     found = Place::larger(found, place);
                 }
             }
@@ -76,11 +72,7 @@ impl Search<'_> {
 
     /// Cells of the line, as small as doubles allow, in which the function may be 0.
     fn zeros(&self, function: &Expr, side: &Side, base: &Point) -> Vec<Box> {
-        let mut enclosure = Enclosure::new(BITS);
-        for symbol in self.identities.spec.symbols() {
-            let value = base.value(&symbol).to_bits(BITS);
-            enclosure.bind(&symbol, super::room(&value));
-        }
+        let mut enclosure = self.near(base, BITS);
         let mut open = vec![vec![side.clone()]];
         let mut found = vec![];
         for _ in 0..MOST_CELLS {

@@ -167,6 +167,26 @@ impl Search<'_> {
         said
     }
 
+    /// The middle of the cell, all else as in `base`, where it belongs to the domain and the claim fails there.
+    fn fails_in(&self, cell: &[axes::Side], base: &Point) -> Option<Place> {
+        let mut point = base.clone();
+        axes::move_to_middle(&mut point, cell);
+        match self.admits(&point).then(|| self.at(&point)) {
+            Some(Said::Refutes(place)) => Some(place),
+            _ => None,
+        }
+    }
+
+    /// Every symbol near its value at the point, in so many bits: for who then frees some of them.
+    fn near(&self, base: &Point, bits: usize) -> Enclosure {
+        let mut enclosure = Enclosure::new(bits);
+        for symbol in self.identities.spec.symbols() {
+            let value = base.value(&symbol).to_bits(bits);
+            enclosure.bind(&symbol, room(&value));
+        }
+        enclosure
+    }
+
     /// The point with as much room as it may miss the manifold by.
     fn around(&self, point: &Point) -> Enclosure {
         let mut enclosure = Enclosure::new(point.bits());

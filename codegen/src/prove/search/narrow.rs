@@ -1,11 +1,11 @@
 //! Narrow features: cells in which an enclosure leaves room for the largest residual are cut first, so that the search ends where
 //! a bump is, however narrow.
 
+use super::Search;
 use super::axes::{self, Cell as Box};
 use super::place::Place;
-use super::{Said, Search};
 use crate::expr::{Symbol, budget};
-use crate::precise::{Enclosure, Point, Sampler};
+use crate::precise::{Point, Sampler};
 use std::collections::BTreeSet;
 
 /// Bits of the ends of cells.
@@ -54,11 +54,7 @@ impl Search<'_> {
         for _ in 0..most {
             let largest = (0..open.len()).max_by(|a, b| open[*a].0.total_cmp(&open[*b].0))?;
             let (_, cell) = open.swap_remove(largest);
-            let mut point = base.clone();
-            axes::move_to_middle(&mut point, &cell);
-            if self.admits(&point)
-                && let Said::Refutes(place) = self.at(&point)
-            {
+            if let Some(place) = self.fails_in(&cell, base) {
                 found = Place::larger(found, place);
             }
             let large = found.as_ref().is_some_and(Place::is_large);
@@ -78,11 +74,7 @@ impl Search<'_> {
 
     /// The binary logarithm of the largest residual that an enclosure does not exclude in the cell.
     fn room_in(&self, cell: &Box, base: &Point) -> f64 {
-        let mut enclosure = Enclosure::new(BITS);
-        for symbol in self.identities.spec.symbols() {
-            let value = base.value(&symbol).to_bits(BITS);
-            enclosure.bind(&symbol, super::room(&value));
-        }
+        let mut enclosure = self.near(base, BITS);
         axes::bind(&mut enclosure, cell, BITS);
         let sizes = self.open.iter().map(|(entry, normal)| {
             let sizes = [entry, normal].map(|e| enclosure.of(e).largest_size().log2());
