@@ -64,6 +64,11 @@ fn misnamed(spec: &JointSpec, file: &str) -> Option<Diagnostic> {
 }
 
 fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+    budget::begin(task::PROOF);
+    let wrong = prove::wrong_conditions(&spec);
+    if !wrong.is_empty() {
+        return Err(wrong);
+    }
     expand::confine(&mut spec);
     let positive = crate::domain::positive_parameters(&spec);
     let vanishing = crate::domain::vanishing_parameters(&spec);

@@ -1,7 +1,8 @@
 //! Enclosures of expressions: what they can be while each symbol stays in an interval of its own.
 
 use super::{Interval, Precise};
-use crate::expr::{Application, Atom, Expr, Function, Monomial, Number, Symbol};
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Number, Rational, Symbol};
+use num_traits::One;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
@@ -46,25 +47,35 @@ impl Enclosure {
 
     /// What the expression can be.
     pub fn of(&self, expression: &Expr) -> Interval {
-        self.of_terms(expression).0
+        let terms = expression.terms().map(|(m, c)| self.term(m, c));
+        let sum = terms.reduce(|sum, term| sum.plus(&term));
+        sum.unwrap_or_else(|| self.zero())
     }
 
     /// What the expression can be, and what the sum of the sizes of its terms can be: beside that a residual is small or not.
     pub fn of_terms(&self, expression: &Expr) -> (Interval, Interval) {
-        let zero = Interval::point(self.unit.low().same(0));
-        expression
-            .terms()
-            .fold((zero.clone(), zero), |(sum, sizes), (m, coefficient)| {
-                let term = self.unit.rational(coefficient).times(&self.monomial(m));
-                (sum.plus(&term), sizes.plus(&term.abs()))
-            })
+        let mut terms = expression.terms().map(|(m, c)| self.term(m, c));
+        let Some(first) = terms.next() else {
+            return (self.zero(), self.zero());
+        };
+        let start = (first.clone(), first.abs());
+        terms.fold(start, |(sum, sizes), term| {
+            (sum.plus(&term), sizes.plus(&term.abs()))
+        })
     }
 
-    fn monomial(&self, monomial: &Monomial) -> Interval {
-        let start = self.unit.clone();
-        monomial.factors().fold(start, |product, (atom, power)| {
-            product.times(&self.atom(atom).power(power))
-        })
+    fn zero(&self) -> Interval {
+        Interval::point(self.unit.low().same(0))
+    }
+
+    fn term(&self, monomial: &Monomial, coefficient: &Rational) -> Interval {
+        let powers = monomial
+            .factors()
+            .map(|(atom, power)| self.atom(atom).power(power));
+        let coefficient = (!coefficient.is_one()).then(|| self.unit.rational(coefficient));
+        let factors = coefficient.into_iter().chain(powers);
+        let product = factors.reduce(|product, factor| product.times(&factor));
+        product.unwrap_or_else(|| self.unit.clone())
     }
 
     fn atom(&self, atom: &Atom) -> Interval {

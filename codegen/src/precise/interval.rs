@@ -1,15 +1,25 @@
 //! Interval arithmetic with outward rounding: an enclosure of every value that an expression takes.
 //!
 //! The ends are binary floating-point numbers with exponents of 32 bits, so that products of very small or very large numbers
-//! neither vanish nor overflow. The arithmetic below rounds to nearest; each end is moved outwards by more than its rounding error.
+//! neither vanish nor overflow. Sums, products and quotients are rounded outwards. Functions round to nearest; their ends are moved outwards
+//! by more than that error.
 //! Where a function has no value, or an end overflows, the enclosure is unbounded and says nothing.
 
 use super::Precise;
+use super::number::End;
 use crate::expr::{Function, Number, Rational};
 
-/// An end is moved outwards by 2² units in the last place: arithmetic errs by half of one, functions by one, and a rational with
-/// long numerator and denominator by two and a half.
+/// An end of a function is moved outwards by 2² units in the last place: functions err by one, and a rational with long numerator and
+/// denominator by two and a half.
 const OUTWARD_BITS: i32 = 2;
+
+/// Where an interval lies beside 0, which may be an end of it.
+#[derive(Clone, Copy, Eq, PartialEq)]
+enum Side {
+    Below,
+    Both,
+    Above,
+}
 
 /// A closed interval of real numbers; an end may be infinite.
 #[derive(Clone, Debug)]
@@ -289,12 +299,42 @@ impl Interval {
 
     fn square(&self) -> Self {
         let size = self.abs();
-        let low = &size.low * &size.low;
-        let square = Self::outward(low, &size.high * &size.high);
-        let zero = self.low.same(0);
         Self {
-            low: larger(square.low, zero),
-            high: square.high,
+            low: product(&size.low, &size.low, End::Low),
+            high: product(&size.high, &size.high, End::High),
+        }
+    }
+
+    fn side(&self) -> Side {
+        match (self.low.is_negative(), self.high.is_negative()) {
+            (false, _) => Side::Above,
+            (_, true) => Side::Below,
+            _ if self.high.is_zero() => Side::Below,
+            _ => Side::Both,
+        }
+    }
+
+    /// The product by an interval on one side of 0, which is `self`.
+    fn sided_product(&self, other: &Self) -> Self {
+        if self.side() == Side::Below {
+            return self.negative().sided_product(other).negative();
+        }
+        let (near, far) = (&self.low, &self.high);
+        let of_low = if other.low.is_negative() { far } else { near };
+        let of_high = if other.high.is_negative() { near } else { far };
+        Self {
+            low: product(of_low, &other.low, End::Low),
+            high: product(of_high, &other.high, End::High),
+        }
+    }
+
+    /// The product of two intervals with 0 inside.
+    fn mixed_product(&self, other: &Self) -> Self {
+        let low = |a, b| product(a, b, End::Low);
+        let high = |a, b| product(a, b, End::High);
+        Self {
+            low: smaller(low(&self.low, &other.high), low(&self.high, &other.low)),
+            high: larger(high(&self.low, &other.low), high(&self.high, &other.high)),
         }
     }
 }
@@ -343,21 +383,13 @@ fn down(value: &Precise) -> Precise {
     }
 }
 
-/// The product, but not 0 where it only underflows.
-fn product(a: &Precise, b: &Precise) -> Precise {
-    if a.is_zero() || b.is_zero() {
+/// An end of the product of two ends.
+fn product(a: &Precise, b: &Precise, end: End) -> Precise {
+    match a.is_zero() || b.is_zero() {
         // Also beside an infinite end: 0 times every number is 0.
-        return a.same(0);
+        true => a.same(0),
+        false => a.product_toward(b, end),
     }
-    not_lost(a * b, a.is_negative() != b.is_negative())
-}
-
-/// The quotient by a number that is not 0, but not 0 where it only underflows.
-fn quotient(a: &Precise, b: &Precise) -> Precise {
-    if a.is_zero() {
-        return a.same(0);
-    }
-    not_lost(a / b, a.is_negative() != b.is_negative())
 }
 
 fn not_lost(value: Precise, negative: bool) -> Precise {
@@ -380,36 +412,29 @@ impl Number for Interval {
     }
 
     fn plus(&self, other: &Self) -> Self {
-        Self::outward(&self.low + &other.low, &self.high + &other.high)
+        Self {
+            low: self.low.sum_toward(&other.low, End::Low),
+            high: self.high.sum_toward(&other.high, End::High),
+        }
     }
 
     fn times(&self, other: &Self) -> Self {
-        let (a, b, c, d) = (&self.low, &self.high, &other.low, &other.high);
-        let products = match (self.is_positive(), other.is_positive()) {
-            (true, true) => [product(a, c), product(b, d)].to_vec(),
-            _ => [product(a, c), product(a, d), product(b, c), product(b, d)].to_vec(),
-        };
-        let start = products[0].clone();
-        let low = products.iter().cloned().fold(start.clone(), smaller);
-        let high = products.into_iter().fold(start, larger);
-        Self::outward(low, high)
+        match (self.side(), other.side()) {
+            (Side::Both, Side::Both) => self.mixed_product(other),
+            (Side::Both, _) => other.sided_product(self),
+            _ => self.sided_product(other),
+        }
     }
 
     fn over(&self, other: &Self) -> Self {
         if !other.excludes_zero() || !self.is_bounded() || !other.is_bounded() {
             return Self::whole(self.bits());
         }
-        let (a, b, c, d) = (&self.low, &self.high, &other.low, &other.high);
-        let quotients = [
-            quotient(a, c),
-            quotient(a, d),
-            quotient(b, c),
-            quotient(b, d),
-        ];
-        let start = quotients[0].clone();
-        let low = quotients.iter().cloned().fold(start.clone(), smaller);
-        let high = quotients.into_iter().fold(start, larger);
-        Self::outward(low, high)
+        let inverse = |x: &Precise, end| x.same(1).quotient_toward(x, end);
+        self.times(&Self {
+            low: inverse(&other.high, End::Low),
+            high: inverse(&other.low, End::High),
+        })
     }
 
     fn function(&self, function: Function, arguments: &[Self]) -> Self {
@@ -435,14 +460,17 @@ impl Number for Interval {
 
     fn power(&self, exponent: i32) -> Self {
         let size = exponent.unsigned_abs();
-        let one = Self::point(self.low.same(1));
-        let squares = (0..size / 2).fold(one.clone(), |product, _| product.times(&self.square()));
-        let power = match size % 2 {
-            0 => squares,
-            _ => squares.times(self),
+        let one = || Self::point(self.low.same(1));
+        let squares =
+            |square: Self| (1..size / 2).fold(square.clone(), |product, _| product.times(&square));
+        let power = match size {
+            0 => one(),
+            1 => self.clone(),
+            _ if size.is_multiple_of(2) => squares(self.square()),
+            _ => squares(self.square()).times(self),
         };
         match exponent < 0 {
-            true => one.over(&power),
+            true => one().over(&power),
             false => power,
         }
     }

@@ -19,6 +19,31 @@ pub struct Precise {
     bits: usize,
 }
 
+/// An end of an interval, which is rounded away from the inside.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum End {
+    /// Rounded down.
+    Low,
+    /// Rounded up.
+    High,
+}
+
+impl End {
+    fn rounding(self) -> RoundingMode {
+        match self {
+            Self::Low => RoundingMode::Down,
+            Self::High => RoundingMode::Up,
+        }
+    }
+
+    fn infinity(self, bits: usize) -> Precise {
+        match self {
+            Self::Low => Precise::infinity(bits).negative(),
+            Self::High => Precise::infinity(bits),
+        }
+    }
+}
+
 /// Runs a function with π and the other constants that this thread has computed so far; `None` where they cannot be had.
 fn with_constants(work: impl FnOnce(&mut Consts) -> BigFloat) -> Option<BigFloat> {
     thread_local! {
@@ -116,6 +141,45 @@ impl Precise {
     /// Quotient.
     pub fn quotient(&self, other: &Self) -> Self {
         self.with(self.value.div(&other.value, self.bits, ROUNDING))
+    }
+
+    /// Sum, rounded in a direction.
+    pub(super) fn sum_toward(&self, other: &Self, end: End) -> Self {
+        let value = self.value.add(&other.value, self.bits, end.rounding());
+        self.with(value).not_beyond(end)
+    }
+
+    /// Product of numbers that are not 0, rounded in a direction.
+    pub(super) fn product_toward(&self, other: &Self, end: End) -> Self {
+        let value = self.value.mul(&other.value, self.bits, end.rounding());
+        self.quotient_or_product(value, other, end)
+    }
+
+    /// Quotient of numbers that are not 0, rounded in a direction.
+    pub(super) fn quotient_toward(&self, other: &Self, end: End) -> Self {
+        let value = self.value.div(&other.value, self.bits, end.rounding());
+        self.quotient_or_product(value, other, end)
+    }
+
+    /// What is not 0 and vanishes by underflow ends at the smallest number on its own side of 0.
+    fn quotient_or_product(&self, value: BigFloat, other: &Self, end: End) -> Self {
+        let above = self.is_negative() == other.is_negative();
+        match (value.is_zero(), above, end) {
+            (true, true, End::High) => Self::smallest(self.bits),
+            (true, false, End::Low) => Self::smallest(self.bits).negative(),
+            _ => self.with(value).not_beyond(end),
+        }
+    }
+
+    /// A bound that overflowed on the inner side is the largest number there; one without a value says nothing.
+    fn not_beyond(self, end: End) -> Self {
+        let infinite = self.value.is_inf();
+        match end {
+            _ if self.is_nan() => end.infinity(self.bits),
+            End::Low if infinite && !self.is_negative() => Self::largest(self.bits),
+            End::High if infinite && self.is_negative() => Self::largest(self.bits).negative(),
+            _ => self,
+        }
     }
 
     /// `−self`.
@@ -279,6 +343,9 @@ fn power_of_two(x: f64, n: i32) -> f64 {
 }
 
 fn integer(value: &BigInt, bits: usize) -> Precise {
+    if let Ok(short) = i64::try_from(value) {
+        return Precise::integer(short, bits);
+    }
     let shift = Precise::integer(1, bits).halved(-64);
     let (sign, words) = value.to_u64_digits();
     let size = words

@@ -8,6 +8,7 @@
 //! undecided, unless it says `unproved` for that claim. Ranks, signs and invertibility need a certificate that holds at every
 //! configuration.
 
+mod conditions;
 mod defined;
 mod degenerate;
 mod fibres;
@@ -16,6 +17,7 @@ mod retract;
 mod search;
 mod twist;
 
+pub use conditions::wrong_conditions;
 pub use defined::retract_is_smooth;
 
 use crate::derived::{Claim, Proof};

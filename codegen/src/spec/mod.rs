@@ -29,8 +29,8 @@ type Fallible<T> = Result<T, Box<Diagnostic>>;
 /// Reads the spec in `source`; `file` is its name as errors show it.
 ///
 /// # Errors
-/// All errors of syntax, names, shapes and meaning, in the order of the text; see [`code`]. What only a derivation can
-/// show (ranks, Φ(Q, 0) = Q, AᵀS̄ = 0) is not checked here.
+/// All errors of syntax, names, shapes and meaning, in the order of the text; see [`code`]. What only proofs and
+/// derivations can show (conditions that are always or never met, ranks, Φ(Q, 0) = Q, AᵀS̄ = 0) is not checked here.
 pub fn parse(source: &str, file: &str) -> Result<JointSpec, Diagnostics> {
     let mut errors = vec![];
     let spec = scan::check(source, &mut errors)

@@ -73,6 +73,48 @@ fn arithmetic_encloses_every_value() {
     }
 }
 
+/// Numbers of 64 bits that are next to a power of two or have long runs of equal bits, of both signs.
+fn awkward() -> Vec<Precise> {
+    let words = [
+        1,
+        3,
+        u64::MAX,
+        u64::MAX - 1,
+        1 << 63,
+        (1 << 63) + 1,
+        0xAAAA_AAAA_AAAA_AAAB,
+        0x8000_0001_0000_0001,
+    ];
+    let positive = words.map(|word| Precise::fraction_of_words(&[word], BITS));
+    let scaled = positive
+        .iter()
+        .flat_map(|x| [-70, -1, 0, 1, 63, 64, 65].map(|n| x.halved(n)));
+    scaled.flat_map(|x| [x.clone(), -x]).collect()
+}
+
+/// Ends are the nearest numbers on their side: no value is lost and none given away, also where rounding carries into a new power of two.
+#[test]
+fn arithmetic_is_rounded_to_the_next_number_on_each_side() {
+    let numbers = awkward();
+    for x in &numbers {
+        for y in &numbers {
+            let (a, b) = (Interval::point(x.clone()), Interval::point(y.clone()));
+            let (x, y) = (x.to_bits(FINE), y.to_bits(FINE));
+            for (name, interval, value) in [
+                ("+", a.plus(&b), &x + &y),
+                ("*", a.times(&b), &x * &y),
+                ("/", a.over(&b), &x / &y),
+            ] {
+                assert!(holds(&interval, &value), "{a:?} {name} {b:?}: {interval:?}");
+                let width = interval.high() - interval.low();
+                let unit = value.abs().halved(BITS as i32 - 3);
+                let narrow = width.compare(&unit).is_some_and(|order| order.is_le());
+                assert!(narrow, "{a:?} {name} {b:?}: {interval:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn functions_enclose_every_value() {
     let mut draw = Draw::new();

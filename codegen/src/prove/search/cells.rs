@@ -68,10 +68,7 @@ impl Search<'_> {
         let mut unreached: BTreeSet<Pattern> = open;
         for (pattern, cells) in found {
             let (place, tried) = self.try_cells(&cells);
-            refuting = match place {
-                Some(place) => Place::larger(refuting, place),
-                None => refuting,
-            };
+            refuting = Place::larger(refuting, place);
             if tried {
                 unreached.remove(&pattern);
             } else {
@@ -129,7 +126,7 @@ impl Search<'_> {
                 continue;
             }
             match self.at(&point) {
-                Said::Refutes(place) => refuting = Place::larger(refuting, place),
+                Said::Refutes(place) => refuting = Place::larger(refuting, Some(place)),
                 Said::Agrees => {
                     tried = true;
                     self.agreeing.set(self.agreeing.get() + 1);

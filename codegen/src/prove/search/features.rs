@@ -40,7 +40,7 @@ impl Search<'_> {
                         if place.is_large() {
                             return Some(place);
                         }
-                        found = Place::larger(found, place);
+                        found = Place::larger(found, Some(place));
                     }
                 }
             }
@@ -63,7 +63,7 @@ impl Search<'_> {
         {
             for cell in self.zeros(function, side, base) {
                 if let Some(place) = self.fails_in(&cell, base) {
-                    found = Place::larger(found, place);
+                    found = Place::larger(found, Some(place));
                 }
             }
         }

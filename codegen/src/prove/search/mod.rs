@@ -18,7 +18,7 @@ use place::Place;
 use std::cell::{Cell, OnceCell};
 
 /// Bits of the numbers, and of a few more where the first leave open what cancels.
-const BITS: usize = 512;
+const BITS: usize = 256;
 const MORE_BITS: usize = 2048;
 /// Random points near home and as many far from it, in the first number of bits and in the second.
 const POINTS: usize = 50;
@@ -62,26 +62,43 @@ struct Search<'s> {
 
 /// The random points of a joint, drawn when the first claim needs them.
 #[derive(Default)]
-pub(super) struct Points(OnceCell<Vec<Point>>);
+pub(super) struct Points {
+    near: OnceCell<Vec<Point>>,
+    beyond: OnceCell<Vec<Point>>,
+}
 
 impl Points {
-    fn all(&self, identities: &Identities<'_>) -> &[Point] {
-        self.0.get_or_init(|| {
-            let draw = |bits, count, far| {
-                let sampler = Sampler::new(identities.spec, bits)
-                    .beside(identities.sides())
-                    .single();
-                let mut sampler = if far { sampler.far() } else { sampler };
-                let affordable = move || sampler.point().filter(|_| budget::spend(COST.0));
-                std::iter::repeat_with(affordable)
-                    .take(count)
-                    .map_while(|point| point)
-            };
-            let few = draw(MORE_BITS, FEW_POINTS, false).chain(draw(MORE_BITS, FEW_POINTS, true));
-            let many = draw(BITS, POINTS, false).chain(draw(BITS, POINTS, true));
-            few.chain(many).collect()
+    /// Points near home.
+    fn near(&self, identities: &Identities<'_>) -> &[Point] {
+        self.near
+            .get_or_init(|| draw(identities, BITS, POINTS, false).collect())
+    }
+
+    /// Points far from home, and some of both kinds in more bits.
+    fn beyond(&self, identities: &Identities<'_>) -> &[Point] {
+        self.beyond.get_or_init(|| {
+            let few = |far| draw(identities, MORE_BITS, FEW_POINTS, far);
+            let far = draw(identities, BITS, POINTS, true);
+            far.chain(few(false)).chain(few(true)).collect()
         })
     }
+}
+
+/// As many random points as there are, and as can be afforded.
+fn draw<'i>(
+    identities: &'i Identities<'_>,
+    bits: usize,
+    count: usize,
+    far: bool,
+) -> impl Iterator<Item = Point> + 'i {
+    let sampler = Sampler::new(identities.spec, bits)
+        .beside(identities.sides())
+        .single();
+    let mut sampler = if far { sampler.far() } else { sampler };
+    let affordable = move || sampler.point().filter(|_| budget::spend(COST.0));
+    std::iter::repeat_with(affordable)
+        .take(count)
+        .map_while(|point| point)
 }
 
 /// Looks for a place where an entry is not 0.
@@ -103,24 +120,22 @@ pub(super) fn search(identities: &Identities<'_>, open: &[Open]) -> Verdict {
 
 impl Search<'_> {
     fn run(&self) -> Verdict {
-        let mut refuting = None;
-        for point in self.identities.points.all(self.identities) {
-            match self.at(point) {
-                Said::Refutes(place) => refuting = Place::larger(refuting, place),
-                Said::Agrees => self.agreeing.set(self.agreeing.get() + 1),
-                Said::Nothing => {}
-            }
-            if budget::is_exhausted() {
-                break;
-            }
+        let (identities, points) = (self.identities, &self.identities.points);
+        let is_plain = |found: &Option<Place>| found.as_ref().is_some_and(Place::is_plain);
+        let mut refuting = self.at_all(points.near(identities));
+        if !is_plain(&refuting) {
+            let beyond = self.at_all(points.beyond(identities));
+            refuting = Place::larger(refuting, beyond);
         }
-        // Where a residual is largest says more than where it was first met.
-        if let Some(place) = self.narrow() {
-            refuting = Place::larger(refuting, place);
+        // Where a residual is large, at numbers that are easy to picture, says more than where it was first met.
+        if !is_plain(&refuting) {
+            refuting = Place::larger(refuting, self.narrow());
         }
-        let (beyond, unreached) = self.cells();
-        if let Some(place) = beyond {
-            refuting = Place::larger(refuting, place);
+        let mut unreached = None;
+        if !is_plain(&refuting) {
+            let (beyond, left) = self.cells();
+            refuting = Place::larger(refuting, beyond);
+            unreached = left;
         }
         // The dearest look, where no other found anything.
         let refuting = refuting.or_else(|| self.features());
@@ -130,6 +145,22 @@ impl Search<'_> {
             (None, None, 0) => Verdict::Undecided("no point was found where it has a value".into()),
             (None, None, points) => Verdict::Agrees { points },
         }
+    }
+
+    /// The place with the largest residual among points.
+    fn at_all(&self, points: &[Point]) -> Option<Place> {
+        let mut refuting = None;
+        for point in points {
+            match self.at(point) {
+                Said::Refutes(place) => refuting = Place::larger(refuting, Some(place)),
+                Said::Agrees => self.agreeing.set(self.agreeing.get() + 1),
+                Said::Nothing => {}
+            }
+            if budget::is_exhausted() {
+                break;
+            }
+        }
+        refuting
     }
 
     /// What a point of the domain says.

@@ -8,7 +8,7 @@ use crate::expr::{Symbol, budget};
 use crate::precise::{Point, Sampler};
 use std::collections::BTreeSet;
 
-/// Bits of the ends of cells.
+/// Bits of points and of the ends of cells.
 const BITS: usize = 128;
 /// Most cells of one search.
 const MOST_CELLS: usize = 400;
@@ -26,7 +26,7 @@ impl Search<'_> {
         if whole.is_empty() {
             return None;
         }
-        let mut sampler = Sampler::new(self.identities.spec, super::BITS).single();
+        let mut sampler = Sampler::new(self.identities.spec, BITS).single();
         let mut found = None;
         if complete && whole.len() <= MOST_AXES {
             found = self.largest_in(whole.clone(), &sampler.anywhere()?, MOST_CELLS);
@@ -40,9 +40,8 @@ impl Search<'_> {
             };
             for side in &whole {
                 let line = vec![side.clone()];
-                if let Some(place) = self.largest_in(line, &base, MOST_CELLS / whole.len()) {
-                    found = Place::larger(found, place);
-                }
+                let place = self.largest_in(line, &base, MOST_CELLS / whole.len());
+                found = Place::larger(found, place);
             }
         }
         found
@@ -54,9 +53,7 @@ impl Search<'_> {
         for _ in 0..most {
             let largest = (0..open.len()).max_by(|a, b| open[*a].0.total_cmp(&open[*b].0))?;
             let (_, cell) = open.swap_remove(largest);
-            if let Some(place) = self.fails_in(&cell, base) {
-                found = Place::larger(found, place);
-            }
+            found = Place::larger(found, self.fails_in(&cell, base));
             let large = found.as_ref().is_some_and(Place::is_large);
             if large || !budget::spend(super::COST.0) {
                 break;

@@ -7,6 +7,8 @@ use std::fmt::{Display, Formatter};
 
 /// The binary logarithm of a residual, beside its terms, that is large.
 const LARGE: f64 = -10.0;
+/// The binary logarithm of the largest number that is easy to picture.
+const PLAIN: f64 = 20.0;
 
 /// Values of the scalars and parameters that matter, and the residual there.
 #[derive(Clone, Debug)]
@@ -45,17 +47,25 @@ impl Place {
     }
 
     /// That of both where the residual is larger; of two where it is large, that with numbers nearer to 1.
-    pub fn larger(known: Option<Self>, other: Self) -> Option<Self> {
+    pub fn larger(known: Option<Self>, other: Option<Self>) -> Option<Self> {
         let order = |place: &Self| (place.relative_size().min(LARGE), -place.extent());
-        match known {
-            Some(known) if order(&known) >= order(&other) => Some(known),
-            _ => Some(other),
+        match (known, other) {
+            (Some(known), Some(other)) if order(&known) < order(&other) => Some(other),
+            (None, other) => other,
+            (known, _) => known,
         }
     }
 
     /// Whether there is no need to look for a larger residual.
     pub fn is_large(&self) -> bool {
         self.relative_size() >= LARGE
+    }
+
+    /// Whether it says all there is to say: a large residual, and no number that is hard to picture.
+    pub fn is_plain(&self) -> bool {
+        let values = self.values.iter().map(|(_, value)| value);
+        let mut sizes = values.chain([&self.residual]).map(Precise::log2);
+        self.is_large() && sizes.all(|size| !size.is_finite() || size.abs() <= PLAIN)
     }
 
     /// How far the values are from numbers that people calculate with.

@@ -1,7 +1,6 @@
 //! Tree to joint: what each statement declares, checked against the others.
 
 mod basis;
-mod conditions;
 mod config;
 mod division;
 mod equation;
@@ -144,7 +143,6 @@ fn declare(
     evaluator
         .errors
         .extend(division::errors(&spec, statements.relations_span()));
-    evaluator.errors.extend(conditions::errors(&spec));
     Some(spec)
 }
 

@@ -1,12 +1,12 @@
-//! Exceptions and requirements that say nothing, or forbid everything: found by certificates, when the whole joint is known.
+//! Exceptions and requirements that say nothing, or forbid everything.
 
-use super::super::code;
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::model::{Declared, JointSpec, Locus, Requirement};
+use crate::spec::code;
 
 /// An error for each exception that holds nowhere, or at home for some parameters, and for each requirement that is always or never true.
-pub(super) fn errors(spec: &JointSpec) -> Vec<Diagnostic> {
+pub fn wrong_conditions(spec: &JointSpec) -> Vec<Diagnostic> {
     let without_loci = JointSpec {
         loci: vec![],
         ..spec.clone()
