@@ -11,6 +11,9 @@ use crate::spec::code;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+/// Longest expression that a message shows in full, in bytes.
+const LONGEST: usize = 200;
+
 /// Φ has derivatives at ϕ = 0. They are taken before anything is proved, and mean nothing where it has none.
 pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Box<Diagnostic>> {
     let Some(declared) = &spec.retract else {
@@ -154,23 +157,39 @@ fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
     if moves && vanishes {
         return at_base(critical, span);
     }
+    let written = in_words(argument);
     let message = match (critical.function, rest) {
-        (Function::Recip, _) => format!("a quotient by {argument}, which may be 0"),
+        (Function::Recip, _) => format!("a quotient by {written}, which may be 0"),
         (Function::Ln, _) => {
-            format!("the logarithm of {argument}, which is not shown to be positive")
+            format!("the logarithm of {written}, which is not shown to be positive")
         }
         (Function::Atan2, [x, ..]) => format!(
-            "the angle of the point ({x}, {argument}), which is not shown to keep off the origin and off the negative axis, where it jumps"
+            "the angle of the point ({}, {written}), which is not shown to keep off the origin and off the negative axis, where it jumps",
+            in_words(x)
         ),
-        _ => format!("the root of {argument}, which is not smooth where that is 0"),
+        _ => format!("the root of {written}, which is not smooth where that is 0"),
     };
     let locus = match critical.function {
         Function::Atan2 => "…".to_owned(),
-        _ => argument.to_string(),
+        _ => Some(argument.to_string())
+            .filter(|text| text.len() <= LONGEST)
+            .unwrap_or("…".to_owned()),
     };
     refuted(code::NOT_DEFINED, span, &message, "the joint needs it").help(format!(
         "if the joint ends there, declare it: `except {locus} = 0;`; ranges of parameters and `require` help to show that it does not vanish"
     ))
+}
+
+/// The expression; a long one by its number of terms and its symbols.
+fn in_words(expression: &Expr) -> String {
+    let text = expression.to_string();
+    if text.len() <= LONGEST {
+        return text;
+    }
+    let symbols = expression.symbols();
+    let names: Vec<&str> = symbols.iter().map(|symbol| &*symbol.spelling).collect();
+    let count = expression.terms().len();
+    format!("a sum of {count} terms in {}", names.join(", "))
 }
 
 /// The function is singular at ϕ = 0 itself.
