@@ -9,6 +9,8 @@ use crate::expr::{Atom, Expr, Monomial};
 pub(super) const STATEMENT_BUDGET: u64 = 200_000;
 /// Products of terms that the Gröbner basis of declared relations may take.
 pub(super) const RELATIONS_BUDGET: u64 = 500_000;
+/// The same where the spec has other errors: enough for short relations.
+pub(super) const RELATIONS_BUDGET_OF_WRONG: u64 = 2_000;
 /// Products of terms that one file may take.
 pub(super) const FILE_BUDGET: u64 = 1_000_000;
 /// Largest number of rows or columns.

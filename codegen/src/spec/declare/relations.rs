@@ -6,7 +6,7 @@ use super::super::{code, limits};
 use super::equation;
 use super::once::{At, Once};
 use crate::diagnostic::Diagnostic;
-use crate::expr::{Expr, Function, Role};
+use crate::expr::{Expr, Function, Role, budget};
 use crate::manifold::Manifold;
 use crate::model::Declared;
 use std::ops::Range;
@@ -112,9 +112,16 @@ fn basis(
     evaluator: &mut Evaluator<'_>,
 ) -> Option<Manifold> {
     let manifold = manifold.clone();
-    let found = evaluator.bounded_by(limits::RELATIONS_BUDGET, "relation", span, |_| {
-        Some(manifold.constrained(relations))
-    })?;
+    let found = match evaluator.errors.is_empty() {
+        true => evaluator.bounded_by(limits::RELATIONS_BUDGET, "relation", span, |_| {
+            Some(manifold.constrained(relations))
+        }),
+        // In a spec that is wrong already, only a contradiction that is soon found is told.
+        false => budget::scope(limits::RELATIONS_BUDGET_OF_WRONG, || {
+            manifold.constrained(relations)
+        })
+        .ok(),
+    }?;
     let constrains_parameters = |e: &Expr| {
         e.symbols()
             .iter()
