@@ -73,31 +73,40 @@ fn arithmetic_encloses_every_value() {
     }
 }
 
-/// Numbers of 64 bits that are next to a power of two or have long runs of equal bits, of both signs.
-fn awkward() -> Vec<Precise> {
+/// Numbers that are next to a power of two or have long runs of equal bits, of both signs and of sizes beside and far from 1.
+fn awkward(bits: usize) -> Vec<Precise> {
     let words = [
         1,
-        3,
         u64::MAX,
         u64::MAX - 1,
         1 << 63,
         (1 << 63) + 1,
         0xAAAA_AAAA_AAAA_AAAB,
-        0x8000_0001_0000_0001,
     ];
-    let positive = words.map(|word| Precise::fraction_of_words(&[word], BITS));
-    let scaled = positive
-        .iter()
-        .flat_map(|x| [-70, -1, 0, 1, 63, 64, 65].map(|n| x.halved(n)));
-    scaled.flat_map(|x| [x.clone(), -x]).collect()
+    let lengths = bits / 64;
+    let first_and_last = words.iter().flat_map(|a| words.map(|b| (*a, b)));
+    let positive = first_and_last.flat_map(|(first, last)| {
+        [0, u64::MAX].map(|between| {
+            let mut all = vec![between; lengths];
+            all[0] = first;
+            all[lengths - 1] = last;
+            Precise::fraction_of_words(&all, bits)
+        })
+    });
+    let scales = [-70, -1, 0, 1, bits as i32 - 1, bits as i32];
+    let scaled = positive.flat_map(|x| scales.map(|n| x.halved(n)));
+    scaled.flat_map(|x| [-&x, x]).collect()
 }
 
 /// Ends are the nearest numbers on their side: no value is lost and none given away, also where rounding carries into a new power of two.
 #[test]
 fn arithmetic_is_rounded_to_the_next_number_on_each_side() {
-    let numbers = awkward();
-    for x in &numbers {
-        for y in &numbers {
+    let mut draw = Draw::new();
+    for bits in [64, 128, 256] {
+        let numbers = awkward(bits);
+        for _ in 0..4000 {
+            let mut any = || numbers[draw.0.next_u32() as usize % numbers.len()].clone();
+            let (x, y) = (any(), any());
             let (a, b) = (Interval::point(x.clone()), Interval::point(y.clone()));
             let (x, y) = (x.to_bits(FINE), y.to_bits(FINE));
             for (name, interval, value) in [
@@ -107,11 +116,29 @@ fn arithmetic_is_rounded_to_the_next_number_on_each_side() {
             ] {
                 assert!(holds(&interval, &value), "{a:?} {name} {b:?}: {interval:?}");
                 let width = interval.high() - interval.low();
-                let unit = value.abs().halved(BITS as i32 - 3);
+                let unit = value.abs().halved(bits as i32 - 3);
                 let narrow = width.compare(&unit).is_some_and(|order| order.is_le());
                 assert!(narrow, "{a:?} {name} {b:?}: {interval:?}");
             }
         }
+    }
+}
+
+/// Also where products leave the range of exponents: the ends stay on the outer side.
+#[test]
+fn what_underflows_or_overflows_is_enclosed() {
+    let (tiny, huge) = (Precise::smallest(BITS), Precise::largest(BITS));
+    let half = Precise::from_f64(0.5, BITS);
+    for sign in [1, -1] {
+        let signed = |x: &Precise| Interval::point(if sign == 1 { x.clone() } else { -x });
+        let small = Interval::point(half.clone()).times(&signed(&tiny));
+        let large = Interval::point(half.same(3)).times(&signed(&huge));
+        let (inner, outer) = match sign {
+            1 => ((small.low(), large.low()), (small.high(), large.high())),
+            _ => ((small.high(), large.high()), (small.low(), large.low())),
+        };
+        assert!(inner.0.is_zero() && !outer.0.is_zero(), "{small:?}");
+        assert!(inner.1.is_finite() && !outer.1.is_finite(), "{large:?}");
     }
 }
 
