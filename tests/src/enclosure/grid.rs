@@ -88,6 +88,19 @@ impl Grid {
         Self::from_fn(rows, columns.len(), |i, k| columns[k].at(i, 0).clone())
     }
 
+    /// The determinants of as many rows as there are columns: of each choice of them, in order.
+    pub fn minors(&self) -> impl Iterator<Item = Ball> {
+        let choices =
+            (0_u32..1 << self.rows).filter(|choice| choice.count_ones() as usize == self.columns);
+        choices.map(|choice| {
+            let rows: Vec<usize> = (0..self.rows)
+                .filter(|row| choice >> row & 1 == 1)
+                .collect();
+            Self::from_fn(rows.len(), self.columns, |i, j| self.at(rows[i], j).clone())
+                .determinant()
+        })
+    }
+
     /// The determinant, by the first row.
     pub fn determinant(&self) -> Ball {
         if self.rows == 0 {

@@ -188,10 +188,9 @@ impl<'a> At<'a> {
         if values.columns == 0 {
             return;
         }
-        let value = match values.rows == values.columns {
-            true => values.determinant(),
-            false => values.transpose().times(&values).determinant(),
-        };
+        // Of columns of very different sizes a minor may exclude 0 where the sum of their squares does not.
+        let minor = values.minors().find(Ball::excludes_zero);
+        let value = minor.unwrap_or_else(|| values.transpose().times(&values).determinant());
         self.residuals.push(Residual {
             law,
             value,

@@ -45,6 +45,23 @@ fn the_library_holds() {
     }
 }
 
+/// A column of X that is small as doubles go, with a zero that is known to some digits only beside it.
+#[test]
+fn small_columns_have_their_rank() {
+    let source = "hamel = 1;
+        joint narrow {
+            config x: R1, y: R1;
+            H = trans([x, y, 0]) * rot_z(1.5 * x);
+            let g = exp(-x * x);
+            X = [0, 0; sqrt(2) * sqrt(3) - sqrt(6), 0; 1.5 * g, 0; g * (1 + 1.5 * y), 0; -1.5 * x * g, 1; 0, 0];
+        }";
+    let derived = hamel_codegen::derive(source, "narrow.joint").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(judge(&derived, &at(&[-12.0, 0.25], &[])), Verdict::Holds);
+    // 1/g is beyond what the digits of the zero allow to say.
+    let far = judge(&derived, &at(&[-51.57, -7.5], &[]));
+    assert_eq!(far, Verdict::Undecided("X S = J to first order"));
+}
+
 /// The joint with 1e-30 exp(−1e6 (x − 5)²) added to the first entry of one kernel.
 fn with_false(derived: &Derived, kind: KernelKind) -> Option<Derived> {
     let mut falsified = derived.clone();
