@@ -118,6 +118,15 @@ impl Display for Atom {
         match self {
             Self::Symbol(symbol) => f.write_str(&symbol.spelling),
             Self::Apply(application) => {
+                // Functions that the spec language has no name for, in its words.
+                let (before, after) = match application.function {
+                    Function::LnCosh => ("log(cosh(", "))"),
+                    Function::Sech => ("1/cosh(", ")"),
+                    _ => ("", ""),
+                };
+                if let ([argument], false) = (&application.arguments[..], after.is_empty()) {
+                    return write!(f, "{before}{argument}{after}");
+                }
                 write!(f, "{}", application.function)?;
                 if application.arguments.is_empty() {
                     return Ok(());

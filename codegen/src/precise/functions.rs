@@ -32,6 +32,9 @@ impl Precise {
 
     /// Hyperbolic tangent, by `e^(−2|x|)`, which does not overflow.
     pub fn tanh(&self) -> Self {
+        if self.is_negligible() {
+            return self.clone();
+        }
         let size = self.to_bits(self.bits() + self.lost_below_one()).abs();
         let faded = size.halved(-1).negative().exp();
         let one = faded.same(1);
@@ -46,6 +49,9 @@ impl Precise {
 
     /// Logarithm of the hyperbolic cosine: `|x| + ln(1 + e^(−2|x|)) − ln 2`.
     pub fn ln_cosh(&self) -> Self {
+        if self.is_negligible() {
+            return (self * self).halved(1);
+        }
         // Near 0 it is x²/2, and its parts are of order 1.
         let size = self.to_bits(self.bits() + 2 * self.lost_below_one()).abs();
         let faded = size.halved(-1).negative().exp();
@@ -55,6 +61,9 @@ impl Precise {
 
     /// `ln(1 + x)`.
     pub fn ln_1p(&self) -> Self {
+        if self.is_negligible() {
+            return self.clone();
+        }
         let wide = self.to_bits(self.bits() + self.lost_below_one());
         (&wide.same(1) + &wide).ln().to_bits(self.bits())
     }
@@ -69,8 +78,12 @@ impl Precise {
 
     /// Bits that sums of numbers of order 1 lose where a number of this size is left, and some to spare.
     fn lost_below_one(&self) -> usize {
-        let size = self.to_f64().abs();
-        GUARD + size.max(f64::MIN_POSITIVE).log2().min(0.0).abs() as usize
+        GUARD + (-self.log2()).max(0.0) as usize
+    }
+
+    /// Whether 1 + x is 1 to all digits and more: of a function's series its first term is left.
+    fn is_negligible(&self) -> bool {
+        self.log2() < -((self.bits() + GUARD) as f64)
     }
 
     /// Stumpff function `c_order(s) = Σ_j (−s)^j / (order + 2j)!` of `s = self`.

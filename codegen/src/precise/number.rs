@@ -1,13 +1,15 @@
 //! Binary floating-point numbers of any number of bits.
 
 use crate::expr::{Function, Number, Rational};
-use astro_float_num::{BigFloat, Consts, EXPONENT_MIN, INF_POS, RoundingMode, Sign};
+use astro_float_num::{BigFloat, Consts, INF_POS, RoundingMode, Sign};
 use num_bigint::{BigInt, Sign as IntegerSign};
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::fmt::{Debug, Display, Formatter};
 
 const ROUNDING: RoundingMode = RoundingMode::ToEven;
+/// The binary logarithm of the largest angle that is reduced.
+const LARGEST_ANGLE: f64 = 4096.0;
 
 /// A binary floating-point number of `bits` bits, rounded up to whole words of 64.
 ///
@@ -206,13 +208,19 @@ impl Precise {
         self.with(self.value.sqrt(self.bits, ROUNDING))
     }
 
-    /// Sine.
+    /// Sine; NaN of arguments beyond 2⁴⁰⁹⁶, whose part of a turn takes as many digits of π.
     pub fn sin(&self) -> Self {
+        if self.log2() > LARGEST_ANGLE {
+            return self.with(BigFloat::nan(None));
+        }
         self.by(|x, bits, constants| x.sin(bits, ROUNDING, constants))
     }
 
-    /// Cosine.
+    /// Cosine; NaN as of the sine.
     pub fn cos(&self) -> Self {
+        if self.log2() > LARGEST_ANGLE {
+            return self.with(BigFloat::nan(None));
+        }
         self.by(|x, bits, constants| x.cos(bits, ROUNDING, constants))
     }
 
@@ -272,13 +280,13 @@ impl Precise {
         let bits = i32::try_from(self.bits).ok()?;
         let one = Self::integer(1, self.bits);
         Some(match exponent.checked_sub(bits) {
-            Some(place) if place > EXPONENT_MIN + bits => {
+            Some(place) => {
                 let mut unit = one.value;
                 unit.set_exponent(place + 1);
                 Self::wrap(unit, self.bits)
             }
             // Subnormal numbers are apart by the smallest one.
-            _ => Self::smallest(self.bits),
+            None => Self::smallest(self.bits),
         })
     }
 
@@ -320,7 +328,7 @@ impl Precise {
         };
         // A bit that is never a tie's own stands for all bits below the first 64.
         let sticky = u64::from(others.iter().any(|word| *word != 0));
-        let size = power_of_two((last | sticky) as f64, exponent - 64);
+        let size = power_of_two((last | sticky) as f64, exponent.saturating_sub(64));
         match sign {
             Sign::Neg => -size,
             Sign::Pos => size,

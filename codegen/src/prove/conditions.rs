@@ -30,16 +30,19 @@ fn wrong_locus(locus: &Declared<Locus>, without_loci: &JointSpec) -> Option<Diag
         return Some(error.note(note).help("remove it"));
     }
     let at_home = function.substitute(&without_loci.home_values());
-    // Of a number it is known already whether it is 0.
-    if at_home.symbols().is_empty() || domain.nonzero(&at_home).is_some() {
+    if domain.nonzero(&at_home).is_some() {
         return None;
     }
-    Some(
-        error("this equation may hold at home")
+    let error = error("this equation may hold at home")
+        .note(format!("left minus right is {at_home} there"));
+    Some(match at_home.symbols().is_empty() {
+        true => error
+            .label("undecided in the configuration in which a mechanism starts")
+            .help("declare another configuration by `home = …;`"),
+        false => error
             .label("excludes, for some parameters, the configuration in which a mechanism starts")
-            .note(format!("left minus right is {at_home} there"))
             .help("declare another configuration by `home = …;`, or leave those parameters out by their ranges or by `require`"),
-    )
+    })
 }
 
 fn wrong_requirement(

@@ -176,6 +176,31 @@ fn functions_enclose_every_value() {
     }
 }
 
+/// Arguments far below doubles: tanh x and ln(1 + x) are x there, ln cosh x is x²/2, and each enclosure holds its own value alone.
+#[test]
+fn functions_of_tiny_arguments_enclose_their_first_terms() {
+    for halvings in [40, 130, 600, 1100, 5000, 1_000_000] {
+        for bits in [64, 128, 512] {
+            let x = Precise::integer(3, bits).halved(halvings);
+            let (of_x, exact) = (Interval::point(x.clone()), x.to_bits(4 * bits));
+            let square = (&exact * &exact).halved(1);
+            for (function, first) in [(Function::Tanh, &exact), (Function::LnCosh, &square)] {
+                let value = of_x.function(function, std::slice::from_ref(&of_x));
+                let name = format!("{function:?} of 3/2^{halvings} in {bits} bits: {value:?}");
+                let ratio = value.over(&Interval::point(first.to_bits(bits)));
+                let off = ratio.plus(&Interval::point(x.same(-1)));
+                // The next term is x² as large.
+                let bound = off.largest_size().log2();
+                let next = -2.0 * f64::from(halvings) + 5.0;
+                assert!(bound <= next.max(8.0 - bits as f64), "{name}");
+                if next < -4.0 * bits as f64 {
+                    assert!(holds(&value, &first.to_bits(FINE.max(4 * bits))), "{name}");
+                }
+            }
+        }
+    }
+}
+
 /// What is thin stays thin: otherwise nothing would ever be decided.
 #[test]
 fn enclosures_of_single_numbers_are_narrow() {

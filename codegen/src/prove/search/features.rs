@@ -70,13 +70,13 @@ impl Search<'_> {
         found
     }
 
-    /// Cells of the line, as small as doubles allow, in which the function may be 0.
+    /// Cells of the line, as small as doubles allow, in which the function may be 0: those that are nearest to 0.
     fn zeros(&self, function: &Expr, side: &Side, base: &Point) -> Vec<Box> {
         let mut enclosure = self.near(base, BITS);
         let mut open = vec![vec![side.clone()]];
         let mut found = vec![];
         for _ in 0..MOST_CELLS {
-            let Some(cell) = open.pop() else {
+            let Some(cell) = nearest(&mut open) else {
                 break;
             };
             if found.len() >= MOST_ZEROS || !budget::spend(super::COST.0) {
@@ -93,6 +93,13 @@ impl Search<'_> {
         }
         found
     }
+}
+
+/// Takes the cell that is nearest to 0: of a periodic function there are others without end.
+fn nearest(open: &mut Vec<Box>) -> Option<Box> {
+    let extent = |place: &usize| axes::extent(&open[*place]);
+    let place = (0..open.len()).min_by(|a, b| extent(a).total_cmp(&extent(b)))?;
+    Some(open.swap_remove(place))
 }
 
 /// The arguments of all functions in an expression, and of those in them.

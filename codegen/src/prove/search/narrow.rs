@@ -51,7 +51,12 @@ impl Search<'_> {
         let mut open = vec![(f64::INFINITY, whole)];
         let mut found: Option<Place> = None;
         for _ in 0..most {
-            let largest = (0..open.len()).max_by(|a, b| open[*a].0.total_cmp(&open[*b].0))?;
+            // Of cells with the same room, that which is nearest to 0.
+            let order = |place: &usize| (open[*place].0, -axes::extent(&open[*place].1));
+            let largest = (0..open.len()).max_by(|a, b| {
+                let (a, b) = (order(a), order(b));
+                a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+            })?;
             let (_, cell) = open.swap_remove(largest);
             found = Place::larger(found, self.fails_in(&cell, base));
             let large = found.as_ref().is_some_and(Place::is_large);

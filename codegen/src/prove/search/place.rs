@@ -10,6 +10,9 @@ const LARGE: f64 = -10.0;
 /// The binary logarithm of the largest number that is easy to picture.
 const PLAIN: f64 = 20.0;
 
+/// The power of 10 beyond which no number is held.
+const BEYOND: u32 = 646_456_993;
+
 /// Values of the scalars and parameters that matter, and the residual there.
 #[derive(Clone, Debug)]
 pub struct Place {
@@ -108,7 +111,10 @@ fn short(value: &Precise) -> String {
     if size.is_finite() && size > f64::MIN_POSITIVE {
         return format!("{double:.3e}");
     }
-    let decimals = value.abs().log2() * std::f64::consts::LOG10_2;
     let sign = if value.is_negative() { "-" } else { "" };
+    if !value.is_finite() {
+        return format!("{sign}1e{BEYOND} or more");
+    }
+    let decimals = value.abs().log2() * std::f64::consts::LOG10_2;
     format!("{sign}1e{decimals:.0}")
 }
