@@ -45,6 +45,11 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// Whether it holds one value alone.
+    pub fn is_one_number(&self) -> bool {
+        matches!((&self.lower, &self.upper), (Some(a), Some(b)) if a.value == b.value)
+    }
+
     /// Whether the value lies in it.
     pub fn contains(&self, value: &Rational) -> bool {
         let above = |end: &End| *value > end.value || end.included && *value == end.value;

@@ -144,6 +144,19 @@ pub struct Factor {
 }
 
 impl Factor {
+    /// Whether the scalar can change while all others stay: those of real vectors, and displacements in the last column of a motion's
+    /// matrix, which is stored row by row.
+    pub fn is_free(&self, symbol: &Symbol) -> bool {
+        let place = self.coordinates.iter().position(|other| other == symbol);
+        let last_of = |columns: usize| place.is_some_and(|place| place % columns == columns - 1);
+        match self.kind {
+            Kind::Real(_) => place.is_some(),
+            Kind::Se2 => last_of(3),
+            Kind::Se3 => last_of(4),
+            _ => false,
+        }
+    }
+
     /// The factor `name`, its scalars numbered from `first`. Where `alone` says that the configuration has no other factor,
     /// matrix entries are called `q11` and not after the factor.
     pub fn new(name: &str, kind: Kind, role: Role, first: usize, alone: bool) -> Self {

@@ -63,18 +63,11 @@ fn side(spec: &JointSpec, symbol: &Symbol) -> Option<Side> {
         .iter()
         .find(|f| f.coordinates.contains(symbol))?;
     match (factor.kind, factor.coordinates.as_slice()) {
-        (Kind::Real(_), _) => Some(Side {
+        _ if factor.is_free(symbol) => Some(Side {
             axis: Axis::Real(symbol.clone()),
             low: -FARTHEST,
             high: FARTHEST,
         }),
-        (Kind::Se2 | Kind::Se3, symbols) if is_displacement(factor.kind, symbols, symbol) => {
-            Some(Side {
-                axis: Axis::Real(symbol.clone()),
-                low: -FARTHEST,
-                high: FARTHEST,
-            })
-        }
         (Kind::S1, [c, s]) => Some(Side {
             axis: Axis::Angle(c.clone(), s.clone()),
             low: -HALF_TURN,
@@ -82,13 +75,6 @@ fn side(spec: &JointSpec, symbol: &Symbol) -> Option<Side> {
         }),
         _ => None,
     }
-}
-
-/// Whether the symbol is in the last column of a motion's matrix, which is stored row by row.
-fn is_displacement(kind: Kind, symbols: &[Symbol], symbol: &Symbol) -> bool {
-    let columns = if kind == Kind::Se2 { 3 } else { 4 };
-    let place = symbols.iter().position(|other| other == symbol);
-    place.is_some_and(|place| place % columns == columns - 1)
 }
 
 /// Confines the symbols of the axes to the box.

@@ -7,6 +7,7 @@
 
 mod axes;
 mod cells;
+mod changes;
 mod features;
 mod narrow;
 mod place;
@@ -137,8 +138,10 @@ impl Search<'_> {
             refuting = Place::larger(refuting, beyond);
             unreached = left;
         }
-        // The dearest look, where no other found anything.
-        let refuting = refuting.or_else(|| self.features());
+        // The dearest looks, where no other found anything.
+        let refuting = refuting
+            .or_else(|| self.features())
+            .or_else(|| self.changes());
         match (refuting, unreached, self.agreeing.get()) {
             (Some(place), ..) => Verdict::Refuted(Box::new(place)),
             (None, Some(reason), _) => Verdict::Undecided(reason),

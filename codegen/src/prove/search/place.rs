@@ -19,6 +19,8 @@ pub struct Place {
     values: Vec<(String, Precise)>,
     residual: Precise,
     size: Precise,
+    /// Whether `residual` is a derivative of what should be 0.
+    of_derivative: bool,
 }
 
 impl Place {
@@ -41,6 +43,16 @@ impl Place {
                 .collect(),
             residual: residual.nearest_to_zero(),
             size: size.high().clone(),
+            of_derivative: false,
+        }
+    }
+
+    /// The same place, where a derivative of the difference is not 0.
+    pub fn of_derivative(self) -> Self {
+        let of_derivative = true;
+        Self {
+            of_derivative,
+            ..self
         }
     }
 
@@ -89,7 +101,11 @@ impl Display for Place {
             true => "everywhere".to_owned(),
             false => format!("at {}", values.join(", ")),
         };
-        write!(f, "{at} the difference is {}", short(&self.residual))?;
+        let what = match self.of_derivative {
+            true => "the difference changes: a derivative of it is",
+            false => "the difference is",
+        };
+        write!(f, "{at} {what} {}", short(&self.residual))?;
         match self.size.log2() > 1.0 + self.residual.abs().log2() {
             true => write!(f, ", beside terms of {}", short(&self.size)),
             false => Ok(()),
