@@ -3,10 +3,11 @@
 
 use super::place::Place;
 use super::{MOST_TERMS, Open, Search};
-use crate::expr::{Expr, Symbol};
-use crate::manifold::Kind;
+use crate::expr::{Atom, Expr, Function, Monomial, Symbol};
+use crate::manifold::{Factor, Kind};
 use crate::model::JointSpec;
 use std::cell::Cell;
+use std::collections::BTreeMap;
 
 /// A tangent of the domain: symbols and how they change.
 type Direction = Vec<(Symbol, Expr)>;
@@ -33,19 +34,38 @@ impl Search<'_> {
 
     /// The derivatives of residuals that do not vanish by algebra.
     fn slopes(&self) -> Vec<Open> {
-        let directions = free_directions(self.identities.spec);
+        let directions = tangents(self.identities.spec);
         let of_all = self.open.iter().flat_map(|(_, residual)| {
             directions
                 .iter()
                 .map(|direction| along(residual, direction))
         });
         let with_normal = of_all.map(|slope| {
+            let slope = self.without_zeros(&slope);
             let normal = self.identities.ideal.normal_form(&slope);
             (slope, normal)
         });
         with_normal
             .filter(|(_, normal)| !normal.is_zero())
             .collect()
+    }
+}
+
+impl Search<'_> {
+    /// The expression without what vanishes of it: the terms with the same functions, quotients aside, are looked at together.
+    fn without_zeros(&self, expression: &Expr) -> Expr {
+        let mut groups: BTreeMap<Monomial, Expr> = BTreeMap::new();
+        for (monomial, coefficient) in expression.terms() {
+            let functions = monomial.factors().filter(|(atom, _)| match atom {
+                Atom::Apply(application) => application.function != Function::Recip,
+                Atom::Symbol(_) => false,
+            });
+            let group = groups.entry(Monomial::of_factors(functions)).or_default();
+            *group = &*group + &Expr::term(coefficient.clone(), monomial.clone());
+        }
+        let left = groups.into_values();
+        let left = left.filter(|group| !self.identities.ideal.vanishes(group));
+        left.fold(Expr::default(), |sum, group| &sum + &group)
     }
 }
 
@@ -56,27 +76,69 @@ fn along(expression: &Expr, direction: &Direction) -> Expr {
     parts.fold(Expr::default(), |sum, part| &sum + &part)
 }
 
-/// Ways in which one scalar or angle can change while all else stays: parameters that have more than one value, real coordinates,
-/// displacements, and unit complex numbers. None of a manifold with declared relations.
-fn free_directions(spec: &JointSpec) -> Vec<Direction> {
+/// Tangents of the domain: parameters that have more than one value, free scalars, rotations of the others two by two. Where the spec
+/// declares relations there are tangents for one of them, of real coordinates.
+fn tangents(spec: &JointSpec) -> Vec<Direction> {
     let single = |symbol: &Symbol| vec![(symbol.clone(), Expr::integer(1))];
     let ranges = spec.parameters.iter().filter(|p| !p.range.is_one_number());
-    let mut directions: Vec<Direction> = ranges.map(|p| single(&p.symbol)).collect();
+    let mut tangents: Vec<Direction> = ranges.map(|p| single(&p.symbol)).collect();
     let manifold = &spec.manifold.value;
-    if !manifold.declared().is_empty() {
-        return directions;
+    match manifold.declared() {
+        [] => manifold.factors().iter().for_each(|factor| {
+            let free = factor
+                .coordinates
+                .iter()
+                .filter(|symbol| factor.is_free(symbol));
+            tangents.extend(free.map(single));
+            tangents.extend(rotations(factor));
+        }),
+        [relation] => tangents.extend(along_relation(relation, manifold.factors())),
+        _ => {}
     }
-    for factor in manifold.factors() {
-        match (factor.kind, factor.coordinates.as_slice()) {
-            (Kind::S1, [c, s]) => directions.push(vec![
-                (c.clone(), -Expr::symbol(s)),
-                (s.clone(), Expr::symbol(c)),
-            ]),
-            (_, symbols) => {
-                let free = symbols.iter().filter(|symbol| factor.is_free(symbol));
-                directions.extend(free.map(single));
-            }
-        }
-    }
-    directions
+    tangents
+}
+
+/// Two scalars of a unit vector, or two columns of a rotation matrix, turned into each other.
+fn rotations(factor: &Factor) -> Vec<Direction> {
+    let (rows, columns, turned) = match factor.kind {
+        Kind::Real(_) => return vec![],
+        Kind::S1 | Kind::S2 | Kind::S3 => (1, factor.coordinates.len(), factor.coordinates.len()),
+        Kind::So2 => (2, 2, 2),
+        Kind::Se2 => (2, 3, 2),
+        Kind::So3 => (3, 3, 3),
+        Kind::Se3 => (3, 4, 3),
+    };
+    let turn = |(a, b): (usize, usize)| -> Direction {
+        let in_row = |row: usize| {
+            let of = |column: usize| factor.coordinates.get(row * columns + column);
+            let (first, second) = (of(a)?, of(b)?);
+            Some([
+                (first.clone(), Expr::symbol(second)),
+                (second.clone(), -Expr::symbol(first)),
+            ])
+        };
+        (0..rows).filter_map(in_row).flatten().collect()
+    };
+    pairs(turned).map(turn).collect()
+}
+
+/// For each two real coordinates, the direction in their plane along which the relation does not change.
+fn along_relation(relation: &Expr, factors: &[Factor]) -> Vec<Direction> {
+    let real = factors.iter().flat_map(|factor| {
+        let free = factor
+            .coordinates
+            .iter()
+            .filter(|symbol| factor.is_free(symbol));
+        free.cloned()
+    });
+    let real: Vec<Symbol> = real.collect();
+    let direction = |(a, b): (usize, usize)| {
+        let slope = |place: usize| relation.derivative(&real[place]);
+        vec![(real[a].clone(), slope(b)), (real[b].clone(), -slope(a))]
+    };
+    pairs(real.len()).map(direction).collect()
+}
+
+fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..count).flat_map(move |a| (a + 1..count).map(move |b| (a, b)))
 }
