@@ -167,7 +167,7 @@ impl Interval {
     }
 
     fn exp(&self) -> Self {
-        let value = self.growing(|x| not_lost(x.exp(), false));
+        let value = self.growing(exponential);
         let zero = self.low.same(0);
         Self {
             low: larger(value.low, zero),
@@ -369,7 +369,7 @@ fn up(value: &Precise) -> Precise {
         };
     }
     match value.unit_in_last_place() {
-        // What is exactly 0 is left: sums do not underflow, and products that do are given as the smallest number.
+        // What is exactly 0 is left: a function that only underflows is given as the smallest number.
         None => value.clone(),
         Some(unit) => value + &unit.halved(-OUTWARD_BITS),
     }
@@ -392,11 +392,12 @@ fn product(a: &Precise, b: &Precise, end: End) -> Precise {
     }
 }
 
-fn not_lost(value: Precise, negative: bool) -> Precise {
-    match (value.is_zero(), negative) {
-        (false, _) => value,
-        (true, false) => Precise::smallest(value.bits()),
-        (true, true) => -Precise::smallest(value.bits()),
+/// The exponential, but not 0 where it only underflows.
+fn exponential(x: &Precise) -> Precise {
+    let value = x.exp();
+    match value.is_zero() {
+        true => Precise::smallest(value.bits()),
+        false => value,
     }
 }
 

@@ -3,7 +3,8 @@
 //! A place refutes an identity where an enclosure of its residual excludes 0. That many places agree proves nothing: a spec that
 //! wants to rest on it has to say so, by `unproved`. The search therefore looks everywhere that it can:
 //! at random points near home, far from it and beside each exception; in cells of every sign pattern of exceptions and
-//! requirements; where the functions of the residual change fastest; and where enclosures leave room for a large residual, however narrow.
+//! requirements; where the functions of the residual change fastest; where enclosures leave room for a large residual, however narrow;
+//! and at its derivatives.
 
 mod axes;
 mod cells;
