@@ -2,7 +2,7 @@
 
 use crate::emit::formula::Program;
 use crate::emit::names::Names;
-use crate::expr::{Expr, Rational, Symbol};
+use crate::expr::{Expr, Rational, Role, Symbol};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -62,22 +62,6 @@ pub enum KernelKind {
     BiasAcceleration,
     /// Ẋ̄^cᵀ h.
     BiasMomentum,
-    /// X^c S₀: ϕ̇ to the twist in the child frame.
-    LocalTwistMap,
-    /// ∂(X̄^c v̄)/∂ϕ, with X̄^c = X^c S̄.
-    TwistGradient,
-    /// ∂(X̄^cᵀ h)/∂ϕ.
-    EffortGradient,
-    /// Ẋ̄^c.
-    TwistMapRate,
-    /// ∂c/∂ϕ.
-    BiasAccelerationGradient,
-    /// ∂c/∂v̄.
-    BiasAccelerationSlope,
-    /// ∂(Ẋ̄^cᵀ h)/∂ϕ.
-    BiasMomentumGradient,
-    /// ∂(Ẋ̄^cᵀ h)/∂v̄.
-    BiasMomentumSlope,
 }
 
 /// What is known of a kernel's value at compile time.
@@ -91,6 +75,23 @@ pub enum Structure {
     Constant,
     /// Depends on the configuration.
     General,
+}
+
+impl Structure {
+    /// That of a kernel with these results.
+    pub fn of(outputs: &[Matrix]) -> Self {
+        let entries = || outputs.iter().flat_map(Matrix::entries);
+        let moves = |entry: &Expr| {
+            let symbols = entry.symbols();
+            symbols.iter().any(|symbol| symbol.role == Role::Coordinate)
+        };
+        match outputs {
+            _ if outputs.iter().all(Matrix::is_zero) => Self::Zero,
+            [output] if output.rows() == output.columns() && output.is_identity() => Self::Identity,
+            _ if !entries().any(moves) => Self::Constant,
+            _ => Self::General,
+        }
+    }
 }
 
 /// A function of the runtime that a kernel calls where no formula serves at every argument.
@@ -243,6 +244,12 @@ pub struct Derived {
     pub arguments: Arguments,
     /// All kernels, in the order of [`KernelKind`].
     pub kernels: Vec<Kernel>,
+    /// ∂Φ/∂ϕ of the stored scalars at ϕ = 0, N×K.
+    pub tangent: Matrix,
+    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame, 6×K.
+    pub local_twist_map: Matrix,
+    /// X̄^c = X^c S̄: v̄ to the same twist, 6×S.
+    pub speed_map: Matrix,
     /// S to first order in ϕ, (32): S₀ + Σ S_k ϕ_k, in S₀-factored form where that is shorter: `(left, right)` with `S = left · right`.
     pub velocity_map_series: (Matrix, Matrix),
     /// N_X: basis of the inertias that the joint cannot feel, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
@@ -280,12 +287,16 @@ impl Programs {
 impl Derived {
     /// The formulas of one of its kernels, as they are written everywhere.
     pub fn program(&self, kernel: &Kernel) -> Arc<Program> {
-        self.programs.get(kernel, || {
-            let mut names = Names::new(self);
-            let bound = kernel.steps.iter().flat_map(Step::bound);
-            bound.for_each(|symbol| names.claim(symbol));
-            Program::new(kernel, names.taken())
-        })
+        self.programs
+            .get(kernel, || self.formulas(&kernel.steps, &kernel.outputs))
+    }
+
+    /// The formulas of lines and of the results that follow from them, in the names of this joint.
+    pub(crate) fn formulas(&self, steps: &[Step], outputs: &[Matrix]) -> Program {
+        let mut names = Names::new(self);
+        let bound = steps.iter().flat_map(Step::bound);
+        bound.for_each(|symbol| names.claim(symbol));
+        Program::new(steps, outputs, names.taken())
     }
 
     /// The kernel of that kind.

@@ -91,12 +91,16 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     if let Some(number) = expand::beyond_doubles(&kernels) {
         return Err(vec![beyond_doubles(&spec, &number)]);
     }
+    let ideal = spec.manifold.value.ideal();
     budget::begin(task::FORMULAS);
     kernels.iter().for_each(spend_on_formulas);
     Ok(Derived {
         shape: expansion.shape,
         cut_out: expand::dimension::cut_out(&spec),
         speed_names: expand::speed_names(&spec),
+        tangent: expansion.motion.tangent(),
+        local_twist_map: ideal.simplest_entries(&expansion.jacobian.child),
+        speed_map: expand::speed_map(&spec, &expansion),
         velocity_map_series: series(&spec, &expansion),
         arguments: expansion.arguments,
         imperceptible: expansion.imperceptible,

@@ -6,7 +6,7 @@
 
 use crate::chart::Chart;
 use crate::elements::ElementKernels;
-use crate::joint::{Joint, Structures, VelocityFrame};
+use crate::joint::{Joint, Products, Structures, VelocityFrame};
 use crate::spatial::Pose;
 use crate::steps::{ExtendedSteps, Steps};
 use alloc::sync::Arc;
@@ -110,22 +110,22 @@ pub trait AnyJoint: Debug + Send + Sync {
     fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64>;
     /// [`Joint::bias_momentum`] into `out` (S).
     fn bias_momentum(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
-    /// [`Joint::local_twist_map`] into `out` (6×K).
+    /// [`Products::local_twist_map`] into `out` (6×K).
     fn local_twist_map(&self, q: &[f64], out: &mut [f64]);
-    /// [`Joint::twist_gradient`] into `out` (6×K).
+    /// [`Products::twist_gradient`] into `out` (6×K).
     fn twist_gradient(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
-    /// [`Joint::effort_gradient`] into `out` (S×K).
+    /// [`Products::effort_gradient`] into `out` (S×K).
     fn effort_gradient(&self, q: &[f64], h: &Vector6<f64>, out: &mut [f64]);
-    /// [`Joint::twist_map_rate`] into `out` (6×S).
+    /// [`Products::twist_map_rate`] into `out` (6×S).
     fn twist_map_rate(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
-    /// [`Joint::bias_acceleration_gradient`] into `out` (6×K).
+    /// [`Products::bias_acceleration_gradient`] into `out` (6×K).
     fn bias_acceleration_gradient(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
-    /// [`Joint::bias_acceleration_slope`] into `out` (6×S).
+    /// [`Products::bias_acceleration_slope`] into `out` (6×S).
     fn bias_acceleration_slope(&self, q: &[f64], speeds: &[f64], out: &mut [f64]);
-    /// [`Joint::bias_momentum_gradient`] into `out` (S×K).
+    /// [`Products::bias_momentum_gradient`] into `out` (S×K).
     fn bias_momentum_gradient(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
-    /// [`Joint::bias_momentum_slope`] into `out` (S×S).
-    fn bias_momentum_slope(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]);
+    /// [`Products::bias_momentum_slope`] into `out` (S×S).
+    fn bias_momentum_slope(&self, q: &[f64], h: &Vector6<f64>, out: &mut [f64]);
 }
 
 /// A joint as recursions use it: their own slices always have the sizes that its type asks for.
@@ -423,8 +423,7 @@ where
         store(&self.0.bias_momentum_gradient(&q, &speeds, h), out);
     }
 
-    fn bias_momentum_slope(&self, q: &[f64], speeds: &[f64], h: &Vector6<f64>, out: &mut [f64]) {
-        let (q, speeds) = (vector(q), vector(speeds));
-        store(&self.0.bias_momentum_slope(&q, &speeds, h), out);
+    fn bias_momentum_slope(&self, q: &[f64], h: &Vector6<f64>, out: &mut [f64]) {
+        store(&self.0.bias_momentum_slope(&vector(q), h), out);
     }
 }

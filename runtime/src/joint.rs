@@ -5,17 +5,21 @@
 //! coordinates ϕ is evaluated at ϕ = 0 unless the method takes `phi`. Equation numbers are those of Duindam and
 //! Stramigioli, *Singularity-free dynamic equations of open-chain mechanisms with general holonomic and nonholonomic joints*.
 
+mod products;
+
+pub use products::Products;
+
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Version of the [`Joint`] trait. Generated code asserts it at compile time.
-pub const KERNEL_INTERFACE: u32 = 4;
+pub const KERNEL_INTERFACE: u32 = 5;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(4);`.
+/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(5);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,
@@ -51,6 +55,11 @@ impl Structure {
     pub const fn is_identity(self) -> bool {
         matches!(self, Self::Identity)
     }
+
+    /// Whether the kernel is the same at every configuration.
+    pub const fn is_constant(self) -> bool {
+        !matches!(self, Self::General)
+    }
 }
 
 /// The [`Structure`] of each kernel that can be trivial.
@@ -78,12 +87,8 @@ pub struct Structures {
     pub bias_acceleration: Structure,
     /// Ẋ̄^cᵀ h.
     pub bias_momentum: Structure,
-    /// ∂(X̄^c v̄)/∂ϕ, and with it ∂(X̄^cᵀ h)/∂ϕ.
-    pub twist_gradient: Structure,
-    /// ∂c/∂ϕ.
-    pub bias_acceleration_gradient: Structure,
-    /// ∂(Ẋ̄^cᵀ h)/∂ϕ.
-    pub bias_momentum_gradient: Structure,
+    /// X̄^c = X^c S̄.
+    pub speed_map: Structure,
 }
 
 /// What is known of one entry of a kernel's value at compile time.
@@ -109,6 +114,10 @@ pub struct Patterns<const K: usize, const S: usize> {
     pub twist_map_child: [[Entry; K]; 6],
     /// S̄, by rows.
     pub speed_basis: [[Entry; S]; K],
+    /// The slices of ∂X^c/∂ϕ, by rows.
+    pub twist_map_child_gradient: [[[Entry; K]; 6]; K],
+    /// The slices of ∂S̄/∂ϕ, by rows.
+    pub speed_basis_gradient: [[[Entry; S]; K]; K],
 }
 
 impl<const K: usize, const S: usize> Patterns<K, S> {
@@ -118,14 +127,19 @@ impl<const K: usize, const S: usize> Patterns<K, S> {
         translation: [Entry::Other; 3],
         twist_map_child: [[Entry::Other; K]; 6],
         speed_basis: [[Entry::Other; S]; K],
+        twist_map_child_gradient: [[[Entry::Other; K]; 6]; K],
+        speed_basis_gradient: [[[Entry::Other; S]; K]; K],
     };
 
-    /// A pattern from rows of the signs `0`, `1` and `x` for anything else, as generated code writes it.
+    /// A pattern from rows of the signs `0`, `1` and `x` for anything else, as generated code writes it. Of derivatives along ϕ, slices
+    /// that are not zero are given with their numbers.
     pub const fn new(
         rotation: [&str; 3],
         translation: &str,
         twist_map_child: [&str; 6],
         speed_basis: [&str; K],
+        twist_map_child_gradient: &[(usize, [&str; 6])],
+        speed_basis_gradient: &[(usize, [&str; K])],
     ) -> Self {
         let [translation] = entries([translation]);
         Self {
@@ -133,6 +147,8 @@ impl<const K: usize, const S: usize> Patterns<K, S> {
             translation,
             twist_map_child: entries(twist_map_child),
             speed_basis: entries(speed_basis),
+            twist_map_child_gradient: slices(twist_map_child_gradient),
+            speed_basis_gradient: slices(speed_basis_gradient),
         }
     }
 
@@ -181,6 +197,19 @@ const fn entries<const R: usize, const C: usize>(rows: [&str; R]) -> [[Entry; C]
     entries
 }
 
+const fn slices<const R: usize, const C: usize, const K: usize>(
+    given: &[(usize, [&str; R])],
+) -> [[[Entry; C]; R]; K] {
+    let mut slices = [[[Entry::Zero; C]; R]; K];
+    let mut n = 0;
+    while n < given.len() {
+        let (k, rows) = given[n];
+        slices[k] = entries(rows);
+        n += 1;
+    }
+    slices
+}
+
 const fn product(a: Entry, b: Entry) -> Entry {
     match (a, b) {
         (Entry::Zero, _) | (_, Entry::Zero) => Entry::Zero,
@@ -227,7 +256,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     const VELOCITY_FRAME: VelocityFrame;
     /// Which kernels are trivial.
     const STRUCTURES: Structures;
-    /// Which entries of H, X^c and S̄ are known.
+    /// Which entries of H, X^c, S̄ and the derivatives of the last two are known.
     const PATTERNS: Patterns<K, S>;
     /// Basis of the spatial inertias in the child frame that the joint cannot feel (N_X):
     /// `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`, inertia about the frame origin.
@@ -338,54 +367,4 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
         speeds: &SVector<T, S>,
         h: &SVector<T, 6>,
     ) -> SVector<T, S>;
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K>;
-
-    /// ∂(X̄^c v̄)/∂ϕ at fixed v̄, with X̄^c = X^c S̄; column k is the derivative along ϕ_k.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, K>;
-
-    /// ∂(X̄^cᵀ h)/∂ϕ for a wrench or momentum `h` that is fixed in the child frame: its dual.
-    fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &SVector<T, 6>) -> SMatrix<T, S, K>;
-
-    /// Ẋ̄^c at the speeds v̄: `c = Ẋ̄^c v̄`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, S>;
-
-    /// ∂c/∂ϕ at fixed v̄, of [`Joint::bias_acceleration`].
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, K>;
-
-    /// ∂c/∂v̄, of [`Joint::bias_acceleration`].
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, S>;
-
-    /// ∂(Ẋ̄^cᵀ h)/∂ϕ at fixed v̄ and h, of [`Joint::bias_momentum`].
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, S, K>;
-
-    /// ∂(Ẋ̄^cᵀ h)/∂v̄ at fixed h, of [`Joint::bias_momentum`].
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, S, S>;
 }

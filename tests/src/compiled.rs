@@ -7,7 +7,7 @@ use hamel::elements::{
 };
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
-use hamel_codegen::derived::Derived;
+use hamel_codegen::scene::JointType;
 use hamel_codegen::scene::functions::{Kind, Loops, compile_with};
 use hamel_codegen::scene::graph::Argument;
 use hamel_codegen::scene::model::{Body, Coupling, Elements, Model};
@@ -21,19 +21,20 @@ use std::sync::Arc;
 
 thread_local! {
     /// The library's joints, each derived when it is first asked for.
-    static JOINTS: RefCell<BTreeMap<&'static str, Rc<Derived>>> = RefCell::default();
+    static JOINTS: RefCell<BTreeMap<&'static str, Rc<JointType>>> = RefCell::default();
 }
 
 /// The joint type of the library.
 ///
 /// # Panics
 /// Where its spec is not sound.
-pub fn joint(name: &str) -> Option<Rc<Derived>> {
+pub fn joint(name: &str) -> Option<Rc<JointType>> {
     let (name, text) = hamel_joints::specs().find(|(known, _)| *known == name)?;
     JOINTS.with_borrow_mut(|joints| {
         let entry = joints.entry(name).or_insert_with(|| {
             let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
-            Rc::new(derived.unwrap_or_else(|errors| panic!("{errors}")))
+            let derived = derived.unwrap_or_else(|errors| panic!("{errors}"));
+            Rc::new(JointType::new(derived).expect("its products take little work"))
         });
         Some(Rc::clone(entry))
     })

@@ -4,7 +4,7 @@ use super::{Expansion, finite, general, hamel};
 use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
-use crate::expr::{Expr, Role, Symbol};
+use crate::expr::{Expr, Symbol};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
@@ -42,6 +42,12 @@ struct Maker<'a> {
     x: &'a Expansion,
     ideal: &'a Ideal,
     child_slopes: Vec<Matrix>,
+}
+
+/// X̄^c = X^c S̄.
+pub fn speed_map(spec: &JointSpec, x: &Expansion) -> Matrix {
+    let map = x.twist_map_child.times(&x.nonholonomic.speed_basis);
+    spec.manifold.value.ideal().simplest_entries(&map)
 }
 
 /// ∂X^c/∂ϕ, by the chain rule: multiplied out, what the definition adds up before it divides would cancel.
@@ -215,12 +221,7 @@ impl Maker<'_> {
             .x
             .velocity_map_inverse
             .times(&Matrix::symbols(&self.x.arguments.velocity));
-        let directions: Vec<Vec<_>> = (0..self.x.shape.freedoms)
-            .map(|k| self.x.motion.direction(k).to_vec())
-            .collect();
-        let directions = Matrix::from_columns(self.x.shape.configuration, &directions);
-        let rate = directions.times(&rates);
-        self.short(&rate)
+        self.short(&self.x.motion.tangent().times(&rates))
     }
 
     /// `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`, with `ϕ̇ = S₀⁻¹ S̄ v̄`.
@@ -245,19 +246,16 @@ impl Maker<'_> {
         let momentum = rate
             .transpose()
             .times(&Matrix::symbols(&self.x.arguments.wrench));
-        let slopes = self.slopes(&rate, &acceleration, &momentum);
-        let mut kernels = vec![
+        vec![
             plain(KernelKind::BiasAcceleration, vec![acceleration]),
             plain(KernelKind::BiasMomentum, vec![momentum]),
-        ];
-        kernels.extend(slopes);
-        kernels
+        ]
     }
 
     /// Ẋ̄^c from derivatives of X̄^c, with sums kept together: multiplied out, products of long ones would be longer than anything
     /// can be made of.
     fn grouped_rate(&self, rates: &Matrix) -> Matrix {
-        let map = self.speed_map();
+        let map = speed_map(self.spec, self.x);
         let grouped = |k: usize| {
             let slope = self.short(&self.x.motion.along_each(&map, k));
             slope.map(Expr::grouped).scale(&rates.at(k, 0).grouped())
@@ -265,49 +263,6 @@ impl Maker<'_> {
         let zero = Matrix::zeros(map.rows(), map.columns());
         let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| sum.plus(&grouped(k)));
         rate.map(Expr::grouped)
-    }
-
-    /// X̄^c = X^c S̄.
-    fn speed_map(&self) -> Matrix {
-        let basis = &self.x.nonholonomic.speed_basis;
-        self.short(&self.x.twist_map_child.times(basis))
-    }
-
-    /// What derivatives of the dynamics need of a joint, from Ẋ̄^c, `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`.
-    fn slopes(&self, rate: &Matrix, acceleration: &Matrix, momentum: &Matrix) -> Vec<Kernel> {
-        let arguments = &self.x.arguments;
-        let speeds = Matrix::symbols(&arguments.speeds);
-        let wrench = Matrix::symbols(&arguments.wrench);
-        let map = self.speed_map();
-        // Column k along ϕ_k, of a column.
-        let gradient = |column: &Matrix| {
-            let along = |k| self.x.motion.along_each(column, k).entries().to_vec();
-            let columns: Vec<Vec<_>> = (0..self.x.shape.freedoms).map(along).collect();
-            self.short(&Matrix::from_columns(column.rows(), &columns))
-        };
-        let slope = |column: &Matrix| {
-            let by = |symbol: &Symbol| column.derivative(symbol).entries().to_vec();
-            let columns: Vec<Vec<_>> = arguments.speeds.iter().map(by).collect();
-            self.short(&Matrix::from_columns(column.rows(), &columns))
-        };
-        let local = self.short(&self.x.jacobian.child);
-        let values = [
-            (KernelKind::LocalTwistMap, local),
-            (KernelKind::TwistGradient, gradient(&map.times(&speeds))),
-            (
-                KernelKind::EffortGradient,
-                gradient(&map.transpose().times(&wrench)),
-            ),
-            (KernelKind::TwistMapRate, rate.clone()),
-            (KernelKind::BiasAccelerationGradient, gradient(acceleration)),
-            (KernelKind::BiasAccelerationSlope, slope(acceleration)),
-            (KernelKind::BiasMomentumGradient, gradient(momentum)),
-            (KernelKind::BiasMomentumSlope, slope(momentum)),
-        ];
-        let values = values.into_iter();
-        values
-            .map(|(kind, value)| plain(kind, vec![value]))
-            .collect()
     }
 }
 
@@ -329,7 +284,7 @@ fn side_of_home(spec: &JointSpec, exponential: bool) -> Option<Matrix> {
 
 /// A kernel without intermediate lines.
 fn plain(kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
-    let structure = structure_of(&outputs);
+    let structure = Structure::of(&outputs);
     Kernel {
         kind,
         steps: vec![],
@@ -364,23 +319,6 @@ fn with(kind: KernelKind, steps: Vec<Step>, output: Matrix, structure: Structure
         outputs: vec![output],
         method: Method::Formula,
         structure,
-    }
-}
-
-fn structure_of(outputs: &[Matrix]) -> Structure {
-    let depends = |role: Role| {
-        let entries = outputs.iter().flat_map(|output| output.entries());
-        entries
-            .clone()
-            .any(|entry| entry.symbols().iter().any(|symbol| symbol.role == role))
-    };
-    match outputs {
-        _ if outputs.iter().all(Matrix::is_zero) => Structure::Zero,
-        [output] if output.rows() == output.columns() && output.is_identity() => {
-            Structure::Identity
-        }
-        _ if !depends(Role::Coordinate) => Structure::Constant,
-        _ => Structure::General,
     }
 }
 

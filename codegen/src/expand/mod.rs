@@ -21,7 +21,7 @@ mod velocity;
 
 pub use dimension::{Confinement, confine};
 pub use general::is_exponential;
-pub use kernels::kernels;
+pub use kernels::{kernels, speed_map};
 pub use motion::{Motion, exponential, local_element};
 pub use nonholonomic::{Nonholonomic, speed_names};
 pub use numbers::beyond_doubles;

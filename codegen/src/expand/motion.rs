@@ -136,6 +136,11 @@ impl Motion {
         &self.first[k]
     }
 
+    /// ∂Φ/∂ϕ of the stored scalars at ϕ = 0, N×K: δ_k by columns.
+    pub fn tangent(&self) -> Matrix {
+        Matrix::from_columns(self.coordinates.len(), &self.first)
+    }
+
     /// δ_kl, the second derivative of Φ along ϕ_k and ϕ_l.
     pub fn curvature(&self, k: usize, l: usize) -> &[Expr] {
         &self.second[k][l]

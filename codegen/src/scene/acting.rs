@@ -3,7 +3,8 @@
 use super::graph::{Sym, record};
 use super::joint::Joint;
 use super::model::Elements;
-use crate::derived::{Derived, KernelKind, Method};
+use super::products::JointType;
+use crate::derived::{KernelKind, Method};
 use hamel::elements::{JointSpring, RotationSpring};
 use hamel::mechanism::CONFIGURATION_TOLERANCE;
 use hamel_scene::{BodyDescription, Position, SpringEnergy};
@@ -18,7 +19,7 @@ pub struct Held<'a> {
     /// Its body.
     pub body: &'a BodyDescription,
     /// Its type.
-    pub joint: &'a Derived,
+    pub joint: &'a JointType,
     /// Values of the type's parameters.
     pub parameters: &'a [f64],
 }
@@ -45,11 +46,11 @@ impl Held<'_> {
                 return Ok(());
             }
             SpringEnergy::Diagonal(numbers) => numbers
-                .spread(self.joint.shape.freedoms)
+                .spread(self.joint.derived.shape.freedoms)
                 .map(|numbers| DMatrix::from_diagonal(&DVector::from_vec(numbers))),
             SpringEnergy::Full(matrix) => Some(matrix.clone()),
         };
-        let size = self.joint.shape.freedoms;
+        let size = self.joint.derived.shape.freedoms;
         let fits = |matrix: &DMatrix<f64>| matrix.shape() == (size, size);
         let stiffness = stiffness
             .filter(fits)
@@ -75,7 +76,7 @@ impl Held<'_> {
 
     /// Whether a kernel is a formula: what iterates is not compiled.
     fn in_closed_form(&self, kind: KernelKind) -> Result<(), String> {
-        let kernel = self.joint.kernel(kind);
+        let kernel = self.joint.derived.kernel(kind);
         match kernel.is_some_and(|kernel| kernel.method == Method::Formula) {
             true => Ok(()),
             false => {
@@ -107,7 +108,7 @@ impl Held<'_> {
             Position::Home => home(),
             Position::Configuration(given) => self.projected(&given.value),
             Position::Phi(phi) => {
-                let size = self.joint.shape.freedoms;
+                let size = self.joint.derived.shape.freedoms;
                 if phi.value.len() != size {
                     return Err(self.refused(&format!("`phi` must have {size} number(s)")));
                 }
@@ -122,7 +123,7 @@ impl Held<'_> {
 
     /// A configuration given outright, freed of its rounding.
     fn projected(&self, given: &[f64]) -> Result<Vec<f64>, String> {
-        let size = self.joint.shape.configuration;
+        let size = self.joint.derived.shape.configuration;
         if given.len() != size {
             return Err(self.refused(&format!("`configuration` must have {size} number(s)")));
         }

@@ -14,9 +14,11 @@ use super::describe::Refused;
 use super::emit;
 use super::functions::{self, Kind, Loops, TooLong};
 use super::model::Model;
+use super::products::JointType;
 use crate::derived::Derived;
 use crate::emit::rust::WriteError;
 use crate::emit::text::is_visible;
+use crate::expr::budget::Exhausted;
 use crate::source;
 use hamel_scene::{Scene, SceneDescription, urdf};
 use std::collections::BTreeMap;
@@ -95,6 +97,8 @@ pub enum Error {
     Scene(Box<hamel_scene::Diagnostics>),
     /// Mistakes in a spec.
     Spec(Box<crate::diagnostic::Diagnostics>),
+    /// A joint type of which products of kernels take more work than a spec may.
+    Work(String, Exhausted),
     /// What the scene has and the compiler does not write.
     Refused(Refused),
     /// A function that was asked for and would be too long.
@@ -115,6 +119,9 @@ impl std::fmt::Display for Error {
             Self::File(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Scene(errors) => write!(f, "{errors}"),
             Self::Spec(errors) => write!(f, "{errors}"),
+            Self::Work(joint, Exhausted { limit, task }) => {
+                write!(f, "joint type `{joint}`: {task}: more than {limit} term operations")
+            }
             Self::Refused(refused) => write!(f, "{refused}"),
             Self::TooLong(long) => write!(f, "{long}"),
             Self::Write(error) => write!(f, "{error}"),
@@ -327,7 +334,9 @@ impl Build {
         let mut joints = BTreeMap::new();
         for kind in kinds {
             if let Some(derived) = self.derive(kind)? {
-                joints.insert(kind.to_owned(), Rc::new(derived));
+                let joint = JointType::new(derived);
+                let joint = joint.map_err(|error| Error::Work(kind.to_owned(), error))?;
+                joints.insert(kind.to_owned(), Rc::new(joint));
             }
         }
         Model::new(&description, |kind| joints.get(kind).cloned()).map_err(Error::Refused)

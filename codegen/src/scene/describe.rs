@@ -3,7 +3,7 @@
 use super::acting::Held;
 use super::check;
 use super::model::{Body, Coupling, Elements, Model};
-use crate::derived::Derived;
+use super::products::JointType;
 use hamel::elements::{BodySpring, BodyWrench, WrenchAxes};
 use hamel_scene::{BodyDescription, PointSpring, SceneDescription, WrenchDescription};
 use std::rc::Rc;
@@ -35,7 +35,7 @@ impl Model {
     /// Joint types that are not found, parameters that do not fit them, and what the scene has that the compiler does not write.
     pub fn new(
         scene: &SceneDescription,
-        joints: impl Fn(&str) -> Option<Rc<Derived>>,
+        joints: impl Fn(&str) -> Option<Rc<JointType>>,
     ) -> Result<Self, Refused> {
         let refused = |reasons| Refused {
             scene: scene.name.clone(),
@@ -118,11 +118,11 @@ fn wrench((index, wrench): (usize, &WrenchDescription)) -> BodyWrench {
     }
 }
 
-fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<String>> {
+fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<String>> {
     let name = &body.joint.name.value;
     let mut reasons = vec![];
     let forces = &body.forces;
-    let freedoms = joint.shape.freedoms;
+    let freedoms = joint.derived.shape.freedoms;
     let mut spread = |what: &str, given: Option<&hamel_scene::PerFreedom>| {
         let numbers = given.map_or(Some(vec![]), |given| given.spread(freedoms));
         numbers.unwrap_or_else(|| {
@@ -141,7 +141,7 @@ fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<Stri
         .effort
         .as_ref()
         .map_or(vec![], |found| found.value.clone());
-    if joint.shape.constraints > 0 && armature.iter().any(|&rotor| rotor != 0.0) {
+    if joint.derived.shape.constraints > 0 && armature.iter().any(|&rotor| rotor != 0.0) {
         reasons.push(format!(
             "joint `{name}`: a nonholonomic joint such as `{}` can have no armature",
             body.joint.kind.value
@@ -168,9 +168,10 @@ fn compiled(body: &BodyDescription, joint: Rc<Derived>) -> Result<Body, Vec<Stri
 }
 
 /// The values of a joint's parameters in the order of its spec.
-fn parameters(body: &BodyDescription, joint: &Derived, reasons: &mut Vec<String>) -> Vec<f64> {
+fn parameters(body: &BodyDescription, joint: &JointType, reasons: &mut Vec<String>) -> Vec<f64> {
     let name = &body.joint.name.value;
     let known: Vec<&str> = joint
+        .derived
         .spec
         .parameters
         .iter()

@@ -43,7 +43,7 @@ pub fn explain(model: &Model, kinds: &[Kind]) -> String {
 fn of_body(model: &Model, body: &Body, [bare, framed, pruned]: [&Link; 3]) -> String {
     let mut text = format!(
         "\n{} (joint `{}`, {})\n",
-        body.name, body.joint_name, body.joint.spec.name.value
+        body.name, body.joint_name, body.joint.derived.spec.name.value
     );
     if bare.placement != framed.placement || bare.after != framed.after {
         let _ = writeln!(
@@ -100,7 +100,7 @@ fn placement(steps: &[Fixed]) -> String {
 
 /// What holds of a joint's own velocity terms.
 fn without_bias(body: &Body) -> Option<&'static str> {
-    let shape = body.joint.shape;
+    let shape = body.joint.derived.shape;
     let (vanishes, _) = record(|| {
         let inputs = |argument, count: usize| -> Vec<Sym> {
             (0..count).map(|i| Sym::input(argument, i)).collect()

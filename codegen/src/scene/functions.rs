@@ -257,7 +257,7 @@ fn worth_factorising(model: &Model) -> bool {
     let mut before: Vec<usize> = vec![];
     let mut operations = 0;
     for body in &model.bodies {
-        let speeds = body.joint.shape.speeds;
+        let speeds = body.joint.derived.shape.speeds;
         let depth = body.parent.map_or(0, |parent| before[parent]);
         before.push(depth + speeds);
         operations += (depth..depth + speeds).map(|n| n * n).sum::<usize>();
@@ -363,7 +363,7 @@ fn pairs(model: &Model) -> usize {
     }
     let bodies = model.bodies.iter().zip(depths);
     bodies
-        .map(|(body, depth)| body.joint.shape.speeds * depth)
+        .map(|(body, depth)| body.joint.derived.shape.speeds * depth)
         .sum()
 }
 

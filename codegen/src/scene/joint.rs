@@ -1,6 +1,7 @@
 //! The kernels of one joint of a scene, on the graph.
 
 use super::graph::{Sym, call, call_two, primitive, sin_cos};
+use super::products::{JointType, Product};
 use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
 use crate::derived::{Derived, KernelKind};
 use crate::emit::formula::{Binding, Node, Program};
@@ -10,13 +11,15 @@ use std::collections::BTreeMap;
 
 /// A joint at one state.
 pub struct Joint<'a> {
+    joint: &'a JointType,
     derived: &'a Derived,
     values: BTreeMap<Symbol, Sym>,
 }
 
 impl<'a> Joint<'a> {
     /// The joint with numbers for its parameters, at Q and v̄.
-    pub fn new(derived: &'a Derived, parameters: &[f64], q: &[Sym], speeds: &[Sym]) -> Self {
+    pub fn new(joint: &'a JointType, parameters: &[f64], q: &[Sym], speeds: &[Sym]) -> Self {
+        let derived = &joint.derived;
         let numbers = parameters.iter().map(|&number| Sym::from(number));
         let parameters = derived.spec.parameters.iter().map(|known| &known.symbol);
         let mut values: BTreeMap<Symbol, Sym> = parameters.cloned().zip(numbers).collect();
@@ -29,7 +32,11 @@ impl<'a> Joint<'a> {
                 .zip(q.iter().copied()),
         );
         values.extend(arguments.speeds.iter().cloned().zip(speeds.iter().copied()));
-        Self { derived, values }
+        Self {
+            joint,
+            derived,
+            values,
+        }
     }
 
     /// The stored scalars of the home configuration.
@@ -96,32 +103,34 @@ impl<'a> Joint<'a> {
 
     /// The columns of X^c S₀: ϕ̇ to the twist in the child frame.
     pub fn local_twist_map(&self) -> Vec<Twist> {
-        let entries = self.entries(KernelKind::LocalTwistMap);
+        let entries = self.product(&self.joint.products.local_twist_map, &[]);
         columns(&entries, self.derived.shape.freedoms)
     }
 
     /// ∂(X̄^c x)/∂ϕ, one column a freedom.
     pub fn twist_gradient(&self, x: &[Sym]) -> Vec<Twist> {
         let given = [(self.derived.arguments.speeds.as_slice(), x)];
-        let entries = self.entries_with(KernelKind::TwistGradient, &given);
+        let entries = self.product(&self.joint.products.twist_gradient, &given);
         columns(&entries, self.derived.shape.freedoms)
     }
 
     /// ∂c/∂ϕ, one column a freedom.
     pub fn bias_gradient(&self) -> Vec<Twist> {
-        let entries = self.entries(KernelKind::BiasAccelerationGradient);
+        let entries = self.product(&self.joint.products.bias_acceleration_gradient, &[]);
         columns(&entries, self.derived.shape.freedoms)
     }
 
     /// ∂c/∂v̄, one column a speed.
     pub fn bias_slope(&self) -> Vec<Twist> {
-        let entries = self.entries(KernelKind::BiasAccelerationSlope);
+        let entries = self.product(&self.joint.products.bias_acceleration_slope, &[]);
         columns(&entries, self.derived.shape.speeds)
     }
 
     /// ∂(X̄^cᵀ h)/∂ϕ by rows, one a speed; none where X̄^c is constant.
     pub fn effort_gradient(&self, wrench: &Wrench) -> Vec<Vec<Sym>> {
-        let entries = self.with_wrench(KernelKind::EffortGradient, wrench);
+        let parts = parts_of(wrench);
+        let given = [(self.derived.arguments.wrench.as_slice(), &parts[..])];
+        let entries = self.product(&self.joint.products.effort_gradient, &given);
         let rows = entries.chunks(self.derived.shape.freedoms.max(1));
         rows.map(<[Sym]>::to_vec).collect()
     }
@@ -171,14 +180,9 @@ impl<'a> Joint<'a> {
 
     /// `Ẋ̄^cᵀ h` at v̄.
     pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
-        self.with_wrench(KernelKind::BiasMomentum, momentum)
-    }
-
-    /// The entries of a kernel that takes a wrench or a momentum.
-    fn with_wrench(&self, kind: KernelKind, wrench: &Wrench) -> Vec<Sym> {
-        let parts = wrench.moment.iter().chain(&wrench.force);
-        let parts: Vec<Sym> = parts.copied().collect();
-        self.entries_with(kind, &[(self.derived.arguments.wrench.as_slice(), &parts)])
+        let parts = parts_of(momentum);
+        let given = [(self.derived.arguments.wrench.as_slice(), &parts[..])];
+        self.entries_with(KernelKind::BiasMomentum, &given)
     }
 
     /// The nearest point of the manifold.
@@ -196,12 +200,27 @@ impl<'a> Joint<'a> {
         let Some(kernel) = self.derived.kernel(kind) else {
             return vec![];
         };
+        run(&self.derived.program(kernel), self.values_with(given))
+    }
+
+    /// The entries of a product of kernels, row by row, with values for more symbols.
+    fn product(&self, product: &Product, given: &[(&[Symbol], &[Sym])]) -> Vec<Sym> {
+        run(self.joint.program(product), self.values_with(given))
+    }
+
+    fn values_with(&self, given: &[(&[Symbol], &[Sym])]) -> BTreeMap<Symbol, Sym> {
         let mut values = self.values.clone();
         for (symbols, given) in given {
             values.extend(symbols.iter().cloned().zip(given.iter().copied()));
         }
-        run(&self.derived.program(kernel), values)
+        values
     }
+}
+
+/// The six entries of a wrench or a momentum, moment first.
+fn parts_of(wrench: &Wrench) -> Vec<Sym> {
+    let parts = wrench.moment.iter().chain(&wrench.force);
+    parts.copied().collect()
 }
 
 fn run(program: &Program, mut values: BTreeMap<Symbol, Sym>) -> Vec<Sym> {

@@ -34,9 +34,11 @@ pub mod functions;
 pub mod graph;
 mod joint;
 pub mod model;
+mod products;
 pub mod prune;
 mod spatial;
 
 pub use build::{Build, Error, Language, Module, scene, scene_of};
 pub use describe::Refused;
 pub use explain::explain;
+pub use products::{JointType, Product, Products};

@@ -1,6 +1,6 @@
 //! What is compiled: a tree of bodies with numbers for all that does not change.
 
-use crate::derived::Derived;
+use super::products::JointType;
 use hamel::elements::{BodySpring, BodyWrench, JointSpring, PointConstraint, RotationSpring};
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
@@ -54,7 +54,7 @@ pub struct Body {
     /// Index of the parent; `None` is the world.
     pub parent: Option<usize>,
     /// The joint's type.
-    pub joint: Rc<Derived>,
+    pub joint: Rc<JointType>,
     /// Values of the type's parameters, in the order of its spec.
     pub parameters: Vec<f64>,
     /// The joint's parent frame in the parent's body frame.
@@ -94,7 +94,7 @@ impl Model {
             range
         };
         let share = |body: &Body| {
-            let shape = body.joint.shape;
+            let shape = body.joint.derived.shape;
             Share {
                 configuration: next(&mut end[0], shape.configuration),
                 freedoms: next(&mut end[1], shape.freedoms),
@@ -106,7 +106,7 @@ impl Model {
 
     /// Sizes of Q, of v and τ, and of v̄.
     pub fn sizes(&self) -> [usize; 3] {
-        let shapes = self.bodies.iter().map(|body| body.joint.shape);
+        let shapes = self.bodies.iter().map(|body| body.joint.derived.shape);
         shapes.fold([0; 3], |[q, v, speeds], shape| {
             [
                 q + shape.configuration,

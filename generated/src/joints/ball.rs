@@ -44,7 +44,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Ball joint: three rotations about the common origin of both frames (Examples 1 and 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,15 +78,19 @@ impl Joint<9, 3, 3, 0> for Ball {
         retract_differential: Structure::General,
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::General,
-        twist_gradient: Structure::General,
-        bias_acceleration_gradient: Structure::Zero,
-        bias_momentum_gradient: Structure::General,
+        speed_map: Structure::General,
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(
         ["xxx", "xxx", "xxx"],
         "000",
         ["xxx", "xxx", "xxx", "000", "000", "000"],
         ["100", "010", "001"],
+        &[
+            (0, ["000", "xxx", "xxx", "000", "000", "000"]),
+            (1, ["xxx", "000", "xxx", "000", "000", "000"]),
+            (2, ["xxx", "xxx", "000", "000", "000", "000"]),
+        ],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -572,211 +576,6 @@ impl Joint<9, 3, 3, 0> for Ball {
                 - speed_e1 * q31_h1_plus_q32_h2_plus_q33_h3,
             speed_e1 * q21_h1_plus_q22_h2_plus_q23_h3
                 - speed_e2 * q11_h1_plus_q12_h2_plus_q13_h3,
-        ])
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×3. Independent of Q. Operations: none.
-    ///
-    /// From line 9 `basis`, line 11 `Phi`, line 12 `H`.
-    fn local_twist_map<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
-        let zero = T::zero();
-        let one = T::one();
-        from_rows([
-            [one, zero, zero],
-            [zero, one, zero],
-            [zero, zero, one],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Operations: 6 additions, 9 multiplications (6 of each fused).
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [speed_e1, speed_e2, speed_e3]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let sum_of_q13_speed_e1_q23_speed_e2_q33 = q13
-            .mul_add(speed_e1, q23.mul_add(speed_e2, q33 * speed_e3));
-        let sum_of_q12_speed_e1_q22_speed_e2_q32 = q12
-            .mul_add(speed_e1, q22.mul_add(speed_e2, q32 * speed_e3));
-        let sum_of_q11_speed_e1_q21_speed_e2_q31 = q11
-            .mul_add(speed_e1, q21.mul_add(speed_e2, q31 * speed_e3));
-        from_rows([
-            [
-                zero,
-                -sum_of_q13_speed_e1_q23_speed_e2_q33,
-                sum_of_q12_speed_e1_q22_speed_e2_q32,
-            ],
-            [
-                sum_of_q13_speed_e1_q23_speed_e2_q33,
-                zero,
-                -sum_of_q11_speed_e1_q21_speed_e2_q31,
-            ],
-            [
-                -sum_of_q12_speed_e1_q22_speed_e2_q32,
-                sum_of_q11_speed_e1_q21_speed_e2_q31,
-                zero,
-            ],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 3×3. Operations: 9 additions, 18 multiplications.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let (h1, h2, h3) = (h[0], h[1], h[2]);
-        from_rows([
-            [q13 * h2 - q12 * h3, q11 * h3 - q13 * h1, q12 * h1 - q11 * h2],
-            [q23 * h2 - q22 * h3, q21 * h3 - q23 * h1, q22 * h1 - q21 * h2],
-            [q33 * h2 - q32 * h3, q31 * h3 - q33 * h1, q32 * h1 - q31 * h2],
-        ])
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×3. Operations: 9 additions, 18 multiplications.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [speed_e1, speed_e2, speed_e3]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        from_rows([
-            [
-                q31 * speed_e2 - q21 * speed_e3,
-                q11 * speed_e3 - q31 * speed_e1,
-                q21 * speed_e1 - q11 * speed_e2,
-            ],
-            [
-                q32 * speed_e2 - q22 * speed_e3,
-                q12 * speed_e3 - q32 * speed_e1,
-                q22 * speed_e1 - q12 * speed_e2,
-            ],
-            [
-                q33 * speed_e2 - q23 * speed_e3,
-                q13 * speed_e3 - q33 * speed_e1,
-                q23 * speed_e1 - q13 * speed_e2,
-            ],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 3×3. Operations: 18 additions, 36 multiplications.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [speed_e1, speed_e2, speed_e3]: [T; 3] = (*speeds).into();
-        let (h1, h2, h3) = (h[0], h[1], h[2]);
-        let q22_h3_minus_q23_h2 = q22 * h3 - q23 * h2;
-        let q32_h3_minus_q33_h2 = q32 * h3 - q33 * h2;
-        let q21_h3_minus_q23_h1 = q21 * h3 - q23 * h1;
-        let q31_h3_minus_q33_h1 = q31 * h3 - q33 * h1;
-        let q21_h2_minus_q22_h1 = q21 * h2 - q22 * h1;
-        let q31_h2_minus_q32_h1 = q31 * h2 - q32 * h1;
-        let q12_h3_minus_q13_h2 = q12 * h3 - q13 * h2;
-        let q11_h3_minus_q13_h1 = q11 * h3 - q13 * h1;
-        let q11_h2_minus_q12_h1 = q11 * h2 - q12 * h1;
-        from_rows([
-            [
-                speed_e3 * q22_h3_minus_q23_h2 - speed_e2 * q32_h3_minus_q33_h2,
-                speed_e2 * q31_h3_minus_q33_h1 - speed_e3 * q21_h3_minus_q23_h1,
-                speed_e3 * q21_h2_minus_q22_h1 - speed_e2 * q31_h2_minus_q32_h1,
-            ],
-            [
-                speed_e1 * q32_h3_minus_q33_h2 - speed_e3 * q12_h3_minus_q13_h2,
-                speed_e3 * q11_h3_minus_q13_h1 - speed_e1 * q31_h3_minus_q33_h1,
-                speed_e1 * q31_h2_minus_q32_h1 - speed_e3 * q11_h2_minus_q12_h1,
-            ],
-            [
-                speed_e2 * q12_h3_minus_q13_h2 - speed_e1 * q22_h3_minus_q23_h2,
-                speed_e1 * q21_h3_minus_q23_h1 - speed_e2 * q11_h3_minus_q13_h1,
-                speed_e2 * q11_h2_minus_q12_h1 - speed_e1 * q21_h2_minus_q22_h1,
-            ],
-        ])
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 3×3. Operations: 6 additions, 9 multiplications (6 of each fused).
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `Phi`, line 12 `H`, line 13 `X`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        _speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let (h1, h2, h3) = (h[0], h[1], h[2]);
-        let zero = T::zero();
-        let q31_h1_plus_q32_h2_plus_q33_h3 = q31.mul_add(h1, q32.mul_add(h2, q33 * h3));
-        let q21_h1_plus_q22_h2_plus_q23_h3 = q21.mul_add(h1, q22.mul_add(h2, q23 * h3));
-        let q11_h1_plus_q12_h2_plus_q13_h3 = q11.mul_add(h1, q12.mul_add(h2, q13 * h3));
-        from_rows([
-            [zero, q31_h1_plus_q32_h2_plus_q33_h3, -q21_h1_plus_q22_h2_plus_q23_h3],
-            [-q31_h1_plus_q32_h2_plus_q33_h3, zero, q11_h1_plus_q12_h2_plus_q13_h3],
-            [q21_h1_plus_q22_h2_plus_q23_h3, -q11_h1_plus_q12_h2_plus_q13_h3, zero],
         ])
     }
 }

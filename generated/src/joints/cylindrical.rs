@@ -41,7 +41,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Cylindrical joint: a turn about and a slide along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,15 +65,15 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
-        twist_gradient: Structure::Zero,
-        bias_acceleration_gradient: Structure::Zero,
-        bias_momentum_gradient: Structure::Zero,
+        speed_map: Structure::Constant,
     };
     const PATTERNS: Patterns<2, 2> = Patterns::new(
         ["xx0", "xx0", "001"],
         "00x",
         ["00", "00", "10", "00", "00", "01"],
         ["10", "01"],
+        &[],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
@@ -361,117 +361,6 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
         _h: &SVector<T, 6>,
     ) -> SVector<T, 2> {
         SVector::zeros()
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×2. Independent of Q. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn local_twist_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
-        let zero = T::zero();
-        let one = T::one();
-        from_rows([
-            [zero, zero],
-            [zero, zero],
-            [one, zero],
-            [zero, zero],
-            [zero, zero],
-            [zero, one],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
     }
 }
 

@@ -51,7 +51,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Free joint: all six motions of the child relative to the parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,15 +88,15 @@ impl Joint<12, 6, 6, 0> for Free {
         retract_differential: Structure::General,
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
-        twist_gradient: Structure::Zero,
-        bias_acceleration_gradient: Structure::Zero,
-        bias_momentum_gradient: Structure::Zero,
+        speed_map: Structure::Identity,
     };
     const PATTERNS: Patterns<6, 6> = Patterns::new(
         ["xxx", "xxx", "xxx"],
         "xxx",
         ["100000", "010000", "001000", "000100", "000010", "000001"],
         ["100000", "010000", "001000", "000100", "000010", "000001"],
+        &[],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
@@ -862,108 +862,6 @@ impl Joint<12, 6, 6, 0> for Free {
         _h: &SVector<T, 6>,
     ) -> SVector<T, 6> {
         SVector::zeros()
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×6. The identity. Operations: none.
-    ///
-    /// From line 10 `basis`, line 12 `Phi`, line 13 `H`.
-    fn local_twist_map<T: Scalar>(&self, _q: &SVector<T, 12>) -> SMatrix<T, 6, 6> {
-        SMatrix::identity()
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×6. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 12>,
-        _speeds: &SVector<T, 6>,
-    ) -> SMatrix<T, 6, 6> {
-        SMatrix::zeros()
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 6×6. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 12>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 6, 6> {
-        SMatrix::zeros()
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×6. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 12>,
-        _speeds: &SVector<T, 6>,
-    ) -> SMatrix<T, 6, 6> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×6. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 12>,
-        _speeds: &SVector<T, 6>,
-    ) -> SMatrix<T, 6, 6> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×6. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 12>,
-        _speeds: &SVector<T, 6>,
-    ) -> SMatrix<T, 6, 6> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 6×6. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 12>,
-        _speeds: &SVector<T, 6>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 6, 6> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 6×6. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 12>,
-        _speeds: &SVector<T, 6>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 6, 6> {
-        SMatrix::zeros()
     }
 }
 

@@ -41,7 +41,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,15 +65,18 @@ impl Joint<3, 3, 3, 0> for Gimbal {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
-        twist_gradient: Structure::General,
-        bias_acceleration_gradient: Structure::General,
-        bias_momentum_gradient: Structure::General,
+        speed_map: Structure::General,
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(
         ["xxx", "xxx", "xxx"],
         "000",
         ["x01", "xx0", "xx0", "000", "000", "000"],
         ["100", "010", "001"],
+        &[
+            (1, ["x00", "x00", "x00", "000", "000", "000"]),
+            (2, ["000", "xx0", "xx0", "000", "000", "000"]),
+        ],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -435,283 +438,6 @@ impl Joint<3, 3, 3, 0> for Gimbal {
                     * h1.mul_add(cos_pitch, sin_pitch * h2_sin_roll_plus_h3_cos_roll),
             -speed_roll * h2_sin_roll_plus_h3_cos_roll,
             zero,
-        ])
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×3. Operations: 2 multiplications, 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let zero = T::zero();
-        let one = T::one();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        from_rows([
-            [-sin_pitch, zero, one],
-            [cos_pitch * sin_roll, cos_roll, zero],
-            [cos_pitch * cos_roll, -sin_roll, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Operations: 2 additions, 8 multiplications (1 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let (speed_yaw, speed_pitch) = (speeds[0], speeds[1]);
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let speed_yaw_cos_pitch = speed_yaw * cos_pitch;
-        let speed_yaw_sin_pitch = speed_yaw * sin_pitch;
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        from_rows([
-            [zero, -speed_yaw_cos_pitch, zero],
-            [
-                zero,
-                -speed_yaw_sin_pitch * sin_roll,
-                speed_yaw_cos_pitch * cos_roll - speed_pitch * sin_roll,
-            ],
-            [
-                zero,
-                -speed_yaw_sin_pitch * cos_roll,
-                -speed_pitch.mul_add(cos_roll, speed_yaw_cos_pitch * sin_roll),
-            ],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 3×3. Operations: 3 additions, 7 multiplications (2 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let (h1, h2, h3) = (h[0], h[1], h[2]);
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let h2_sin_roll_plus_h3_cos_roll = h2.mul_add(sin_roll, h3 * cos_roll);
-        from_rows([
-            [
-                zero,
-                -h1.mul_add(cos_pitch, sin_pitch * h2_sin_roll_plus_h3_cos_roll),
-                cos_pitch * (h2 * cos_roll - h3 * sin_roll),
-            ],
-            [zero, zero, -h2_sin_roll_plus_h3_cos_roll],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×3. Operations: 2 additions, 9 multiplications (1 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let (speed_pitch, speed_roll) = (speeds[1], speeds[2]);
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let speed_pitch_sin_pitch = speed_pitch * sin_pitch;
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let speed_roll_cos_pitch = speed_roll * cos_pitch;
-        from_rows([
-            [-speed_pitch * cos_pitch, zero, zero],
-            [
-                speed_roll_cos_pitch * cos_roll - speed_pitch_sin_pitch * sin_roll,
-                -speed_roll * sin_roll,
-                zero,
-            ],
-            [
-                -speed_pitch_sin_pitch
-                    .mul_add(cos_roll, speed_roll_cos_pitch * sin_roll),
-                -speed_roll * cos_roll,
-                zero,
-            ],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Operations: 6 additions, 20 multiplications (4 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let [speed_yaw, speed_pitch, speed_roll]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let speed_pitch_sin_roll = speed_pitch * sin_roll;
-        let speed_roll_sin_pitch = speed_roll * sin_pitch;
-        let speed_pitch_cos_roll = speed_pitch * cos_roll;
-        let speed_roll_cos_pitch = speed_roll * cos_pitch;
-        from_rows([
-            [zero, speed_yaw * speed_pitch * sin_pitch, zero],
-            [
-                zero,
-                -speed_yaw
-                    * speed_pitch_sin_roll
-                        .mul_add(cos_pitch, speed_roll_sin_pitch * cos_roll),
-                -speed_pitch_cos_roll
-                    .mul_add(
-                        speed_roll,
-                        speed_yaw
-                            * speed_pitch_cos_roll
-                                .mul_add(sin_pitch, speed_roll_cos_pitch * sin_roll),
-                    ),
-            ],
-            [
-                zero,
-                speed_yaw
-                    * (speed_roll_sin_pitch * sin_roll
-                        - speed_pitch_cos_roll * cos_pitch),
-                speed_pitch_sin_roll
-                    .mul_add(
-                        speed_roll,
-                        speed_yaw
-                            * (speed_pitch_sin_roll * sin_pitch
-                                - speed_roll_cos_pitch * cos_roll),
-                    ),
-            ],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×3. Operations: 5 additions, 14 multiplications (4 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let [speed_yaw, speed_pitch, speed_roll]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let speed_yaw_cos_pitch = speed_yaw * cos_pitch;
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let speed_pitch_sin_roll = speed_pitch * sin_roll;
-        let speed_roll_cos_pitch = speed_roll * cos_pitch;
-        let speed_roll_plus_speed_yaw_sin_pitch = speed_yaw
-            .mul_add(sin_pitch, speed_roll);
-        let speed_pitch_cos_roll = speed_pitch * cos_roll;
-        from_rows([
-            [-speed_pitch * cos_pitch, -speed_yaw_cos_pitch, zero],
-            [
-                speed_roll_cos_pitch * cos_roll - speed_pitch_sin_roll * sin_pitch,
-                -sin_roll * speed_roll_plus_speed_yaw_sin_pitch,
-                speed_yaw_cos_pitch.mul_add(cos_roll, -speed_pitch_sin_roll),
-            ],
-            [
-                -speed_pitch_cos_roll
-                    .mul_add(sin_pitch, speed_roll_cos_pitch * sin_roll),
-                -cos_roll * speed_roll_plus_speed_yaw_sin_pitch,
-                -speed_yaw_cos_pitch.mul_add(sin_roll, speed_pitch_cos_roll),
-            ],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 3×3. Operations: 5 additions, 12 multiplications (3 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let (speed_pitch, speed_roll) = (speeds[1], speeds[2]);
-        let (h1, h2, h3) = (h[0], h[1], h[2]);
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let product_of_cos_pitch_h2_sin_roll_h3 = cos_pitch
-            * h2.mul_add(sin_roll, h3 * cos_roll);
-        let h2_cos_roll_minus_h3_sin_roll = h2 * cos_roll - h3 * sin_roll;
-        let product_of_speed_roll = speed_roll * h2_cos_roll_minus_h3_sin_roll;
-        from_rows([
-            [
-                zero,
-                speed_pitch * h1.mul_add(sin_pitch, -product_of_cos_pitch_h2_sin_roll_h3)
-                    - product_of_speed_roll * sin_pitch,
-                -(speed_pitch * sin_pitch)
-                    .mul_add(
-                        h2_cos_roll_minus_h3_sin_roll,
-                        speed_roll * product_of_cos_pitch_h2_sin_roll_h3,
-                    ),
-            ],
-            [zero, zero, -product_of_speed_roll],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 3×3. Operations: 3 additions, 7 multiplications (2 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        _speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let (h1, h2, h3) = (h[0], h[1], h[2]);
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let h2_sin_roll_plus_h3_cos_roll = h2.mul_add(sin_roll, h3 * cos_roll);
-        from_rows([
-            [
-                zero,
-                -h1.mul_add(cos_pitch, sin_pitch * h2_sin_roll_plus_h3_cos_roll),
-                cos_pitch * (h2 * cos_roll - h3 * sin_roll),
-            ],
-            [zero, zero, -h2_sin_roll_plus_h3_cos_roll],
-            [zero, zero, zero],
         ])
     }
 }

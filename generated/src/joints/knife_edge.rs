@@ -46,7 +46,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Knife edge (ice skate) in Euclidean coordinates: turns about its contact point and glides along its x axis (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,15 +70,15 @@ impl Joint<3, 3, 2, 1> for KnifeEdge {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
-        twist_gradient: Structure::Zero,
-        bias_acceleration_gradient: Structure::Zero,
-        bias_momentum_gradient: Structure::Zero,
+        speed_map: Structure::Constant,
     };
     const PATTERNS: Patterns<3, 2> = Patterns::new(
         ["xx0", "xx0", "001"],
         "xx0",
         ["000", "000", "100", "0xx", "0xx", "000"],
         ["10", "0x", "0x"],
+        &[(0, ["000", "000", "000", "0xx", "0xx", "000"])],
+        &[(0, ["00", "0x", "0x"])],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
@@ -403,119 +403,6 @@ impl Joint<3, 3, 2, 1> for KnifeEdge {
         _h: &SVector<T, 6>,
     ) -> SVector<T, 2> {
         SVector::zeros()
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×3. Operations: 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
-        let theta = q[0];
-        let zero = T::zero();
-        let one = T::one();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        from_rows([
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [one, zero, zero],
-            [zero, cos_theta, sin_theta],
-            [zero, -sin_theta, cos_theta],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H`, line 11 `S_bar`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 2×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H`, line 11 `S_bar`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 3> {
-        SMatrix::zeros()
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 9 `H`, line 11 `S_bar`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H`, line 11 `S_bar`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 9 `H`, line 11 `S_bar`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 2×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H`, line 11 `S_bar`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 9 `H`, line 11 `S_bar`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
     }
 }
 

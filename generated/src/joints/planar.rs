@@ -48,7 +48,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Planar joint: the child turns about z and slides in the plane z = 0 of the parent (Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,15 +72,15 @@ impl Joint<6, 3, 3, 0> for Planar {
         retract_differential: Structure::General,
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
-        twist_gradient: Structure::Zero,
-        bias_acceleration_gradient: Structure::Zero,
-        bias_momentum_gradient: Structure::Zero,
+        speed_map: Structure::Constant,
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(
         ["xx0", "xx0", "001"],
         "xx0",
         ["000", "000", "100", "010", "001", "000"],
         ["100", "010", "001"],
+        &[],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
@@ -481,117 +481,6 @@ impl Joint<6, 3, 3, 0> for Planar {
         _h: &SVector<T, 6>,
     ) -> SVector<T, 3> {
         SVector::zeros()
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×3. Independent of Q. Operations: none.
-    ///
-    /// From line 10 `basis`, line 12 `Phi`, line 13 `H`.
-    fn local_twist_map<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
-        let zero = T::zero();
-        let one = T::one();
-        from_rows([
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [one, zero, zero],
-            [zero, one, zero],
-            [zero, zero, one],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 3>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 3>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
     }
 }
 

@@ -42,7 +42,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Planar joint in the Euclidean set of coordinates (closing note of Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,15 +66,15 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
-        twist_gradient: Structure::General,
-        bias_acceleration_gradient: Structure::General,
-        bias_momentum_gradient: Structure::General,
+        speed_map: Structure::General,
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(
         ["xx0", "xx0", "001"],
         "xx0",
         ["000", "000", "100", "0xx", "0xx", "000"],
         ["100", "010", "001"],
+        &[(0, ["000", "000", "000", "0xx", "0xx", "000"])],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
@@ -398,198 +398,6 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
             zero,
             -speed_theta * h4.mul_add(sin_theta, h5 * cos_theta),
             speed_theta * (h4 * cos_theta - h5 * sin_theta),
-        ])
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×3. Operations: 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
-        let theta = q[0];
-        let zero = T::zero();
-        let one = T::one();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        from_rows([
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [one, zero, zero],
-            [zero, cos_theta, sin_theta],
-            [zero, -sin_theta, cos_theta],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Operations: 2 additions, 4 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let theta = q[0];
-        let (speed_x, speed_y) = (speeds[1], speeds[2]);
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        from_rows([
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [speed_y * cos_theta - speed_x * sin_theta, zero, zero],
-            [-speed_x.mul_add(cos_theta, speed_y * sin_theta), zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 3×3. Operations: 2 additions, 4 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let theta = q[0];
-        let (h4, h5) = (h[3], h[4]);
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        from_rows([
-            [zero, zero, zero],
-            [-h4.mul_add(sin_theta, h5 * cos_theta), zero, zero],
-            [h4 * cos_theta - h5 * sin_theta, zero, zero],
-        ])
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×3. Operations: 3 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let theta = q[0];
-        let speed_theta = speeds[0];
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        let speed_theta_cos_theta = speed_theta * cos_theta;
-        from_rows([
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, -speed_theta * sin_theta, speed_theta_cos_theta],
-            [zero, -speed_theta_cos_theta, -speed_theta * sin_theta],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let theta = q[0];
-        let [speed_theta, speed_x, speed_y]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        from_rows([
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [-speed_theta * speed_x.mul_add(cos_theta, speed_y * sin_theta), zero, zero],
-            [speed_theta * (speed_x * sin_theta - speed_y * cos_theta), zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×3. Operations: 2 additions, 7 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SMatrix<T, 6, 3> {
-        let theta = q[0];
-        let [speed_theta, speed_x, speed_y]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        let speed_theta_cos_theta = speed_theta * cos_theta;
-        from_rows([
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [
-                speed_y * cos_theta - speed_x * sin_theta,
-                -speed_theta * sin_theta,
-                speed_theta_cos_theta,
-            ],
-            [
-                -speed_x.mul_add(cos_theta, speed_y * sin_theta),
-                -speed_theta_cos_theta,
-                -speed_theta * sin_theta,
-            ],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 3×3. Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let theta = q[0];
-        let speed_theta = speeds[0];
-        let (h4, h5) = (h[3], h[4]);
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        from_rows([
-            [zero, zero, zero],
-            [speed_theta * (h5 * sin_theta - h4 * cos_theta), zero, zero],
-            [-speed_theta * h4.mul_add(sin_theta, h5 * cos_theta), zero, zero],
-        ])
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 3×3. Operations: 2 additions, 4 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        _speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 3, 3> {
-        let theta = q[0];
-        let (h4, h5) = (h[3], h[4]);
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        from_rows([
-            [zero, zero, zero],
-            [-h4.mul_add(sin_theta, h5 * cos_theta), zero, zero],
-            [h4 * cos_theta - h5 * sin_theta, zero, zero],
         ])
     }
 }

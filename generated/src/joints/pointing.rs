@@ -46,7 +46,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::{Pose, nearest_rotation};
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Pointing joint: the child's z axis points anywhere, and the child does not spin about it (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,15 +80,15 @@ impl Joint<9, 3, 2, 1> for Pointing {
         retract_differential: Structure::General,
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
-        twist_gradient: Structure::Zero,
-        bias_acceleration_gradient: Structure::Zero,
-        bias_momentum_gradient: Structure::Zero,
+        speed_map: Structure::Constant,
     };
     const PATTERNS: Patterns<3, 2> = Patterns::new(
         ["xxx", "xxx", "xxx"],
         "000",
         ["100", "010", "001", "000", "000", "000"],
         ["10", "01", "00"],
+        &[],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -529,117 +529,6 @@ impl Joint<9, 3, 2, 1> for Pointing {
         _h: &SVector<T, 6>,
     ) -> SVector<T, 2> {
         SVector::zeros()
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×3. Independent of Q. Operations: none.
-    ///
-    /// From line 9 `basis`, line 11 `H`.
-    fn local_twist_map<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
-        let zero = T::zero();
-        let one = T::one();
-        from_rows([
-            [one, zero, zero],
-            [zero, one, zero],
-            [zero, zero, one],
-            [zero, zero, zero],
-            [zero, zero, zero],
-            [zero, zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 2×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 3> {
-        SMatrix::zeros()
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×2. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 2×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 3> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
     }
 }
 

@@ -41,7 +41,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Prismatic joint: one displacement along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,15 +65,15 @@ impl Joint<1, 1, 1, 0> for Prismatic {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::Zero,
         bias_momentum: Structure::Zero,
-        twist_gradient: Structure::Zero,
-        bias_acceleration_gradient: Structure::Zero,
-        bias_momentum_gradient: Structure::Zero,
+        speed_map: Structure::Constant,
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(
         ["100", "010", "001"],
         "00x",
         ["0", "0", "0", "0", "0", "1"],
         ["1"],
+        &[],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -346,110 +346,6 @@ impl Joint<1, 1, 1, 0> for Prismatic {
         _h: &SVector<T, 6>,
     ) -> SVector<T, 1> {
         SVector::zeros()
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×1. Independent of Q. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn local_twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
-        let zero = T::zero();
-        let one = T::one();
-        from_rows([[zero], [zero], [zero], [zero], [zero], [one]])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×1. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-    ) -> SMatrix<T, 6, 1> {
-        SMatrix::zeros()
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×1. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-    ) -> SMatrix<T, 6, 1> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×1. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-    ) -> SMatrix<T, 6, 1> {
-        SMatrix::zeros()
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×1. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-    ) -> SMatrix<T, 6, 1> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans_z(q);`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-        _h: &SVector<T, 6>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
     }
 }
 

@@ -42,7 +42,7 @@ use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,15 +80,15 @@ impl Joint<4, 2, 2, 0> for Torus {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
-        twist_gradient: Structure::General,
-        bias_acceleration_gradient: Structure::General,
-        bias_momentum_gradient: Structure::General,
+        speed_map: Structure::General,
     };
     const PATTERNS: Patterns<2, 2> = Patterns::new(
         ["xxx", "xxx", "x0x"],
         "xxx",
         ["x0", "01", "x0", "0x", "x0", "00"],
         ["10", "01"],
+        &[(1, ["x0", "00", "x0", "00", "x0", "00"])],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
@@ -456,185 +456,6 @@ impl Joint<4, 2, 2, 0> for Torus {
         let (h1, h3, h5) = (h[0], h[2], h[4]);
         let zero = T::zero();
         SVector::from([speed_tube * (w_s * inner.mul_add(-h5, h1) - w_c * h3), zero])
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×2. Operations: 1 addition, 1 multiplication (1 of each fused).
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 17 `H`.
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 4>) -> SMatrix<T, 6, 2> {
-        let outer = T::from_f64(self.outer);
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let zero = T::zero();
-        let one = T::one();
-        from_rows([
-            [-w_c, zero],
-            [zero, one],
-            [-w_s, zero],
-            [zero, inner],
-            [inner.mul_add(w_c, outer), zero],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×2. Operations: 3 multiplications.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let speed_around = speeds[0];
-        let zero = T::zero();
-        let w_s_speed_around = w_s * speed_around;
-        from_rows([
-            [zero, w_s_speed_around],
-            [zero, zero],
-            [zero, -w_c * speed_around],
-            [zero, zero],
-            [zero, -inner * w_s_speed_around],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 2×2. Operations: 2 additions, 3 multiplications (1 of each fused).
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let (h1, h3, h5) = (h[0], h[2], h[4]);
-        let zero = T::zero();
-        from_rows([[zero, w_s * inner.mul_add(-h5, h1) - w_c * h3], [zero, zero]])
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×2. Operations: 3 multiplications.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let speed_tube = speeds[1];
-        let zero = T::zero();
-        let w_s_speed_tube = w_s * speed_tube;
-        from_rows([
-            [w_s_speed_tube, zero],
-            [zero, zero],
-            [-w_c * speed_tube, zero],
-            [zero, zero],
-            [-inner * w_s_speed_tube, zero],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×2. Operations: 4 multiplications.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let [speed_around, speed_tube]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let speed_around_speed_tube = speed_around * speed_tube;
-        let w_c_speed_around_speed_tube = w_c * speed_around_speed_tube;
-        from_rows([
-            [zero, w_c_speed_around_speed_tube],
-            [zero, zero],
-            [zero, w_s * speed_around_speed_tube],
-            [zero, zero],
-            [zero, -inner * w_c_speed_around_speed_tube],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×2. Operations: 7 multiplications.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let [speed_around, speed_tube]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let inner_w_s = inner * w_s;
-        from_rows([
-            [w_s * speed_tube, w_s * speed_around],
-            [zero, zero],
-            [-w_c * speed_tube, -w_c * speed_around],
-            [zero, zero],
-            [-inner_w_s * speed_tube, -inner_w_s * speed_around],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 2×2. Operations: 2 additions, 4 multiplications (2 of each fused).
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let speed_tube = speeds[1];
-        let (h1, h3, h5) = (h[0], h[2], h[4]);
-        let zero = T::zero();
-        from_rows([
-            [zero, speed_tube * w_c.mul_add(inner.mul_add(-h5, h1), w_s * h3)],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 2×2. Operations: 2 additions, 3 multiplications (1 of each fused).
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        _speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let (h1, h3, h5) = (h[0], h[2], h[4]);
-        let zero = T::zero();
-        from_rows([[zero, w_s * inner.mul_add(-h5, h1) - w_c * h3], [zero, zero]])
     }
 }
 

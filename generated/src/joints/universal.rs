@@ -42,7 +42,7 @@ use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Universal joint (Cardan, Hooke): a turn about the parent's x axis, then one about the child's y axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,15 +66,15 @@ impl Joint<2, 2, 2, 0> for Universal {
         retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
-        twist_gradient: Structure::General,
-        bias_acceleration_gradient: Structure::General,
-        bias_momentum_gradient: Structure::General,
+        speed_map: Structure::General,
     };
     const PATTERNS: Patterns<2, 2> = Patterns::new(
         ["x0x", "xxx", "xxx"],
         "000",
         ["x0", "01", "x0", "00", "00", "00"],
         ["10", "01"],
+        &[(1, ["x0", "00", "x0", "00", "00", "00"])],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -396,180 +396,6 @@ impl Joint<2, 2, 2, 0> for Universal {
         let zero = T::zero();
         let (sin_second, cos_second) = second.sin_cos();
         SVector::from([speed_second * (h3 * cos_second - h1 * sin_second), zero])
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×2. Operations: 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
-        let second = q[1];
-        let zero = T::zero();
-        let one = T::one();
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([
-            [cos_second, zero],
-            [zero, one],
-            [sin_second, zero],
-            [zero, zero],
-            [zero, zero],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×2. Operations: 2 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let second = q[1];
-        let speed_first = speeds[0];
-        let zero = T::zero();
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([
-            [zero, -speed_first * sin_second],
-            [zero, zero],
-            [zero, speed_first * cos_second],
-            [zero, zero],
-            [zero, zero],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 2×2. Operations: 1 addition, 2 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        let second = q[1];
-        let (h1, h3) = (h[0], h[2]);
-        let zero = T::zero();
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([[zero, h3 * cos_second - h1 * sin_second], [zero, zero]])
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×2. Operations: 2 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let second = q[1];
-        let speed_second = speeds[1];
-        let zero = T::zero();
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([
-            [-speed_second * sin_second, zero],
-            [zero, zero],
-            [speed_second * cos_second, zero],
-            [zero, zero],
-            [zero, zero],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×2. Operations: 3 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let second = q[1];
-        let [speed_first, speed_second]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let speed_first_speed_second = speed_first * speed_second;
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([
-            [zero, -speed_first_speed_second * cos_second],
-            [zero, zero],
-            [zero, -speed_first_speed_second * sin_second],
-            [zero, zero],
-            [zero, zero],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×2. Operations: 4 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let second = q[1];
-        let [speed_first, speed_second]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([
-            [-speed_second * sin_second, -speed_first * sin_second],
-            [zero, zero],
-            [speed_second * cos_second, speed_first * cos_second],
-            [zero, zero],
-            [zero, zero],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 2×2. Operations: 1 addition, 3 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        let second = q[1];
-        let speed_second = speeds[1];
-        let (h1, h3) = (h[0], h[2]);
-        let zero = T::zero();
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([
-            [zero, -speed_second * h1.mul_add(cos_second, h3 * sin_second)],
-            [zero, zero],
-        ])
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 2×2. Operations: 1 addition, 2 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        let second = q[1];
-        let (h1, h3) = (h[0], h[2]);
-        let zero = T::zero();
-        let (sin_second, cos_second) = second.sin_cos();
-        from_rows([[zero, h3 * cos_second - h1 * sin_second], [zero, zero]])
     }
 }
 

@@ -52,7 +52,7 @@ use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(4);
+const _: () = ::hamel::joint::assert_kernel_interface(5);
 
 /// Upright wheel (vertical disk): rolls without slipping on the plane z = 0 of the parent and turns about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,15 +94,15 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
         retract_differential: Structure::General,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
-        twist_gradient: Structure::General,
-        bias_acceleration_gradient: Structure::General,
-        bias_momentum_gradient: Structure::General,
+        speed_map: Structure::General,
     };
     const PATTERNS: Patterns<4, 2> = Patterns::new(
         ["xxx", "xxx", "x0x"],
         "xxx",
         ["x000", "0001", "x000", "0x00", "0010", "0x00"],
         ["10", "0x", "00", "01"],
+        &[(3, ["x000", "0000", "x000", "0x00", "0000", "0x00"])],
+        &[],
     );
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
@@ -594,211 +594,6 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
         SVector::from([
             -speed_roll * h1.mul_add(cos_roll, h3 * sin_roll),
             radius * speed_roll * (h6 * cos_roll - h4 * sin_roll),
-        ])
-    }
-
-    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
-    ///
-    /// 6×4. Operations: 1 function call.
-    ///
-    /// From line 13 `basis`, line 15 `H`.
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, 7>) -> SMatrix<T, 6, 4> {
-        let roll = q[6];
-        let zero = T::zero();
-        let one = T::one();
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        from_rows([
-            [-sin_roll, zero, zero, zero],
-            [zero, zero, zero, one],
-            [cos_roll, zero, zero, zero],
-            [zero, cos_roll, zero, zero],
-            [zero, zero, one, zero],
-            [zero, sin_roll, zero, zero],
-        ])
-    }
-
-    /// ∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×4. Operations: 5 multiplications, 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 4> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let [speed_turn, speed_roll]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let radius_speed_roll = radius * speed_roll;
-        from_rows([
-            [zero, zero, zero, -speed_turn * cos_roll],
-            [zero, zero, zero, zero],
-            [zero, zero, zero, -speed_turn * sin_roll],
-            [zero, zero, zero, -radius_speed_roll * sin_roll],
-            [zero, zero, zero, zero],
-            [zero, zero, zero, radius_speed_roll * cos_roll],
-        ])
-    }
-
-    /// ∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame.
-    ///
-    /// 2×4. Operations: 2 additions, 5 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn effort_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 4> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let [h1, _, h3, h4, _, h6]: [T; 6] = (*h).into();
-        let zero = T::zero();
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        from_rows([
-            [zero, zero, zero, -h1.mul_add(cos_roll, h3 * sin_roll)],
-            [zero, zero, zero, radius * (h6 * cos_roll - h4 * sin_roll)],
-        ])
-    }
-
-    /// d/dt(X^c S̄) at the speeds v̄.
-    ///
-    /// 6×2. Operations: 5 multiplications, 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let speed_roll = speeds[1];
-        let zero = T::zero();
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let radius_speed_roll = radius * speed_roll;
-        from_rows([
-            [-speed_roll * cos_roll, zero],
-            [zero, zero],
-            [-speed_roll * sin_roll, zero],
-            [zero, -radius_speed_roll * sin_roll],
-            [zero, zero],
-            [zero, radius_speed_roll * cos_roll],
-        ])
-    }
-
-    /// ∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k.
-    ///
-    /// 6×4. Operations: 7 multiplications, 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 4> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let [speed_turn, speed_roll]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let speed_turn_speed_roll = speed_turn * speed_roll;
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let radius_speed_roll_speed_roll = radius * speed_roll * speed_roll;
-        from_rows([
-            [zero, zero, zero, speed_turn_speed_roll * sin_roll],
-            [zero, zero, zero, zero],
-            [zero, zero, zero, -speed_turn_speed_roll * cos_roll],
-            [zero, zero, zero, -radius_speed_roll_speed_roll * cos_roll],
-            [zero, zero, zero, zero],
-            [zero, zero, zero, -radius_speed_roll_speed_roll * sin_roll],
-        ])
-    }
-
-    /// ∂c/∂v̄ of c = d/dt(X^c S̄) v̄.
-    ///
-    /// 6×2. Operations: 9 multiplications, 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        speeds: &SVector<T, 2>,
-    ) -> SMatrix<T, 6, 2> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let [speed_turn, speed_roll]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let two = T::from_f64(2.0);
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let radius_speed_roll = radius * speed_roll;
-        from_rows([
-            [-speed_roll * cos_roll, -speed_turn * cos_roll],
-            [zero, zero],
-            [-speed_roll * sin_roll, -speed_turn * sin_roll],
-            [zero, -two * radius_speed_roll * sin_roll],
-            [zero, zero],
-            [zero, two * radius_speed_roll * cos_roll],
-        ])
-    }
-
-    /// ∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.
-    ///
-    /// 2×4. Operations: 2 additions, 7 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 4> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let speed_roll = speeds[1];
-        let [h1, _, h3, h4, _, h6]: [T; 6] = (*h).into();
-        let zero = T::zero();
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        from_rows([
-            [zero, zero, zero, speed_roll * (h1 * sin_roll - h3 * cos_roll)],
-            [
-                zero,
-                zero,
-                zero,
-                -radius * speed_roll * h4.mul_add(cos_roll, h6 * sin_roll),
-            ],
-        ])
-    }
-
-    /// ∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.
-    ///
-    /// 2×2. Operations: 2 additions, 5 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        _speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SMatrix<T, 2, 2> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let [h1, _, h3, h4, _, h6]: [T; 6] = (*h).into();
-        let zero = T::zero();
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        from_rows([
-            [zero, -h1.mul_add(cos_roll, h3 * sin_roll)],
-            [zero, radius * (h6 * cos_roll - h4 * sin_roll)],
         ])
     }
 }

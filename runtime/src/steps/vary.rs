@@ -2,7 +2,7 @@
 
 use super::Motion;
 use super::place::Parts;
-use crate::joint::Joint;
+use crate::joint::{Joint, Products};
 use crate::scalar::Scalar;
 use crate::spatial::fused::cross;
 use crate::spatial::{bracket_product, join, shift_twist, split, turn_out};
@@ -91,10 +91,10 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
             }
         }
     }
-    if !structures.twist_gradient.is_zero() {
+    if !structures.speed_map.is_constant() {
         let of_twist = joint.twist_gradient(q, speeds);
         let mut of_rate = joint.twist_gradient(q, accelerations);
-        if !structures.bias_acceleration_gradient.is_zero() {
+        if !structures.bias_acceleration.is_constant() {
             of_rate += joint.bias_acceleration_gradient(q, speeds);
         }
         for (b, variation) in out.iter_mut().enumerate() {

@@ -158,9 +158,7 @@ where
         retract_differential: Structure::General,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
-        twist_gradient: Structure::General,
-        bias_acceleration_gradient: Structure::General,
-        bias_momentum_gradient: Structure::General,
+        speed_map: Structure::General,
     };
     const PATTERNS: Patterns<K, S> = Patterns::DENSE;
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
@@ -296,77 +294,5 @@ where
         h: &Vector6<T>,
     ) -> SVector<T, S> {
         self.twist_basis_slope(q, speeds).transpose() * h
-    }
-
-    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
-        self.twist_map_child(q) * self.velocity_map(q)
-    }
-
-    fn twist_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, K> {
-        self.gradient(q, |q| {
-            self.twist_map_child(q) * self.0.speed_basis(q) * constant(speeds)
-        })
-    }
-
-    fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &Vector6<T>) -> SMatrix<T, S, K> {
-        self.gradient(q, |q| {
-            let map = self.twist_map_child(q) * self.0.speed_basis(q);
-            map.transpose() * constant(h)
-        })
-    }
-
-    fn twist_map_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, S> {
-        self.twist_basis_slope(q, speeds)
-    }
-
-    fn bias_acceleration_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, K> {
-        self.gradient(q, |q| self.bias_acceleration(q, &constant(speeds)))
-    }
-
-    fn bias_acceleration_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-    ) -> SMatrix<T, 6, S> {
-        let columns: [_; S] = array::from_fn(|a| {
-            slope(&self.bias_acceleration(&constant(q), &along(speeds, &unit(a))))
-        });
-        SMatrix::from_columns(&columns)
-    }
-
-    fn bias_momentum_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-        h: &Vector6<T>,
-    ) -> SMatrix<T, S, K> {
-        self.gradient(q, |q| {
-            self.bias_momentum(q, &constant(speeds), &constant(h))
-        })
-    }
-
-    fn bias_momentum_slope<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-        speeds: &SVector<T, S>,
-        h: &Vector6<T>,
-    ) -> SMatrix<T, S, S> {
-        let columns: [_; S] = array::from_fn(|a| {
-            let speeds = along(speeds, &unit(a));
-            slope(&self.bias_momentum(&constant(q), &speeds, &constant(h)))
-        });
-        SMatrix::from_columns(&columns)
     }
 }

@@ -88,7 +88,7 @@ fn kernels() -> Vec<(Kernel, Sizes)> {
             |k, s| (s, s * k),
         ),
         (
-            |j, q, v, out| j.bias_momentum_slope(q, v, &Vector6::repeat(0.5), out),
+            |j, q, _, out| j.bias_momentum_slope(q, &Vector6::repeat(0.5), out),
             |_, s| (s, s * s),
         ),
     ]

@@ -1,6 +1,6 @@
 //! Calls of all kernels. The suite of allocations includes this file too.
 
-use hamel::joint::Joint;
+use hamel::joint::{Joint, Products};
 use hamel::nalgebra::{SMatrix, SVector};
 use hamel::scalar::Scalar;
 
@@ -57,7 +57,7 @@ where
         + sum(&joint.bias_acceleration_gradient(&q, &speeds))
         + sum(&joint.bias_acceleration_slope(&q, &speeds))
         + sum(&joint.bias_momentum_gradient(&q, &speeds, &wrench))
-        + sum(&joint.bias_momentum_slope(&q, &speeds, &wrench))
+        + sum(&joint.bias_momentum_slope(&q, &wrench))
 }
 
 fn sum<T: Scalar, const R: usize, const M: usize>(m: &SMatrix<T, R, M>) -> T {

@@ -5,6 +5,9 @@ use super::program::Sheet;
 use super::{Grid, Jet, Node};
 use hamel_codegen::expr::Number;
 
+/// Degree in ϕ: first derivatives of an X that is one of H itself.
+const DEGREE: usize = 2;
+
 /// Everything at one Q.
 #[derive(Clone, Debug)]
 pub struct AtZero {
@@ -46,10 +49,10 @@ pub struct Arguments {
 }
 
 impl AtZero {
-    /// The definitions at Q, from polynomials of that degree in ϕ: 2 for first derivatives of an X that is one of H itself, 3 for second ones.
-    pub fn new(declared: &Declared, q: &[Node], degree: usize) -> Self {
+    /// The definitions at Q.
+    pub fn new(declared: &Declared, q: &[Node]) -> Self {
         let base = constants(q);
-        let moving = declared.moved(&base, &declared.variables(&declared.zero(), 0, degree));
+        let moving = declared.moved(&base, &declared.variables(&declared.zero(), 0, DEGREE));
         let pose = declared.pose(&moving);
         let jacobian = declared.jacobian(&pose, 0);
         let x = declared.twist_map(&moving);
@@ -115,63 +118,6 @@ impl AtZero {
         let rate = self.twist_rate(basis, &arguments.speeds);
         sheet.put("bias_acceleration", rate.times(&arguments.speeds));
         sheet.put("bias_momentum", rate.transpose().times(&arguments.wrench));
-        sheet.put("twist_map_rate", rate.clone());
-        self.derivatives_of_speeds(basis, &rate, arguments, sheet);
-        self.gradients_of_bias(basis, arguments, sheet);
-    }
-
-    /// c and its dual to first order in ϕ: at Φ(Q, ϕ) the motion is `ϕ̇ = S(Q, ϕ)⁻¹ S̄ v̄`, with `(S⁻¹)_k = −S₀⁻¹ S_k S₀⁻¹`.
-    fn gradients_of_bias(&self, basis: &Grid<Jet>, arguments: &Arguments, sheet: &mut Sheet<Node>) {
-        let k = self.freedoms();
-        let turned = self.slopes.iter().map(|slope| {
-            let turned = self.inverse.times(slope).times(&self.inverse);
-            turned.map(|entry| entry.negative())
-        });
-        let turned: Vec<Grid<Node>> = turned.collect();
-        let inverse = Grid::from_fn(k, k, |i, j| {
-            let slopes = turned.iter().map(|slope| slope.at(i, j).clone());
-            Jet::linear(self.inverse.at(i, j).clone(), slopes)
-        });
-        let speeds = arguments.speeds.map(|entry| Jet::constant(entry.clone()));
-        let rate = inverse.times(&basis.times(&speeds));
-        let map = self.twist_map_child.times(basis);
-        let term = |m: usize| map.map(|entry| entry.partial(m).times(rate.at(m, 0)));
-        let moving = (1..k).fold(term(0), |sum, m| sum.plus(&term(m)));
-        let wrench = arguments.wrench.map(|entry| Jet::constant(entry.clone()));
-        let (bias, dual) = (moving.times(&speeds), moving.transpose().times(&wrench));
-        let columns = |of: &Grid<Jet>| beside((0..k).map(|m| slopes(of, m)));
-        sheet.put("bias_acceleration_gradient", columns(&bias));
-        sheet.put("bias_momentum_gradient", columns(&dual));
-    }
-
-    /// `∂(X̄ v̄)/∂ϕ`, `∂(X̄ᵀh)/∂ϕ`, and the derivatives of c and of its dual by v̄, in which Ẋ̄ is linear.
-    fn derivatives_of_speeds(
-        &self,
-        basis: &Grid<Jet>,
-        rate: &Grid<Node>,
-        arguments: &Arguments,
-        sheet: &mut Sheet<Node>,
-    ) {
-        let map = self.twist_map_child.times(basis);
-        let (speeds, wrench) = (&arguments.speeds, &arguments.wrench);
-        let along = |k: usize| slopes(&map, k).times(speeds);
-        sheet.put("twist_gradient", beside((0..self.freedoms()).map(along)));
-        let along = |k: usize| slopes(&map, k).transpose().times(wrench);
-        sheet.put("effort_gradient", beside((0..self.freedoms()).map(along)));
-        let rates = (0..speeds.rows).map(|a| {
-            let unit = |i: usize| Node::input(f64::from(u8::from(i == a)));
-            let unit = Grid::from_fn(speeds.rows, 1, |i, _| unit(i));
-            (self.twist_rate(basis, &unit), rate.times(&unit))
-        });
-        let rates: Vec<_> = rates.collect();
-        let faster = rates
-            .iter()
-            .map(|(turned, same)| turned.times(speeds).plus(same));
-        sheet.put("bias_acceleration_slope", beside(faster));
-        let faster = rates
-            .iter()
-            .map(|(turned, _)| turned.transpose().times(wrench));
-        sheet.put("bias_momentum_slope", beside(faster));
     }
 
     /// The derivatives of R, p, X, X^c and S̄ along ϕ̇ = `rate`, and the motion of the stored scalars.
@@ -224,13 +170,6 @@ impl AtZero {
         let rate = self.inverse.times(&values(basis).times(speeds));
         along(&map, &rate)
     }
-}
-
-/// Columns beside each other.
-fn beside(columns: impl Iterator<Item = Grid<Node>>) -> Grid<Node> {
-    let columns: Vec<Grid<Node>> = columns.collect();
-    let rows = columns.first().map_or(0, |column| column.rows);
-    Grid::from_fn(rows, columns.len(), |i, k| columns[k].at(i, 0).clone())
 }
 
 /// The derivative along ϕ̇ = `rate`.

@@ -2,7 +2,7 @@
 
 use super::at_zero::{Arguments, AtZero};
 use super::declared::{Declared, constants};
-use super::jet::{MOST, ONCE};
+use super::jet::ONCE;
 use super::program::{Program, Sheet};
 use super::{Grid, Node, Tracked};
 use hamel_codegen::derived::{Derived, KernelKind};
@@ -75,7 +75,7 @@ impl Definition {
                     speeds: column(speeds),
                     wrench: column(wrench),
                 };
-                AtZero::new(&declared, q, MOST).kernels(&arguments)
+                AtZero::new(&declared, q).kernels(&arguments)
             }),
             moved: Program::new(n + k, |all| {
                 let (q, phi) = all.split_at(n);
@@ -128,7 +128,7 @@ impl Definition {
         let n = self.configuration;
         Program::new(n + self.freedoms(), |all| {
             let (q, v) = all.split_at(n);
-            AtZero::new(&self.declared, q, 2).derivatives(&column(v))
+            AtZero::new(&self.declared, q).derivatives(&column(v))
         })
     }
 

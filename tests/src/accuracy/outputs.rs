@@ -120,29 +120,6 @@ where
             "bias_momentum",
             flat(&joint.bias_momentum(q, &at.speeds, &at.wrench)),
         ),
-        ("local_twist_map", flat(&joint.local_twist_map(q))),
-        ("twist_gradient", flat(&joint.twist_gradient(q, &at.speeds))),
-        (
-            "effort_gradient",
-            flat(&joint.effort_gradient(q, &at.wrench)),
-        ),
-        ("twist_map_rate", flat(&joint.twist_map_rate(q, &at.speeds))),
-        (
-            "bias_acceleration_gradient",
-            flat(&joint.bias_acceleration_gradient(q, &at.speeds)),
-        ),
-        (
-            "bias_acceleration_slope",
-            flat(&joint.bias_acceleration_slope(q, &at.speeds)),
-        ),
-        (
-            "bias_momentum_gradient",
-            flat(&joint.bias_momentum_gradient(q, &at.speeds, &at.wrench)),
-        ),
-        (
-            "bias_momentum_slope",
-            flat(&joint.bias_momentum_slope(q, &at.speeds, &at.wrench)),
-        ),
     ]
 }
 

@@ -209,8 +209,6 @@ impl<J> Subject<'_, J> {
         hold.slices("twist_map_child_gradient", &of_child, &place);
         let of_map = joint.velocity_map_gradient(&q);
         hold.slices("velocity_map_gradient", &of_map, &place);
-        let local = joint.local_twist_map(&q);
-        hold.matrix("local_twist_map", &local, &place);
     }
 
     /// Kernels of A and S̄, and those of c.
@@ -248,20 +246,6 @@ impl<J> Subject<'_, J> {
         let wrench = vector::<T, 6>(&case.wrench);
         let dual = joint.bias_momentum(&q, &speeds, &wrench);
         hold.matrix("bias_momentum", &dual, &place);
-        let of_twist = joint.twist_gradient(&q, &speeds);
-        hold.matrix("twist_gradient", &of_twist, &place);
-        let of_effort = joint.effort_gradient(&q, &wrench);
-        hold.matrix("effort_gradient", &of_effort, &place);
-        let rate = joint.twist_map_rate(&q, &speeds);
-        hold.matrix("twist_map_rate", &rate, &place);
-        let slope = joint.bias_acceleration_slope(&q, &speeds);
-        hold.matrix("bias_acceleration_slope", &slope, &place);
-        let gradient = joint.bias_acceleration_gradient(&q, &speeds);
-        hold.matrix("bias_acceleration_gradient", &gradient, &place);
-        let gradient = joint.bias_momentum_gradient(&q, &speeds, &wrench);
-        hold.matrix("bias_momentum_gradient", &gradient, &place);
-        let slope = joint.bias_momentum_slope(&q, &speeds, &wrench);
-        hold.matrix("bias_momentum_slope", &slope, &place);
     }
 
     /// AᵀS̄ = 0 where one of both is derived and so not unique: in ulp of the largest entries, of which both are rounded.

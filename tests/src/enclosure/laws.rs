@@ -3,6 +3,8 @@
 //! H, Φ, X, A and S̄ are those of the spec, kernels are the lowered programs that are written into Rust. Derivatives along ϕ are those of
 //! truncated polynomials in ϕ. Nothing is divided that a law does not divide, so that a true law has a residual that holds 0.
 
+mod products;
+
 use super::ball::Ball;
 use super::evaluate::Values;
 use super::grid::Grid;
@@ -355,8 +357,6 @@ impl<'a> At<'a> {
         for (i, slice) in gradient.iter().enumerate() {
             self.equal("twist_map_child_gradient", slice, &child.slope(i));
         }
-        let local = self.kernel(KernelKind::LocalTwistMap);
-        self.equal("local_twist_map", &local, &child.values().times(&start));
         let v = Grid::column(
             arguments
                 .velocity
@@ -416,7 +416,7 @@ impl<'a> At<'a> {
 
     /// A, S̄, c and what belongs to them.
     fn speeds(&mut self) {
-        let (k, arguments) = (self.freedoms(), &self.derived.arguments);
+        let arguments = &self.derived.arguments;
         let spec = &self.derived.spec;
         let near = self.moved(FIRST);
         let basis = self.kernel_at(KernelKind::SpeedBasis, &near);
@@ -459,60 +459,6 @@ impl<'a> At<'a> {
             "bias_momentum",
             &self.kernel(KernelKind::BiasMomentum),
             &rate.transpose().times(&wrench),
-        );
-        self.equal(
-            "twist_map_rate",
-            &self.kernel(KernelKind::TwistMapRate),
-            &rate,
-        );
-        let each = |of: &dyn Fn(usize) -> Grid| Grid::beside(&(0..k).map(of).collect::<Vec<_>>());
-        let twists = each(&|i| map.slope(i).times(&speeds));
-        self.equal(
-            "twist_gradient",
-            &self.kernel(KernelKind::TwistGradient),
-            &twists,
-        );
-        let efforts = each(&|i| map.slope(i).transpose().times(&wrench));
-        self.equal(
-            "effort_gradient",
-            &self.kernel(KernelKind::EffortGradient),
-            &efforts,
-        );
-        let (bias, dual) = (
-            self.kernel_at(KernelKind::BiasAcceleration, &near),
-            self.kernel_at(KernelKind::BiasMomentum, &near),
-        );
-        self.equal(
-            "bias_acceleration_gradient",
-            &self.kernel(KernelKind::BiasAccelerationGradient),
-            &each(&|i| bias.slope(i)),
-        );
-        self.equal(
-            "bias_momentum_gradient",
-            &self.kernel(KernelKind::BiasMomentumGradient),
-            &each(&|i| dual.slope(i)),
-        );
-        let count = arguments.speeds.len();
-        let faster = arguments
-            .speeds
-            .iter()
-            .enumerate()
-            .map(|(i, s)| Jet::variable(self.values.symbol(s).value, i, count, FIRST));
-        let faster = self.values.with(&arguments.speeds, faster);
-        let (bias, dual) = (
-            self.kernel_at(KernelKind::BiasAcceleration, &faster),
-            self.kernel_at(KernelKind::BiasMomentum, &faster),
-        );
-        let slopes = |of: &Grid| Grid::beside(&(0..count).map(|i| of.slope(i)).collect::<Vec<_>>());
-        self.equal(
-            "bias_acceleration_slope",
-            &self.kernel(KernelKind::BiasAccelerationSlope),
-            &slopes(&bias),
-        );
-        self.equal(
-            "bias_momentum_slope",
-            &self.kernel(KernelKind::BiasMomentumSlope),
-            &slopes(&dual),
         );
     }
 }

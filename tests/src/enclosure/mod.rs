@@ -18,6 +18,7 @@ pub use ball::{Ball, with_precision};
 pub use point::{Point, dimensions};
 
 use hamel_codegen::derived::Derived;
+use hamel_codegen::scene::JointType;
 use laws::{At, Domain, Residual};
 
 /// Bits of the precisions that are tried one after the other.
@@ -40,11 +41,20 @@ pub enum Verdict {
     Undecided(&'static str),
 }
 
-/// Judges a joint at a point.
+/// Judges a joint's kernels at a point.
 pub fn judge(derived: &Derived, point: &Point) -> Verdict {
+    judge_laws(derived, point, |at| at.laws())
+}
+
+/// Judges the products of a joint's kernels at a point.
+pub fn judge_products(joint: &JointType, point: &Point) -> Verdict {
+    judge_laws(&joint.derived, point, |at| at.products(joint))
+}
+
+fn judge_laws(derived: &Derived, point: &Point, laws: impl Fn(At<'_>) -> Vec<Residual>) -> Verdict {
     let mut last = Verdict::Undecided("domain");
     for bits in PRECISIONS {
-        last = with_precision(bits, || judge_at(derived, point, bits));
+        last = with_precision(bits, || judge_at(derived, point, bits, &laws));
         if !matches!(last, Verdict::Undecided(_)) {
             break;
         }
@@ -52,14 +62,19 @@ pub fn judge(derived: &Derived, point: &Point) -> Verdict {
     last
 }
 
-fn judge_at(derived: &Derived, point: &Point, bits: usize) -> Verdict {
+fn judge_at(
+    derived: &Derived,
+    point: &Point,
+    bits: usize,
+    laws: impl Fn(At<'_>) -> Vec<Residual>,
+) -> Verdict {
     let at = At::new(derived, point);
     match at.domain() {
         Domain::Inside => {}
         Domain::Outside => return Verdict::Outside,
         Domain::Undecided => return Verdict::Undecided("domain"),
     }
-    let residuals = at.laws();
+    let residuals = laws(at);
     let verdicts: Vec<Verdict> = residuals
         .iter()
         .map(|residual| of_residual(residual, bits))

@@ -1,8 +1,10 @@
 //! The judge on joints that are true, on joints with a false kernel, and on functions without a value.
 
-use super::{Point, Verdict, judge};
+use super::{Point, Verdict, judge, judge_products};
 use hamel_codegen::derived::{Derived, KernelKind};
 use hamel_codegen::expr::Expr;
+use hamel_codegen::matrix::Matrix;
+use hamel_codegen::scene::JointType;
 
 /// Kernels that no law here evaluates: finite maps beside Φ, home, and what tells how far a configuration is from where it belongs.
 const UNJUDGED: [KernelKind; 10] = [
@@ -41,8 +43,29 @@ fn the_library_holds() {
                 Verdict::Holds,
                 "{name}"
             );
+            let joint = JointType::new(derived.clone()).expect("little work");
+            assert_eq!(
+                judge_products(&joint, &at(&chart, &parameters)),
+                Verdict::Holds,
+                "products of {name}"
+            );
         }
     }
+}
+
+#[test]
+fn a_false_product_is_told() {
+    let mut joint = JointType::new(crate::derived("ellipsoid")).expect("little work");
+    let mut moved = joint.products.twist_gradient.value.entries().to_vec();
+    moved[0] += &Expr::integer(1);
+    let (rows, columns) = joint.products.twist_gradient.value.shape();
+    joint.products.twist_gradient.value =
+        Matrix::from_fn(rows, columns, |i, k| moved[columns * i + k].clone());
+    let verdict = judge_products(&joint, &at(&[0.3, 0.2, 0.1], &[1.0, 2.0, 3.0]));
+    assert!(
+        matches!(verdict, Verdict::Violated("twist_gradient", _)),
+        "{verdict:?}"
+    );
 }
 
 /// A column of X that is small as doubles go, with a zero that is known to some digits only beside it.

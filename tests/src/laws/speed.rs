@@ -2,7 +2,7 @@
 
 use super::dual::{constant, moving, slopes, unit};
 use super::{At, D1, close};
-use hamel::joint::Joint;
+use hamel::joint::{Joint, Products};
 use hamel::nalgebra::{SMatrix, SVector, Vector6};
 
 impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize>
@@ -87,7 +87,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     pub(super) fn slope_laws(&self, speeds: &SVector<f64, S>, wrench: &Vector6<f64>) {
         let (joint, q) = (self.joint, constant(&self.q));
         let of_bias = joint.bias_acceleration_slope(&self.q, speeds);
-        let of_momentum = joint.bias_momentum_slope(&self.q, speeds, wrench);
+        let of_momentum = joint.bias_momentum_slope(&self.q, wrench);
         for a in 0..S {
             let faster = moving(speeds, &unit(a));
             close(

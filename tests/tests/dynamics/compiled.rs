@@ -383,13 +383,13 @@ fn what_a_scene_does_not_have_costs_nothing() {
     floating.gravity = nalgebra::Vector3::zeros();
     let mut damped = whole.clone();
     for body in &mut damped.bodies {
-        body.damping = vec![0.1; body.joint.shape.freedoms];
+        body.damping = vec![0.1; body.joint.derived.shape.freedoms];
     }
     let mut geared = whole.clone();
     for body in geared
         .bodies
         .iter_mut()
-        .filter(|body| body.joint.spec.name.value == "revolute")
+        .filter(|body| body.joint.derived.spec.name.value == "revolute")
     {
         body.armature = vec![0.1];
     }

@@ -6,7 +6,7 @@ use super::pairs::extract_pairs;
 use super::reciprocal::share_reciprocals;
 use super::shapes::{Shape, Shapes};
 use super::{Counts, Node, factored};
-use crate::derived::{Kernel, Primitive, Step};
+use crate::derived::{Primitive, Step};
 use crate::emit::names::{NameSet, describe};
 use crate::expr::{Expr, Function, Role, Symbol};
 use crate::matrix::Matrix;
@@ -76,15 +76,15 @@ pub struct Program {
 }
 
 impl Program {
-    /// Writes a kernel: factored, shared, polished. `taken` holds the names that must not be used.
+    /// Writes a kernel, its lines and its results: factored, shared, polished. `taken` holds the names that must not be used.
     ///
     /// Of the ways to factor, that with the least work: entries one by one, or sums shared between entries first.
-    pub fn new(kernel: &Kernel, taken: &NameSet) -> Self {
-        let expressions = expressions(kernel);
+    pub fn new(steps: &[Step], outputs: &[Matrix], taken: &NameSet) -> Self {
+        let expressions = expressions(steps, outputs);
         let alone = expressions.iter().map(factored).collect();
         let together = shared_sums(&expressions);
         let [alone, together] =
-            [alone, together].map(|formulas| Self::of_formulas(kernel, formulas, taken));
+            [alone, together].map(|formulas| Self::of_formulas(steps, formulas, taken));
         let [work_alone, work_together] =
             [&alone, &together].map(|program| Counts::of_program(program).work());
         // Entries one by one show the matrix as it is: they give way to a gain of a twentieth, not to a tie.
@@ -94,12 +94,12 @@ impl Program {
         }
     }
 
-    fn of_formulas(kernel: &Kernel, mut formulas: Vec<Node>, taken: &NameSet) -> Self {
+    fn of_formulas(steps: &[Step], mut formulas: Vec<Node>, taken: &NameSet) -> Self {
         share_reciprocals(&mut formulas);
         extract_pairs(&mut formulas);
         let mut sharing = Sharing::new(taken.clone());
         let mut remaining = sharing.numbered(&formulas).into_iter();
-        for step in &kernel.steps {
+        for step in steps {
             sharing.step(step, &mut remaining);
         }
         let outputs = remaining.map(|formula| sharing.rewrite(formula)).collect();
@@ -158,13 +158,13 @@ impl Program {
 }
 
 /// What a kernel computes, in order: its lines, then the entries of its outputs.
-fn expressions(kernel: &Kernel) -> Vec<Expr> {
+fn expressions(steps: &[Step], outputs: &[Matrix]) -> Vec<Expr> {
     let of_step = |step: &Step| match step {
         Step::Let(_, value) => vec![value.clone()],
         Step::Call { argument, .. } => argument.entries().to_vec(),
     };
-    let lines = kernel.steps.iter().flat_map(of_step);
-    let outputs = kernel.outputs.iter().flat_map(Matrix::entries);
+    let lines = steps.iter().flat_map(of_step);
+    let outputs = outputs.iter().flat_map(Matrix::entries);
     in_range(lines.chain(outputs.cloned()))
 }
 

@@ -130,7 +130,7 @@ fn program(steps: Vec<Step>, entries: Vec<Expr>) -> Program {
     ["a", "b", "c", "d"]
         .iter()
         .for_each(|name| _ = taken.claim(name));
-    Program::new(&kernel, &taken)
+    Program::new(&kernel.steps, &kernel.outputs, &taken)
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn a_shared_name_gives_way_to_a_name_that_is_taken() {
     };
     let mut taken = NameSet::default();
     taken.claim("a_plus_b");
-    let written = Program::new(&kernel, &taken);
+    let written = Program::new(&kernel.steps, &kernel.outputs, &taken);
     let names: Vec<&str> = written
         .bindings
         .iter()

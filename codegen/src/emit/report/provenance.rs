@@ -130,16 +130,7 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         | KernelKind::Project
         | KernelKind::Residual => vec![&[Manifold]],
         KernelKind::Singularity => vec![&[Loci]],
-        KernelKind::LocalTwistMap => vec![&[Pose, Motion]],
-        KernelKind::BiasAcceleration
-        | KernelKind::BiasMomentum
-        | KernelKind::TwistGradient
-        | KernelKind::EffortGradient
-        | KernelKind::TwistMapRate
-        | KernelKind::BiasAccelerationGradient
-        | KernelKind::BiasAccelerationSlope
-        | KernelKind::BiasMomentumGradient
-        | KernelKind::BiasMomentumSlope => {
+        KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
             vec![twist, speeds, &[Pose, Motion]]
         }
     };

@@ -3,6 +3,7 @@
 use crate::derived::{Derived, KernelKind};
 use crate::expr::Expr;
 use crate::manifold::Kind;
+use crate::matrix::Matrix;
 use crate::model::{Freedom, VelocityFrame};
 
 /// The unit of each local coordinate: `rad` or `m`; empty where it is neither for certain.
@@ -20,10 +21,16 @@ pub fn of_velocities(derived: &Derived) -> Vec<String> {
     let of_freedoms = of_freedoms(derived).into_iter().enumerate();
     of_freedoms
         .map(|(k, unit)| match is_declared && !is_rate(derived, k) {
-            true => per_second(of_twist(derived, KernelKind::TwistMapChild, k)),
+            true => per_second(of_twist(derived, twist_map(derived), k)),
             false => per_second(unit),
         })
         .collect()
+}
+
+/// X^c.
+fn twist_map(derived: &Derived) -> Option<&Matrix> {
+    let kernel = derived.kernel(KernelKind::TwistMapChild);
+    kernel.and_then(|kernel| kernel.outputs.first())
 }
 
 /// The unit of a rate; empty where that of what changes is.
@@ -61,20 +68,17 @@ fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
     let angle_if = |angle: bool| if angle { "rad" } else { "m" };
     match factor.kind {
         // A freedom of `local` is what Φ makes of it.
-        _ if freedom.generator.is_empty() => of_twist(derived, KernelKind::LocalTwistMap, k),
+        _ if freedom.generator.is_empty() => of_twist(derived, Some(&derived.local_twist_map), k),
         Kind::S1 | Kind::So2 | Kind::So3 | Kind::S3 | Kind::S2 => "rad",
         Kind::Se2 => angle_if(turns(1)),
         Kind::Se3 => angle_if(turns(3)),
-        Kind::Real(_) => of_twist(derived, KernelKind::LocalTwistMap, k),
+        Kind::Real(_) => of_twist(derived, Some(&derived.local_twist_map), k),
     }
 }
 
 /// A coordinate is an angle or a length, and a velocity its rate, where its twist is a unit rotation or a unit translation.
-fn of_twist(derived: &Derived, map: KernelKind, k: usize) -> &'static str {
-    let Some(twist_map) = derived
-        .kernel(map)
-        .and_then(|kernel| kernel.outputs.first())
-    else {
+fn of_twist(derived: &Derived, twist_map: Option<&Matrix>, k: usize) -> &'static str {
+    let Some(twist_map) = twist_map else {
         return "";
     };
     if twist_map.columns() <= k {

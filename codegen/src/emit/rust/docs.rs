@@ -242,21 +242,5 @@ pub fn meaning(kind: KernelKind) -> &'static str {
         KernelKind::BiasMomentum => {
             "(d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame."
         }
-        KernelKind::LocalTwistMap => {
-            "X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame."
-        }
-        KernelKind::TwistGradient => {
-            "∂(X^c S̄ v̄)/∂ϕ at ϕ = 0, at fixed v̄; column k is the derivative along ϕ_k."
-        }
-        KernelKind::EffortGradient => {
-            "∂((X^c S̄)ᵀ h)/∂ϕ at ϕ = 0, for a wrench or momentum h fixed in the child frame."
-        }
-        KernelKind::TwistMapRate => "d/dt(X^c S̄) at the speeds v̄.",
-        KernelKind::BiasAccelerationGradient => {
-            "∂c/∂ϕ at ϕ = 0, at fixed v̄, of c = d/dt(X^c S̄) v̄; column k is the derivative along ϕ_k."
-        }
-        KernelKind::BiasAccelerationSlope => "∂c/∂v̄ of c = d/dt(X^c S̄) v̄.",
-        KernelKind::BiasMomentumGradient => "∂/∂ϕ of (d/dt(X^c S̄))ᵀ h at ϕ = 0, at fixed v̄ and h.",
-        KernelKind::BiasMomentumSlope => "∂/∂v̄ of (d/dt(X^c S̄))ᵀ h, at fixed h.",
     }
 }

@@ -202,18 +202,16 @@ fn structures(derived: &Derived) -> TokenStream {
         ),
         ("bias_acceleration", KernelKind::BiasAcceleration),
         ("bias_momentum", KernelKind::BiasMomentum),
-        ("twist_gradient", KernelKind::TwistGradient),
-        (
-            "bias_acceleration_gradient",
-            KernelKind::BiasAccelerationGradient,
-        ),
-        ("bias_momentum_gradient", KernelKind::BiasMomentumGradient),
     ];
-    let fields = fields.iter().map(|(field, kind)| {
+    let of_kernel = |kind| {
+        let kernel = derived.kernel(kind);
+        kernel.map_or(Structure::General, |kernel| kernel.structure)
+    };
+    let speed_map = Structure::of(std::slice::from_ref(&derived.speed_map));
+    let fields = fields.map(|(field, kind)| (field, of_kernel(kind)));
+    let fields = fields.into_iter().chain([("speed_map", speed_map)]);
+    let fields = fields.map(|(field, structure)| {
         let field = ident(field);
-        let structure = derived
-            .kernel(*kind)
-            .map_or(Structure::General, |kernel| kernel.structure);
         let structure = ident(match structure {
             Structure::Zero => "Zero",
             Structure::Identity => "Identity",

@@ -32,7 +32,7 @@ use std::collections::BTreeSet;
 use tokens::ident;
 
 /// Version of the runtime's trait `Joint` that is emitted.
-pub const KERNEL_INTERFACE: u32 = 4;
+pub const KERNEL_INTERFACE: u32 = 5;
 
 /// The first line of an emitted file, without the comment signs. `label` is the spec's path as the reader knows it.
 pub fn header(label: &str) -> String {

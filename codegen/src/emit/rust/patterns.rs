@@ -1,10 +1,10 @@
-//! Which entries of H, X^c and S̄ are 0 or 1 at every configuration, for the runtime's recursions.
+//! Which entries of H, X^c, S̄ and the derivatives of the last two are 0 or 1 at every configuration, for the runtime's recursions.
 
 use super::joint::sizes;
 use crate::derived::{Derived, KernelKind};
 use crate::expr::Expr;
 use crate::matrix::Matrix;
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// The constant `PATTERNS`.
@@ -21,12 +21,16 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     );
     let basis = value(derived, KernelKind::SpeedBasis, 0);
     let basis = rows(basis, shape.freedoms, shape.speeds);
+    let map_slices = slices(derived, KernelKind::TwistMapChildGradient);
+    let basis_slices = slices(derived, KernelKind::SpeedBasisGradient);
     quote! {
         const PATTERNS: Patterns<#k, #s> = Patterns::new(
             [#(#rotation),*],
             #translation,
             [#(#twist_map),*],
             [#(#basis),*],
+            &[#(#map_slices),*],
+            &[#(#basis_slices),*],
         );
     }
 }
@@ -40,6 +44,23 @@ fn rows(matrix: Option<&Matrix>, rows: usize, columns: usize) -> Vec<String> {
     (0..rows)
         .map(|i| (0..columns).map(|j| sign(i, j)).collect())
         .collect()
+}
+
+/// The slices of a derivative along ϕ that are not zero, with their numbers.
+fn slices(derived: &Derived, kind: KernelKind) -> Vec<TokenStream> {
+    let slices = derived
+        .kernel(kind)
+        .map_or(&[][..], |kernel| &kernel.outputs);
+    let known = slices
+        .iter()
+        .enumerate()
+        .filter(|(_, slice)| !slice.is_zero());
+    let tokens = known.map(|(k, slice)| {
+        let k = Literal::usize_unsuffixed(k);
+        let rows = rows(Some(slice), slice.rows(), slice.columns());
+        quote! { (#k, [#(#rows),*]) }
+    });
+    tokens.collect()
 }
 
 /// A column vector as one row.

@@ -154,36 +154,6 @@ impl Signature {
                 vec![Configuration, Speeds, Wrench],
                 Vector(s),
             ),
-            KernelKind::LocalTwistMap => ("local_twist_map", q(), Matrix(6, k)),
-            KernelKind::TwistGradient => {
-                ("twist_gradient", vec![Configuration, Speeds], Matrix(6, k))
-            }
-            KernelKind::EffortGradient => {
-                ("effort_gradient", vec![Configuration, Wrench], Matrix(s, k))
-            }
-            KernelKind::TwistMapRate => {
-                ("twist_map_rate", vec![Configuration, Speeds], Matrix(6, s))
-            }
-            KernelKind::BiasAccelerationGradient => (
-                "bias_acceleration_gradient",
-                vec![Configuration, Speeds],
-                Matrix(6, k),
-            ),
-            KernelKind::BiasAccelerationSlope => (
-                "bias_acceleration_slope",
-                vec![Configuration, Speeds],
-                Matrix(6, s),
-            ),
-            KernelKind::BiasMomentumGradient => (
-                "bias_momentum_gradient",
-                vec![Configuration, Speeds, Wrench],
-                Matrix(s, k),
-            ),
-            KernelKind::BiasMomentumSlope => (
-                "bias_momentum_slope",
-                vec![Configuration, Speeds, Wrench],
-                Matrix(s, s),
-            ),
         };
         Self {
             name,

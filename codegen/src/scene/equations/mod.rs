@@ -192,7 +192,7 @@ impl<'a> Tree<'a> {
     fn inverse_of_inertia(&self, index: usize, speed: usize, pivot: Sym) -> Sym {
         let body = &self.model.bodies[index];
         inverse_of_inertia(pivot, |pivot| {
-            let name = body.joint.speed_names.get(speed);
+            let name = body.joint.derived.speed_names.get(speed);
             format!(
                 "the mass matrix is singular at joint `{}`, speed `{}`: its pivot {pivot:e} is not above 0e0; give mass or inertia to the \
                  bodies that this joint moves",

@@ -252,7 +252,7 @@ fn tidy(inertia: &Inertia) -> Inertia {
 
 /// How the frame of a body may move.
 fn freedom(body: &Body) -> Freedom {
-    let shape = body.joint.shape;
+    let shape = body.joint.derived.shape;
     let (freedom, _) = record(|| {
         let q: Vec<Sym> = (0..shape.configuration)
             .map(|i| Sym::input(Argument::Configuration, i))

@@ -47,7 +47,12 @@ fn basis(body: &Body, to_link: &Pose<f64>) -> Vec<[f64; 10]> {
             .parameters();
         moved.map(|entry| if entry.abs() <= ROUNDING { 0.0 } else { entry })
     };
-    body.joint.imperceptible.iter().map(element).collect()
+    body.joint
+        .derived
+        .imperceptible
+        .iter()
+        .map(element)
+        .collect()
 }
 
 /// The same space with a basis of which each element alone has 1 at a parameter of its own: element and parameter.

@@ -9,7 +9,7 @@ use hamel::spatial::Pose;
 const ERROR: f64 = 1e-3;
 
 /// Every kernel, by its name in [`Joint`]; of the pose both parts.
-pub const KERNELS: [&str; 32] = [
+pub const KERNELS: [&str; 24] = [
     "home",
     "rotation",
     "translation",
@@ -34,14 +34,6 @@ pub const KERNELS: [&str; 32] = [
     "singularity",
     "bias_acceleration",
     "bias_momentum",
-    "local_twist_map",
-    "twist_gradient",
-    "effort_gradient",
-    "twist_map_rate",
-    "bias_acceleration_gradient",
-    "bias_acceleration_slope",
-    "bias_momentum_gradient",
-    "bias_momentum_slope",
 ];
 
 /// Where a planted kernel is wrong.
@@ -193,14 +185,6 @@ where
         project() -> N, 1;
         bias_acceleration(speeds: S) -> 6, 1;
         bias_momentum(speeds: S, h: 6) -> S, 1;
-        local_twist_map() -> 6, K;
-        twist_gradient(speeds: S) -> 6, K;
-        effort_gradient(h: 6) -> S, K;
-        twist_map_rate(speeds: S) -> 6, S;
-        bias_acceleration_gradient(speeds: S) -> 6, K;
-        bias_acceleration_slope(speeds: S) -> 6, S;
-        bias_momentum_gradient(speeds: S, h: 6) -> S, K;
-        bias_momentum_slope(speeds: S, h: 6) -> S, S;
     }
 
     plant_slices! {

@@ -122,7 +122,7 @@ fn what_a_scene_does_not_have_costs_no_derivatives() {
     shorter.bodies.pop();
     let mut damped = whole.clone();
     for body in &mut damped.bodies {
-        body.damping = vec![0.1; body.joint.shape.freedoms];
+        body.damping = vec![0.1; body.joint.derived.shape.freedoms];
     }
     // Efforts of a wrench in the axes of its body, and slopes of a linear spring, may be constant.
     let springs = acted_on(&whole).into_iter();

@@ -36,11 +36,11 @@ pub fn layout(model: &Model) -> Vec<Share> {
             index,
             body: one_line(&body.name),
             joint: one_line(&body.joint_name),
-            joint_type: one_line(&body.joint.spec.name.value),
+            joint_type: one_line(&body.joint.derived.spec.name.value),
             is_driven: body.driven,
             configuration: part(share.configuration, stored(body)),
             freedoms: part(share.freedoms, freedoms(body)),
-            speeds: part(share.speeds, body.joint.speed_names.clone()),
+            speeds: part(share.speeds, body.joint.derived.speed_names.clone()),
         })
         .collect()
 }
@@ -55,7 +55,7 @@ fn part(range: Range<usize>, names: Vec<String>) -> Part {
 }
 
 fn stored(body: &Body) -> Vec<String> {
-    let coordinates = body.joint.spec.manifold.value.coordinates();
+    let coordinates = body.joint.derived.spec.manifold.value.coordinates();
     coordinates
         .iter()
         .map(|symbol| symbol.name.to_string())
@@ -63,6 +63,6 @@ fn stored(body: &Body) -> Vec<String> {
 }
 
 fn freedoms(body: &Body) -> Vec<String> {
-    let freedoms = body.joint.spec.freedoms.value.iter();
+    let freedoms = body.joint.derived.spec.freedoms.value.iter();
     freedoms.map(|freedom| freedom.name.clone()).collect()
 }

@@ -377,7 +377,7 @@ impl Recursive {
         let link = &self.links[index];
         let structures = link.joint.structures();
         let q = &q[link.configuration.clone()];
-        if !structures.twist_gradient.is_zero() {
+        if !structures.speed_map.is_constant() {
             let node = &self.nodes[index];
             let wrench = in_child(node, &node.wrench);
             link.joint.effort_gradient(q, &wrench, forces);

@@ -207,7 +207,7 @@ impl Recursive {
         let count = link.speeds.len();
         let mut forces = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let forces = &mut forces[..count * link.freedoms.len()];
-        if !link.joint.structures().twist_gradient.is_zero() {
+        if !link.joint.structures().speed_map.is_constant() {
             let momentum = in_child(node, &node.wrench);
             let q = &q[link.configuration.clone()];
             link.joint.effort_gradient(q, &momentum, forces);

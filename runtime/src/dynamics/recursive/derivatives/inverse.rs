@@ -224,7 +224,7 @@ impl Recursive {
                 false => climb_pairs(index, slot, out),
             }
         }
-        if !link.joint.structures().twist_gradient.is_zero() {
+        if !link.joint.structures().speed_map.is_constant() {
             self.add_own_gradient(index, q, out);
         }
     }

@@ -158,7 +158,7 @@ impl Recursive {
         let momentum = in_child(node, &node.wrench);
         let mut sum = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let mut more = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
-        if !structures.twist_gradient.is_zero() {
+        if !structures.speed_map.is_constant() {
             if let Some(coupled) = &mut out.coupled {
                 let more = &mut more[..rows * freedoms];
                 link.joint.effort_gradient(q, &momentum, more);
@@ -173,7 +173,7 @@ impl Recursive {
             let sum = &mut sum[..rows * freedoms];
             link.joint.effort_gradient(q, &wrench, sum);
         }
-        if !structures.bias_momentum_gradient.is_zero() {
+        if !structures.bias_momentum.is_constant() {
             let more = &mut more[..rows * freedoms];
             link.joint
                 .bias_momentum_gradient(q, speeds, &momentum, more);
@@ -188,7 +188,7 @@ impl Recursive {
         }
         if !structures.bias_momentum.is_zero() {
             let more = &mut more[..rows * rows];
-            link.joint.bias_momentum_slope(q, speeds, &momentum, more);
+            link.joint.bias_momentum_slope(q, &momentum, more);
             for (n, entry) in more.iter().enumerate() {
                 let (row, column) = (link.speeds.start + n % rows, link.speeds.start + n / rows);
                 out.rates_by_speeds.entries[row * out.rates_by_speeds.columns + column] += entry;

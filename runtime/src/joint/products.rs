@@ -1,0 +1,301 @@
+//! What the derivatives of the dynamics need of a joint beyond its kernels: [`Products`] of them, the same for every joint.
+//!
+//! With X̄^c = X^c S̄, its slices are `∂X̄^c/∂ϕ_k = ∂X^c_k S̄ + X^c ∂S̄_k`, and ϕ̇ = S₀⁻¹ S̄ v̄. Slices and entries that the joint's
+//! [`Patterns`](super::Patterns) know to be 0 are left out when this is compiled for a joint. Second derivatives are first ones of the
+//! kernels of c and its dual, by automatic differentiation along each ϕ_k.
+
+use super::{Entry, Joint};
+use crate::scalar::{Dual, Scalar};
+use nalgebra::{SMatrix, SVector};
+
+/// Products of a joint's kernels and their derivatives, at ϕ = 0. Shapes, units and frames are those of [`Joint`].
+pub trait Products<const N: usize, const K: usize, const S: usize, const C: usize>:
+    Joint<N, K, S, C>
+{
+    /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame.
+    #[inline]
+    fn local_twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+        let map = self.twist_map_child(q);
+        match Self::STRUCTURES.velocity_map.is_identity() {
+            true => map,
+            false => map * self.velocity_map(q),
+        }
+    }
+
+    /// ∂(X̄^c v̄)/∂ϕ at fixed v̄; column k is the derivative along ϕ_k.
+    #[inline]
+    fn twist_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, K> {
+        let patterns = const { &Self::PATTERNS };
+        let mut gradient = SMatrix::zeros();
+        if Self::STRUCTURES.speed_map.is_constant() {
+            return gradient;
+        }
+        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+            let velocity = velocity(self, q, speeds);
+            let slices = self.twist_map_child_gradient(q);
+            for (k, slice) in slices.iter().enumerate() {
+                let pattern = &patterns.twist_map_child_gradient[k];
+                gradient.set_column(k, &times(slice, pattern, &velocity));
+            }
+        }
+        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+            let map = self.twist_map_child(q);
+            let slices = self.speed_basis_gradient(q);
+            for (k, slice) in slices.iter().enumerate() {
+                let moved = times(slice, &patterns.speed_basis_gradient[k], speeds);
+                let mut column = gradient.column_mut(k);
+                column += times(&map, &patterns.twist_map_child, &moved);
+            }
+        }
+        gradient
+    }
+
+    /// ∂(X̄^cᵀ h)/∂ϕ for a wrench or momentum `h` (moment; linear) that is fixed in the child frame: the dual of
+    /// [`Products::twist_gradient`].
+    #[inline]
+    fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &SVector<T, 6>) -> SMatrix<T, S, K> {
+        let patterns = const { &Self::PATTERNS };
+        let mut gradient = SMatrix::zeros();
+        if Self::STRUCTURES.speed_map.is_constant() {
+            return gradient;
+        }
+        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+            let slices = self.twist_map_child_gradient(q);
+            for (k, slice) in slices.iter().enumerate() {
+                let pattern = &patterns.twist_map_child_gradient[k];
+                let efforts = transposed_times(slice, pattern, h);
+                gradient.set_column(k, &reduced(self, q, &efforts));
+            }
+        }
+        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+            let map = self.twist_map_child(q);
+            let efforts = transposed_times(&map, &patterns.twist_map_child, h);
+            let slices = self.speed_basis_gradient(q);
+            for (k, slice) in slices.iter().enumerate() {
+                let pattern = &patterns.speed_basis_gradient[k];
+                let mut column = gradient.column_mut(k);
+                column += transposed_times(slice, pattern, &efforts);
+            }
+        }
+        gradient
+    }
+
+    /// Ẋ̄^c at the speeds v̄: `c = Ẋ̄^c v̄`.
+    #[inline]
+    fn twist_map_rate<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, S> {
+        if Self::STRUCTURES.speed_map.is_constant() {
+            return SMatrix::zeros();
+        }
+        let patterns = const { &Self::PATTERNS };
+        let basis = self.speed_basis(q);
+        let local = local_rates(self, q) * speeds;
+        let mut rate = SMatrix::zeros();
+        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+            let slices = self.twist_map_child_gradient(q);
+            rate += combined(&slices, &patterns.twist_map_child_gradient, &local) * basis;
+        }
+        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+            let slices = self.speed_basis_gradient(q);
+            let of_basis = combined(&slices, &patterns.speed_basis_gradient, &local);
+            rate += self.twist_map_child(q) * of_basis;
+        }
+        rate
+    }
+
+    /// ∂c/∂v̄ of [`Joint::bias_acceleration`]: `Ẋ̄^c + ∂(X̄^c v̄)/∂ϕ S₀⁻¹ S̄`.
+    #[inline]
+    fn bias_acceleration_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, S> {
+        self.twist_map_rate(q, speeds) + self.twist_gradient(q, speeds) * local_rates(self, q)
+    }
+
+    /// ∂(Ẋ̄^cᵀ h)/∂v̄ at fixed h, of [`Joint::bias_momentum`]: `∂(X̄^cᵀ h)/∂ϕ S₀⁻¹ S̄`.
+    #[inline]
+    fn bias_momentum_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, S, S> {
+        self.effort_gradient(q, h) * local_rates(self, q)
+    }
+
+    /// ∂c/∂ϕ at fixed v̄, of [`Joint::bias_acceleration`].
+    #[inline]
+    fn bias_acceleration_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, K> {
+        if Self::STRUCTURES.bias_acceleration.is_constant() {
+            return SMatrix::zeros();
+        }
+        let speeds = speeds.map(Dual::constant);
+        along_each(self, q, |q| self.bias_acceleration(q, &speeds))
+    }
+
+    /// ∂(Ẋ̄^cᵀ h)/∂ϕ at fixed v̄ and h, of [`Joint::bias_momentum`].
+    #[inline]
+    fn bias_momentum_gradient<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+        h: &SVector<T, 6>,
+    ) -> SMatrix<T, S, K> {
+        if Self::STRUCTURES.bias_momentum.is_constant() {
+            return SMatrix::zeros();
+        }
+        let (speeds, h) = (speeds.map(Dual::constant), h.map(Dual::constant));
+        along_each(self, q, |q| self.bias_momentum(q, &speeds, &h))
+    }
+}
+
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Products<N, K, S, C> for J where
+    J: Joint<N, K, S, C>
+{
+}
+
+/// v = S̄ v̄.
+#[inline(always)]
+fn velocity<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    q: &SVector<T, N>,
+    speeds: &SVector<T, S>,
+) -> SVector<T, K>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let patterns = const { &J::PATTERNS };
+    times(&joint.speed_basis(q), &patterns.speed_basis, speeds)
+}
+
+/// S̄ᵀ τ.
+#[inline(always)]
+fn reduced<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    q: &SVector<T, N>,
+    efforts: &SVector<T, K>,
+) -> SVector<T, S>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let patterns = const { &J::PATTERNS };
+    transposed_times(&joint.speed_basis(q), &patterns.speed_basis, efforts)
+}
+
+/// S₀⁻¹ S̄: v̄ to ϕ̇.
+#[inline(always)]
+fn local_rates<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    q: &SVector<T, N>,
+) -> SMatrix<T, K, S>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let basis = joint.speed_basis(q);
+    match J::STRUCTURES.velocity_map.is_identity() {
+        true => basis,
+        false => joint.velocity_map_inverse(q) * basis,
+    }
+}
+
+/// The derivatives of a function of Q along each ϕ_k at ϕ = 0, which moves Q with `Q̇(Q, S₀ e_k)`.
+#[inline(always)]
+fn along_each<
+    T,
+    J,
+    const N: usize,
+    const K: usize,
+    const S: usize,
+    const C: usize,
+    const R: usize,
+>(
+    joint: &J,
+    q: &SVector<T, N>,
+    function: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, R>,
+) -> SMatrix<T, R, K>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    let velocities = joint.velocity_map(q);
+    let column = |k: usize| {
+        let rate = joint.configuration_rate(q, &velocities.column(k).into_owned());
+        function(&q.zip_map(&rate, Dual::new)).map(|entry| entry.derivative)
+    };
+    SMatrix::from_columns(&core::array::from_fn::<_, K, _>(column))
+}
+
+/// `Σ_k M_k x_k` without what `patterns` know to be 0 or 1.
+#[inline(always)]
+fn combined<T: Scalar, const R: usize, const C: usize, const K: usize>(
+    slices: &[SMatrix<T, R, C>; K],
+    patterns: &[[[Entry; C]; R]; K],
+    x: &SVector<T, K>,
+) -> SMatrix<T, R, C> {
+    let mut sum = SMatrix::zeros();
+    for k in 0..K {
+        for i in 0..R {
+            for j in 0..C {
+                let known = patterns[k][i][j];
+                sum[(i, j)] = accumulated(sum[(i, j)], known, slices[k][(i, j)], x[k]);
+            }
+        }
+    }
+    sum
+}
+
+/// `M x` without what `pattern` knows to be 0 or 1.
+#[inline(always)]
+fn times<T: Scalar, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+    pattern: &[[Entry; C]; R],
+    x: &SVector<T, C>,
+) -> SVector<T, R> {
+    let mut product = SVector::zeros();
+    for i in 0..R {
+        for j in 0..C {
+            product[i] = accumulated(product[i], pattern[i][j], matrix[(i, j)], x[j]);
+        }
+    }
+    product
+}
+
+/// `Mᵀ x` without what `pattern` of M knows to be 0 or 1.
+#[inline(always)]
+fn transposed_times<T: Scalar, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+    pattern: &[[Entry; C]; R],
+    x: &SVector<T, R>,
+) -> SVector<T, C> {
+    let mut product = SVector::zeros();
+    for j in 0..C {
+        for i in 0..R {
+            product[j] = accumulated(product[j], pattern[i][j], matrix[(i, j)], x[i]);
+        }
+    }
+    product
+}
+
+/// `sum + entry x`.
+#[inline(always)]
+fn accumulated<T: Scalar>(sum: T, pattern: Entry, entry: T, x: T) -> T {
+    match pattern {
+        Entry::Zero => sum,
+        Entry::One => sum + x,
+        Entry::Other => entry.mul_add(x, sum),
+    }
+}
