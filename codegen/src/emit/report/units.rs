@@ -1,10 +1,14 @@
 //! Units of the freedoms: angles or lengths, as far as the spec determines them.
 
 use crate::derived::{Derived, KernelKind};
-use crate::expr::Expr;
+use crate::expr::{Expr, budget};
 use crate::manifold::Kind;
 use crate::matrix::Matrix;
 use crate::model::{Freedom, VelocityFrame};
+
+/// Most term operations to find out whether the columns of a twist map have length 1. Squares of entries with a thousand terms take a minute;
+/// a joint with such entries turns or slides along no fixed axis.
+const UNIT_WORK: u64 = 10_000;
 
 /// The unit of each local coordinate: `rad` or `m`; empty where it is neither for certain.
 pub fn of_freedoms(derived: &Derived) -> Vec<&'static str> {
@@ -85,15 +89,11 @@ fn of_twist(derived: &Derived, twist_map: Option<&Matrix>, k: usize) -> &'static
         return "";
     }
     let column = twist_map.column(k);
+    let ideal = derived.spec.manifold.value.ideal();
     let is_unit = |part: &[Expr]| {
-        let square: Expr = part.iter().map(Expr::square).sum();
-        derived
-            .spec
-            .manifold
-            .value
-            .ideal()
-            .normal_form(&square)
-            .is_one()
+        let square = || -> Expr { part.iter().map(Expr::square).sum() };
+        let unit = budget::scope(UNIT_WORK, || ideal.normal_form(&square()).is_one());
+        unit.unwrap_or(false)
     };
     let (angular, linear) = column.split_at(3);
     match (
@@ -108,8 +108,9 @@ fn of_twist(derived: &Derived, twist_map: Option<&Matrix>, k: usize) -> &'static
 
 #[cfg(test)]
 mod tests {
-    use super::{of_freedoms, of_velocities};
+    use super::{UNIT_WORK, of_freedoms, of_velocities};
     use crate::derive;
+    use crate::expr::budget;
 
     fn units(declared: &str) -> (Vec<&'static str>, Vec<String>) {
         let source = format!("hamel = 1; joint test {{ {declared} }}");
@@ -149,5 +150,20 @@ mod tests {
             units("config a: R1; H = trans_z(a * a * a + a);"),
             (vec![""], vec![String::new()])
         );
+    }
+
+    /// The column of X^c has 210 terms in an entry: its square would take more work than finding the unit is worth.
+    #[test]
+    fn a_long_twist_is_no_unit_and_takes_little_work() {
+        let source = "hamel = 1;
+            joint bend(a: m, b: m, c: m, d: m) {
+                config q: R1;
+                H = trans([pow(a + b + c + d + q, 7), 0, q]);
+            }";
+        let derived = derive(source, "bend.joint").unwrap_or_else(|errors| panic!("{errors}"));
+        let (units, work) = budget::measured(|| of_freedoms(&derived));
+        assert_eq!(units, [""]);
+        // One test of length each for the angular and the linear part.
+        assert!(work <= 2 * UNIT_WORK, "{work} term operations");
     }
 }
