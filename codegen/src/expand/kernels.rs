@@ -1,4 +1,4 @@
-//! The kernels of THEORY §3 from an expansion, in the order in which they are emitted.
+//! The kernels of a joint from its expansion, in the order in which they are emitted.
 
 use super::{Expansion, finite, general, hamel};
 use crate::derived::{Kernel, KernelKind, Method, Step, Structure};

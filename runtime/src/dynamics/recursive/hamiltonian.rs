@@ -1,4 +1,4 @@
-//! The port-Hamiltonian right-hand side by recursion, THEORY of (27) and (35) without ∂M/∂ϕ, accelerations or J22:
+//! The port-Hamiltonian right-hand side of (27) and (35) by recursion, without ∂M/∂ϕ, accelerations or J22:
 //!
 //! `p̄̇ᵢ = τ̄ᵢ + X̄ᵢᵀ(fᵢ + ad_{Vᵢ}ᵀ hᵢ) + Ẋ̄ᵢᵀ hᵢ` with composite momenta h and composite external wrenches f.
 
