@@ -3,7 +3,7 @@
 use super::graph::{Sym, call, call_two, primitive, sin_cos};
 use super::products::{JointType, Product};
 use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
-use crate::derived::{Derived, KernelKind};
+use crate::derived::KernelKind;
 use crate::emit::formula::{Binding, Node, Program};
 use crate::expr::{Function, Symbol};
 use num_traits::ToPrimitive;
@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 /// A joint at one state.
 pub struct Joint<'a> {
     joint: &'a JointType,
-    derived: &'a Derived,
     values: BTreeMap<Symbol, Sym>,
 }
 
@@ -32,11 +31,7 @@ impl<'a> Joint<'a> {
                 .zip(q.iter().copied()),
         );
         values.extend(arguments.speeds.iter().cloned().zip(speeds.iter().copied()));
-        Self {
-            joint,
-            derived,
-            values,
-        }
+        Self { joint, values }
     }
 
     /// The stored scalars of the home configuration.
@@ -66,12 +61,15 @@ impl<'a> Joint<'a> {
     /// The columns of X^c.
     pub fn freedoms(&self) -> Vec<Twist> {
         let entries = self.entries(KernelKind::TwistMapChild);
-        columns(&entries, self.derived.shape.freedoms)
+        columns(&entries, self.joint.derived.shape.freedoms)
     }
 
     /// S̄ by rows, one a freedom.
     pub fn speed_basis(&self) -> Vec<Vec<Sym>> {
-        let (freedoms, speeds) = (self.derived.shape.freedoms, self.derived.shape.speeds);
+        let (freedoms, speeds) = (
+            self.joint.derived.shape.freedoms,
+            self.joint.derived.shape.speeds,
+        );
         let entries = self.entries(KernelKind::SpeedBasis);
         if entries.len() == freedoms * speeds {
             return entries.chunks(speeds.max(1)).map(<[Sym]>::to_vec).collect();
@@ -90,12 +88,12 @@ impl<'a> Joint<'a> {
     /// The columns of X.
     pub fn freedoms_in_parent(&self) -> Vec<Twist> {
         let entries = self.entries(KernelKind::TwistMap);
-        columns(&entries, self.derived.shape.freedoms)
+        columns(&entries, self.joint.derived.shape.freedoms)
     }
 
     /// S₀⁻¹ by columns.
     pub fn velocity_map_inverse(&self) -> Vec<Vec<Sym>> {
-        let freedoms = self.derived.shape.freedoms;
+        let freedoms = self.joint.derived.shape.freedoms;
         let entries = self.entries(KernelKind::VelocityMapInverse);
         let column = |j: usize| entries.iter().skip(j).step_by(freedoms).copied().collect();
         (0..freedoms).map(column).collect()
@@ -104,45 +102,48 @@ impl<'a> Joint<'a> {
     /// The columns of X^c S₀: ϕ̇ to the twist in the child frame.
     pub fn local_twist_map(&self) -> Vec<Twist> {
         let entries = self.product(&self.joint.products.local_twist_map, &[]);
-        columns(&entries, self.derived.shape.freedoms)
+        columns(&entries, self.joint.derived.shape.freedoms)
     }
 
     /// ∂(X̄^c x)/∂ϕ, one column a freedom.
     pub fn twist_gradient(&self, x: &[Sym]) -> Vec<Twist> {
-        let given = [(self.derived.arguments.speeds.as_slice(), x)];
+        let given = [(self.joint.derived.arguments.speeds.as_slice(), x)];
         let entries = self.product(&self.joint.products.twist_gradient, &given);
-        columns(&entries, self.derived.shape.freedoms)
+        columns(&entries, self.joint.derived.shape.freedoms)
     }
 
     /// ∂c/∂ϕ, one column a freedom.
     pub fn bias_gradient(&self) -> Vec<Twist> {
         let entries = self.product(&self.joint.products.bias_acceleration_gradient, &[]);
-        columns(&entries, self.derived.shape.freedoms)
+        columns(&entries, self.joint.derived.shape.freedoms)
     }
 
     /// ∂c/∂v̄, one column a speed.
     pub fn bias_slope(&self) -> Vec<Twist> {
         let entries = self.product(&self.joint.products.bias_acceleration_slope, &[]);
-        columns(&entries, self.derived.shape.speeds)
+        columns(&entries, self.joint.derived.shape.speeds)
     }
 
     /// ∂(X̄^cᵀ h)/∂ϕ by rows, one a speed; none where X̄^c is constant.
     pub fn effort_gradient(&self, wrench: &Wrench) -> Vec<Vec<Sym>> {
         let parts = parts_of(wrench);
-        let given = [(self.derived.arguments.wrench.as_slice(), &parts[..])];
+        let given = [(self.joint.derived.arguments.wrench.as_slice(), &parts[..])];
         let entries = self.product(&self.joint.products.effort_gradient, &given);
-        let rows = entries.chunks(self.derived.shape.freedoms.max(1));
+        let rows = entries.chunks(self.joint.derived.shape.freedoms.max(1));
         rows.map(<[Sym]>::to_vec).collect()
     }
 
     /// How the stored scalars of Q change with each ϕ, at ϕ = 0: `Q̇(Q, S₀ e)`.
     pub fn configuration_slopes(&self) -> Vec<Vec<Sym>> {
-        let freedoms = self.derived.shape.freedoms;
+        let freedoms = self.joint.derived.shape.freedoms;
         let map = self.entries(KernelKind::VelocityMap);
         let column = |k: usize| -> Vec<Sym> {
             let velocity = map.iter().skip(k).step_by(freedoms).copied();
             let velocity: Vec<Sym> = velocity.collect();
-            let given = [(self.derived.arguments.velocity.as_slice(), &velocity[..])];
+            let given = [(
+                self.joint.derived.arguments.velocity.as_slice(),
+                &velocity[..],
+            )];
             self.entries_with(KernelKind::ConfigurationRate, &given)
         };
         (0..freedoms).map(column).collect()
@@ -150,19 +151,19 @@ impl<'a> Joint<'a> {
 
     /// Φ(Q, ϕ).
     pub fn retract(&self, phi: &[Sym]) -> Vec<Sym> {
-        let given = [(self.derived.arguments.local.as_slice(), phi)];
+        let given = [(self.joint.derived.arguments.local.as_slice(), phi)];
         self.entries_with(KernelKind::Retract, &given)
     }
 
     /// ϕ with Φ(Q, ϕ) = Q′.
     pub fn local(&self, target: &[Sym]) -> Vec<Sym> {
-        let given = [(self.derived.arguments.target.as_slice(), target)];
+        let given = [(self.joint.derived.arguments.target.as_slice(), target)];
         self.entries_with(KernelKind::Local, &given)
     }
 
     /// ϕ̇ at ϕ, from S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ).
     pub fn retract_differential_inverse(&self, phi: &[Sym], rate: &[Sym]) -> Vec<Sym> {
-        let arguments = &self.derived.arguments;
+        let arguments = &self.joint.derived.arguments;
         let given = [
             (arguments.local.as_slice(), phi),
             (arguments.velocity.as_slice(), rate),
@@ -172,7 +173,7 @@ impl<'a> Joint<'a> {
 
     /// Σ_k γ_k v_k by rows, at v.
     pub fn gamma(&self, velocity: &[Sym]) -> Vec<Vec<Sym>> {
-        let given = [(self.derived.arguments.velocity.as_slice(), velocity)];
+        let given = [(self.joint.derived.arguments.velocity.as_slice(), velocity)];
         let entries = self.entries_with(KernelKind::Gamma, &given);
         let rows = entries.chunks(velocity.len().max(1));
         rows.map(<[Sym]>::to_vec).collect()
@@ -181,7 +182,7 @@ impl<'a> Joint<'a> {
     /// `Ẋ̄^cᵀ h` at v̄.
     pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
         let parts = parts_of(momentum);
-        let given = [(self.derived.arguments.wrench.as_slice(), &parts[..])];
+        let given = [(self.joint.derived.arguments.wrench.as_slice(), &parts[..])];
         self.entries_with(KernelKind::BiasMomentum, &given)
     }
 
@@ -197,10 +198,10 @@ impl<'a> Joint<'a> {
 
     /// The same with values for more symbols.
     fn entries_with(&self, kind: KernelKind, given: &[(&[Symbol], &[Sym])]) -> Vec<Sym> {
-        let Some(kernel) = self.derived.kernel(kind) else {
+        let Some(kernel) = self.joint.derived.kernel(kind) else {
             return vec![];
         };
-        run(&self.derived.program(kernel), self.values_with(given))
+        run(&self.joint.derived.program(kernel), self.values_with(given))
     }
 
     /// The entries of a product of kernels, row by row, with values for more symbols.

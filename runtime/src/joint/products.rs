@@ -35,7 +35,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
             return gradient;
         }
         if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
-            let velocity = velocity(self, q, speeds);
+            let velocity = times(&self.speed_basis(q), &patterns.speed_basis, speeds);
             let slices = self.twist_map_child_gradient(q);
             for (k, slice) in slices.iter().enumerate() {
                 let pattern = &patterns.twist_map_child_gradient[k];
@@ -64,11 +64,13 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
             return gradient;
         }
         if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+            let basis = self.speed_basis(q);
             let slices = self.twist_map_child_gradient(q);
             for (k, slice) in slices.iter().enumerate() {
                 let pattern = &patterns.twist_map_child_gradient[k];
                 let efforts = transposed_times(slice, pattern, h);
-                gradient.set_column(k, &reduced(self, q, &efforts));
+                let reduced = transposed_times(&basis, &patterns.speed_basis, &efforts);
+                gradient.set_column(k, &reduced);
             }
         }
         if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
@@ -163,36 +165,6 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Products<N, K, S, C> for J where
     J: Joint<N, K, S, C>
 {
-}
-
-/// v = S̄ v̄.
-#[inline(always)]
-fn velocity<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    q: &SVector<T, N>,
-    speeds: &SVector<T, S>,
-) -> SVector<T, K>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    let patterns = const { &J::PATTERNS };
-    times(&joint.speed_basis(q), &patterns.speed_basis, speeds)
-}
-
-/// S̄ᵀ τ.
-#[inline(always)]
-fn reduced<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    q: &SVector<T, N>,
-    efforts: &SVector<T, K>,
-) -> SVector<T, S>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    let patterns = const { &J::PATTERNS };
-    transposed_times(&joint.speed_basis(q), &patterns.speed_basis, efforts)
 }
 
 /// S₀⁻¹ S̄: v̄ to ϕ̇.
