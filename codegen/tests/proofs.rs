@@ -108,3 +108,31 @@ fn a_claim_that_is_not_proved_says_so_everywhere() {
     let rust = emit::rust::file(&joint, "test.joint").expect("it can be written");
     assert!(rust.contains("not proved"), "the docs of the joint say so");
 }
+
+/// A search for a place where a claim fails must not leave the manifold, whatever value a parameter of its relations has, nor a range.
+#[test]
+fn true_claims_are_not_refuted_outside_of_the_domain() {
+    let circle = "config p: R2, y: R1; relation dot(p, p) = r * r; home = [r, 0], 0; local t, u;
+        Phi = [p.x * cos(phi.t) - p.y * sin(phi.t); p.x * sin(phi.t) + p.y * cos(phi.t)], y + phi.u;
+        H = trans([p.x, p.y, y]); speeds s;";
+    let plane = "config x: R1, y: R1; H = trans([x, y, 0]); speeds s;";
+    let specs = [
+        format!(
+            "(r: m > 0) {{ {circle} let w = sqrt(3 * r * r + p.x * p.x);
+            A = [2 * atan2(p.y, 2 * r + w); -1]; S_bar = [1; atan2(p.y, w)];"
+        ),
+        format!(
+            "(r: m > 0) {{ {circle}
+            A = [exp(-sqrt(p.x * p.x + 3 * r * r + p.y * p.y) / r) * exp(sin(2 * atan2(y, 1 + sqrt(1 + y * y)))); -1];
+            S_bar = [1; exp(-2) * exp(sin(atan(y)))];"
+        ),
+        format!("(m: 1 in 0.1..=0.1) {{ {plane} A = [tanh(x) * m; -1]; S_bar = [1; tanh(x) / 10];"),
+        format!("{{ {plane} A = [pow(exp(x), 1/2); -1]; S_bar = [1; exp(x / 2)];"),
+    ];
+    for spec in specs {
+        let unproved = "unproved speeds_meet_constraint because \"a law of functions\"; }";
+        let joint = derived(&format!("{spec} {unproved}"));
+        let met = claim(&joint, "speeds_meet_constraint").expect("it is claimed");
+        assert_eq!(met.proof, Proof::Checked);
+    }
+}

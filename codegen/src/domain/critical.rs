@@ -16,11 +16,11 @@ pub struct Critical {
     /// Its arguments as they are written.
     pub written: Vec<Expr>,
     /// Whether sine and cosine alone are taken of it, which whole turns do not change.
-    periodic: bool,
+    pub periodic: bool,
 }
 
 impl Critical {
-    /// Those in what a spec declares and evaluates at a configuration; Φ at ϕ = 0, but where it is Q exp(ϕ), which has a closed form.
+    /// Those in what a spec declares and evaluates at a configuration, exceptions included; Φ at ϕ = 0, but where it is Q exp(ϕ), which has a closed form.
     pub fn declared(spec: &JointSpec, exponential: bool) -> BTreeSet<Self> {
         let mut found = match exponential {
             true => BTreeSet::new(),
@@ -32,6 +32,7 @@ impl Critical {
         let matrices = matrices.chain(declared.into_iter().flatten().map(|d| &d.value));
         matrices
             .flat_map(Matrix::entries)
+            .chain(spec.loci.iter().map(|locus| &locus.value.function))
             .for_each(|e| Self::collect(e, &[], &mut found));
         found
     }

@@ -82,7 +82,7 @@ impl Precise {
     }
 
     /// Whether 1 + x is 1 to all digits and more: of a function's series its first term is left.
-    fn is_negligible(&self) -> bool {
+    pub(super) fn is_negligible(&self) -> bool {
         self.log2() < -((self.bits() + GUARD) as f64)
     }
 

@@ -138,7 +138,10 @@ impl Interval {
     /// By a function that grows.
     fn growing(&self, function: impl Fn(&Precise) -> Precise) -> Self {
         match self.is_bounded() {
-            true => Self::outward(function(&self.low), function(&self.high)),
+            true => Self {
+                low: -&above(&-&self.low, |x| -&function(&-x)),
+                high: above(&self.high, function),
+            },
             false => Self::whole(self.bits()),
         }
     }
@@ -167,7 +170,7 @@ impl Interval {
     }
 
     fn exp(&self) -> Self {
-        let value = self.growing(exponential);
+        let value = self.growing(Precise::exp);
         let zero = self.low.same(0);
         Self {
             low: larger(value.low, zero),
@@ -187,6 +190,22 @@ impl Interval {
         match self.is_bounded() {
             true => self.abs().growing(function),
             false => Self::whole(self.bits()),
+        }
+    }
+
+    /// Logarithm of the hyperbolic cosine: where 1 + x is 1 to all digits, between x²/2 (1 − x²/6) and x²/2.
+    fn ln_cosh(&self) -> Self {
+        let half = Self::point(self.low.same(1).halved(1));
+        match self.is_bounded() && self.largest_size().is_negligible() {
+            true => {
+                let first = self.square().times(&half);
+                let low = down(&first.low);
+                Self {
+                    low: larger(low, self.low.same(0)),
+                    high: first.high,
+                }
+            }
+            false => self.growing_with_size(Precise::ln_cosh),
         }
     }
 
@@ -231,8 +250,15 @@ impl Interval {
         if !(first.abs() < LARGEST_TURNS && last.abs() < LARGEST_TURNS) || last - first > 2.0 {
             return all();
         }
-        let ends = Self::between(function(&self.low), function(&self.high));
-        let mut value = Self::outward(ends.low, ends.high);
+        let at = |x: &Precise| Self {
+            low: -&above(x, |x| -&function(x)),
+            high: above(x, &function),
+        };
+        let (a, b) = (at(&self.low), at(&self.high));
+        let mut value = Self {
+            low: smaller(a.low, b.low),
+            high: larger(a.high, b.high),
+        };
         // Doubles this far from their limit move by less than 1: one more extreme on either side only widens the enclosure.
         let (first, last) = (
             (first - TURNS_ROUNDING).ceil(),
@@ -369,7 +395,7 @@ fn up(value: &Precise) -> Precise {
         };
     }
     match value.unit_in_last_place() {
-        // What is exactly 0 is left: a function that only underflows is given as the smallest number.
+        // What is exactly 0 is left: what only underflows does not come here.
         None => value.clone(),
         Some(unit) => value + &unit.halved(-OUTWARD_BITS),
     }
@@ -392,12 +418,12 @@ fn product(a: &Precise, b: &Precise, end: End) -> Precise {
     }
 }
 
-/// The exponential, but not 0 where it only underflows.
-fn exponential(x: &Precise) -> Precise {
-    let value = x.exp();
-    match value.is_zero() {
-        true => Precise::smallest(value.bits()),
-        false => value,
+/// A number above the value of a function at x, which it rounds to nearest; what it gives as 0 may be a number that is too small for it.
+fn above(x: &Precise, function: impl Fn(&Precise) -> Precise) -> Precise {
+    let value = function(x);
+    match value.is_zero() && !x.is_zero() {
+        true => Precise::above_underflow(value.bits()),
+        false => up(&value),
     }
 }
 
@@ -453,7 +479,7 @@ impl Number for Interval {
             (Function::Cosh, [x]) => x.growing_with_size(Precise::cosh),
             (Function::Tanh, [x]) => x.growing(Precise::tanh).within(-1, 1),
             (Function::Sech, [x]) => x.sech(),
-            (Function::LnCosh, [x]) => x.growing_with_size(Precise::ln_cosh),
+            (Function::LnCosh, [x]) => x.ln_cosh(),
             (Function::Stumpff(order), [s]) => s.stumpff(order.into()),
             _ => Self::whole(self.bits()),
         }

@@ -7,6 +7,8 @@ use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::fmt::{Debug, Display, Formatter};
 
+/// Exponents above the least one at which the library may keep numbers without their leading bits.
+const SUBNORMAL_EXPONENTS: i32 = 1 << 20;
 const ROUNDING: RoundingMode = RoundingMode::ToEven;
 /// The binary logarithm of the largest angle that is reduced.
 const LARGEST_ANGLE: f64 = 4096.0;
@@ -197,10 +199,22 @@ impl Precise {
     /// `self / 2ⁿ`.
     pub fn halved(&self, n: i32) -> Self {
         let mut value = self.value.clone();
-        if let Some(exponent) = value.exponent().filter(|_| !value.is_zero()) {
-            value.set_exponent(exponent.saturating_sub(n));
+        let Some(exponent) = value.exponent().filter(|_| !value.is_zero()) else {
+            return self.clone();
+        };
+        // The exponents of the smallest numbers are all the same, and their leading bits are 0.
+        let is_normal = |exponent: &i32| *exponent > i32::MIN + SUBNORMAL_EXPONENTS;
+        match exponent.checked_sub(n).filter(is_normal) {
+            Some(lower) if is_normal(&exponent) => {
+                value.set_exponent(lower);
+                self.with(value)
+            }
+            _ => {
+                let mut factor = self.same(1).value;
+                factor.set_exponent(1_i32.saturating_sub(n));
+                self.product(&self.with(factor))
+            }
         }
-        self.with(value)
     }
 
     /// Square root.
@@ -272,6 +286,13 @@ impl Precise {
     /// The smallest number above 0.
     pub(super) fn smallest(bits: usize) -> Self {
         Self::wrap(BigFloat::min_positive(bits), bits)
+    }
+
+    /// A number above all that functions round to 0: the library's exponential knows no number below the smallest normal one.
+    pub(super) fn above_underflow(bits: usize) -> Self {
+        let mut value = BigFloat::min_positive_normal(bits);
+        value.set_exponent(i32::MIN + SUBNORMAL_EXPONENTS);
+        Self::wrap(value, bits)
     }
 
     /// The distance to the next number; `None` for 0, NaN and infinity.

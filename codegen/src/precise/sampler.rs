@@ -117,6 +117,19 @@ impl<'a> Sampler<'a> {
         point
     }
 
+    /// The point with its stored scalars moved onto the manifold by Newton's method, the parameters as they are; `None` where that fails,
+    /// and where its relations are not met to the rounding of their terms, however small these are.
+    pub fn settled(&self, point: &Point) -> Option<Point> {
+        let mut settled = point.clone();
+        let coordinates = self.spec.manifold.value.coordinates();
+        to_zero(&mut settled, &coordinates, &self.relations)?;
+        let holds = |(relation, _): &Sloped| {
+            let (value, scale) = settled.evaluate_with_scale(relation);
+            value.is_zero() || scale.is_normal() && is_small(&value, scale, settled.bits())
+        };
+        self.relations.iter().all(holds).then_some(settled)
+    }
+
     fn attempt(&mut self) -> Option<Point> {
         if self.far.is_some() {
             self.draw.reach = REACHES[self.index(REACHES.len())];
@@ -273,8 +286,12 @@ fn advance(at: &mut Point, coordinates: &[Symbol], step: &[f64]) {
 
 /// Whether a relation vanishes to rounding of its terms, or of numbers of order 1: all terms may be small where it is met.
 fn is_met((value, scale): &(Precise, f64), bits: usize) -> bool {
-    let limit =
-        Precise::from_f64(scale.max(1.0), bits).halved(bits.saturating_sub(ROUNDING_BITS) as i32);
+    is_small(value, scale.max(1.0), bits)
+}
+
+/// Whether a number is of the size of rounding beside another.
+fn is_small(value: &Precise, beside: f64, bits: usize) -> bool {
+    let limit = Precise::from_f64(beside, bits).halved(bits.saturating_sub(ROUNDING_BITS) as i32);
     value
         .abs()
         .compare(&limit)

@@ -6,7 +6,7 @@ use crate::domain::{Critical, Domain};
 use crate::expand;
 use crate::expr::{Expr, Function};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::model::{Declared, JointSpec, Locus};
 use crate::spec::code;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -37,7 +37,7 @@ impl Prover<'_> {
         let declared = Critical::declared(self.spec, self.exponential);
         let open = declared.iter().find(|f| self.domain.smooth(f).is_none());
         match open {
-            Some(open) => Err(Box::new(refusal(open, &self.spec.pose.span))),
+            Some(open) => Err(Box::new(refusal(open, &self.statement_with(open)))),
             None => Ok(None),
         }
     }
@@ -58,7 +58,7 @@ impl Prover<'_> {
             derived.find(|f| !self.follows(f, &declared) && is_open(f))
         });
         if let Some(open) = open {
-            return Err(Box::new(refusal(open, &self.spec.pose.span)));
+            return Err(Box::new(refusal(open, &self.statement_with(open))));
         }
         let mut statement = self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q");
         let sides = self.sides();
@@ -73,6 +73,40 @@ impl Prover<'_> {
                 "quotients, roots, logarithms and angles in them: {count}; all are smooth at their arguments"
             ),
         )))
+    }
+
+    /// The statement of the spec in which the function stands; that of H, from which most is derived, where it stands in none.
+    fn statement_with(&self, critical: &Critical) -> Range<usize> {
+        let spec = self.spec;
+        let of_matrix = |declared: &Declared<Matrix>| {
+            (declared.value.entries().to_vec(), declared.span.clone())
+        };
+        let pose = &spec.pose.value;
+        let of_pose = [pose.rotation.entries(), pose.translation.entries()].concat();
+        let matrices = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
+        let of_locus =
+            |locus: &Declared<Locus>| (vec![locus.value.function.clone()], locus.span.clone());
+        let statements = [(of_pose, spec.pose.span.clone())]
+            .into_iter()
+            .chain(matrices.into_iter().flatten().map(of_matrix))
+            .chain(spec.loci.iter().map(of_locus));
+        let holds = |entries: &[Expr]| {
+            let mut found = BTreeSet::new();
+            entries
+                .iter()
+                .for_each(|e| Critical::collect(e, &[], &mut found));
+            found.contains(critical)
+        };
+        let in_retract = || {
+            let declared = spec.retract.as_ref()?;
+            let found = Critical::in_retract(spec);
+            found.contains(critical).then(|| declared.span.clone())
+        };
+        let found = statements.into_iter().find(|(entries, _)| holds(entries));
+        found
+            .map(|(_, span)| span)
+            .or_else(in_retract)
+            .unwrap_or(spec.pose.span.clone())
     }
 
     /// Functions with a singular argument in what is derived and evaluated at a configuration.
@@ -163,17 +197,26 @@ fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
         (Function::Ln, _) => {
             format!("the logarithm of {written}, which is not shown to be positive")
         }
+        (Function::Atan2, [x, ..]) if critical.periodic => format!(
+            "the angle of the point ({}, {written}), which is not shown to keep off the origin",
+            in_words(x)
+        ),
         (Function::Atan2, [x, ..]) => format!(
             "the angle of the point ({}, {written}), which is not shown to keep off the origin and off the negative axis, where it jumps",
             in_words(x)
         ),
         _ => format!("the root of {written}, which is not smooth where that is 0"),
     };
-    let locus = match critical.function {
-        Function::Atan2 => "…".to_owned(),
-        _ => Some(argument.to_string())
-            .filter(|text| text.len() <= LONGEST)
-            .unwrap_or("…".to_owned()),
+    let short = |text: String| match text.len() <= LONGEST {
+        true => text,
+        false => "…".to_owned(),
+    };
+    let locus = match (critical.function, rest) {
+        (Function::Atan2, [x]) if critical.periodic => {
+            short((&argument.square() + &x.square()).to_string())
+        }
+        (Function::Atan2, _) => "…".to_owned(),
+        _ => short(argument.to_string()),
     };
     refuted(code::NOT_DEFINED, span, &message, "the joint needs it").help(format!(
         "if the joint ends there, declare it: `except {locus} = 0;`; ranges of parameters and `require` help to show that it does not vanish"

@@ -1,6 +1,7 @@
 //! Where a determinant is zero: home and quarter turns from it are tried, by exact arithmetic, so that an error of a rank can name a place.
 
 use crate::domain::{Critical, Domain};
+use crate::expand::is_exponential;
 use crate::expr::{Expr, Monomial, Rational, Symbol};
 use crate::manifold::{Factor, Kind};
 use crate::model::JointSpec;
@@ -96,10 +97,15 @@ fn is_regular(function: &Expr, place: &Place, domain: &Domain<'_>) -> bool {
     arguments.all(|argument| !domain.ideal().vanishes(&argument.substitute(place)))
 }
 
-/// Whether every declared exception is shown not to hold there.
+/// Whether the place is shown to be off every declared exception, and on the side of home of roots, logarithms and angles.
 fn in_domain(spec: &JointSpec, place: &Place, domain: &Domain<'_>) -> bool {
     let off = |function: &Expr| {
         is_regular(function, place, domain) && domain.nonzero(&function.substitute(place)).is_some()
     };
+    let beside_home = |side: &Expr| {
+        is_regular(side, place, domain) && domain.is_positive(&side.substitute(place))
+    };
+    let declared = Critical::declared(spec, is_exponential(spec));
     spec.loci.iter().all(|locus| off(&locus.value.function))
+        && domain.sides(&declared).iter().all(beside_home)
 }

@@ -1,7 +1,8 @@
 //! The fibres of H: whether one pose has one Q.
 
 use crate::derived::{Claim, Proof};
-use crate::domain::Domain;
+use crate::domain::{Critical, Domain};
+use crate::expand::is_exponential;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol};
 use crate::manifold::{Factor, Kind};
 use crate::model::JointSpec;
@@ -176,7 +177,7 @@ impl<'a> Fibres<'a> {
         })
     }
 
-    /// Whether H does not change where the scalars change their signs, and neither do the relations.
+    /// Whether H does not change where the scalars change their signs, and neither do the relations and the domain.
     fn is_even(&self, scalars: &[Symbol]) -> bool {
         let negative = |symbol: &Symbol| (symbol.clone(), -Expr::symbol(symbol));
         let negative: BTreeMap<Symbol, Expr> = scalars.iter().map(negative).collect();
@@ -186,7 +187,13 @@ impl<'a> Fibres<'a> {
             .iter()
             .all(|g| ideal.vanishes(&g.substitute(&negative)));
         let even = |entry: &Expr| ideal.vanishes(&(&entry.substitute(&negative) - entry));
-        stays && self.entries.iter().all(even)
+        let odd = |entry: &Expr| ideal.vanishes(&(&entry.substitute(&negative) + entry));
+        let declared = Critical::declared(self.spec, is_exponential(self.spec));
+        let loci = self.spec.loci.iter().map(|locus| &locus.value.function);
+        stays
+            && self.entries.iter().all(even)
+            && loci.into_iter().all(|f| even(f) || odd(f))
+            && self.domain.sides(&declared).iter().all(even)
     }
 }
 
@@ -282,6 +289,20 @@ mod tests {
             statement(&format!(
                 "config q: S3, p: R1; basis x, y, z of so3; velocity in child; H = {odd};"
             )),
+            None
+        );
+    }
+
+    #[test]
+    fn what_is_not_in_the_domain_shares_no_pose() {
+        let half = "velocity in child; except q.w = 0; A = [log(q.w); 1; 0];";
+        let quaternion = format!(
+            "config q: S3; basis x, y, z of so3; {half} S_bar = [1, 0; -log(q.w), 0; 0, 1]; H = pose(rot(q), [0, 0, 0]);"
+        );
+        assert_eq!(statement(&quaternion), None);
+        let beside = "config a: R1, b: R1; home = 1, 0; except a = 0; except a + 1 = 0;";
+        assert_eq!(
+            statement(&format!("{beside} H = trans([a * a, b, 0]);")),
             None
         );
     }

@@ -142,6 +142,22 @@ fn what_underflows_or_overflows_is_enclosed() {
     }
 }
 
+/// Values smaller than any number are between 0 and one that is above them: e^a e^b e^c = 1 with a + b + c = 0, and log cosh u = u²/2.
+#[test]
+fn functions_of_values_that_underflow_are_enclosed() {
+    let number = |x: i64| Interval::point(Precise::integer(x, BITS));
+    let exp = |x: i64| number(x).function(Function::Exp, &[number(x)]);
+    for n in [1_488_522_230, 1_488_522_236, 1_488_522_240, 1_488_522_300] {
+        let product = exp(-n).times(&exp(n - 50)).times(&exp(50));
+        assert!(holds(&product, &fine(1.0)), "{n}: {product:?}");
+    }
+    for n in [400, 744_261_110, 744_261_119, 1_000_000_000] {
+        let value = exp(-n).function(Function::LnCosh, &[exp(-n)]);
+        let product = value.times(&exp(n)).times(&exp(n));
+        assert!(holds(&product, &fine(0.5)), "{n}: {product:?}");
+    }
+}
+
 #[test]
 fn functions_enclose_every_value() {
     let mut draw = Draw::new();

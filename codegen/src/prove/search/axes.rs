@@ -1,14 +1,18 @@
 //! Boxes of a few variables: parameters, real coordinates, and the angles of unit complex numbers.
 
-use crate::expr::Symbol;
+use crate::expr::{Rational, Symbol};
 use crate::manifold::Kind;
-use crate::model::JointSpec;
+use crate::model::{End, Interval as Range, JointSpec};
 use crate::precise::{Enclosure, Interval, Point, Precise};
+use num_bigint::BigInt;
 use num_traits::ToPrimitive;
+use num_traits::float::FloatCore;
 use std::collections::BTreeSet;
 
 /// How far axes without an end go: nearly as far as doubles.
 const FARTHEST: f64 = 1e300;
+/// The inverse hyperbolic sine of a number that is far from 0: a few thousand.
+const FAR: f64 = 8.0;
 /// A little more than half a turn.
 const HALF_TURN: f64 = 3.2;
 
@@ -46,12 +50,19 @@ pub fn whole(spec: &JointSpec, symbols: &BTreeSet<Symbol>) -> (Cell, bool) {
     (sides, complete)
 }
 
+/// The same without parameters that move the manifold: whoever varies these has to find the manifold again at each point.
+pub fn on_one_manifold(spec: &JointSpec, symbols: &BTreeSet<Symbol>) -> (Cell, bool) {
+    let relations = spec.manifold.value.declared().iter();
+    let moving: BTreeSet<Symbol> = relations.flat_map(|e| e.symbols()).collect();
+    let fixed: BTreeSet<Symbol> = symbols.difference(&moving).cloned().collect();
+    let (sides, complete) = whole(spec, &fixed);
+    (sides, complete && fixed.len() == symbols.len())
+}
+
 fn side(spec: &JointSpec, symbol: &Symbol) -> Option<Side> {
     if let Some(parameter) = spec.parameters.iter().find(|p| p.symbol == *symbol) {
-        let end = |end: &Option<crate::model::End>| end.as_ref().and_then(|e| e.value.to_f64());
         let axis = Axis::Real(symbol.clone());
-        let (low, high) = (end(&parameter.range.lower), end(&parameter.range.upper));
-        let (low, high) = (low.unwrap_or(-FARTHEST), high.unwrap_or(FARTHEST));
+        let (low, high) = doubles_in(&parameter.range)?;
         return Some(Side { axis, low, high });
     }
     let manifold = &spec.manifold.value;
@@ -74,6 +85,35 @@ fn side(spec: &JointSpec, symbol: &Symbol) -> Option<Side> {
             high: HALF_TURN,
         }),
         _ => None,
+    }
+}
+
+/// The least and the largest double in a range with its ends; none where it holds no double.
+fn doubles_in(range: &Range) -> Option<(f64, f64)> {
+    let included = |end: &Option<End>| {
+        let included = true;
+        end.clone().map(|end| End { included, ..end })
+    };
+    let closed = Range {
+        lower: included(&range.lower),
+        upper: included(&range.upper),
+    };
+    let inside = |x: &f64| closed.contains(&exactly(*x));
+    let nearest = |end: &Option<End>| end.as_ref().and_then(|end| end.value.to_f64());
+    let (low, high) = (nearest(&range.lower), nearest(&range.upper));
+    let (low, high) = (low.unwrap_or(-FARTHEST), high.unwrap_or(FARTHEST));
+    let low = [low, low.next_up()].into_iter().find(inside)?;
+    let high = [high, high.next_down()].into_iter().find(inside)?;
+    (low <= high).then_some((low, high))
+}
+
+fn exactly(x: f64) -> Rational {
+    let (mantissa, exponent, sign) = x.integer_decode();
+    let size = BigInt::from(mantissa) * i64::from(sign);
+    let power = BigInt::from(1) << exponent.unsigned_abs();
+    match exponent < 0 {
+        true => Rational::new(size, power),
+        false => Rational::from_integer(size * power),
     }
 }
 
@@ -113,10 +153,19 @@ pub fn extent(cell: &[Side]) -> f64 {
     cell.iter().map(far).sum()
 }
 
+/// The length of a side, where sizes of all orders count alike.
+fn length(side: &Side) -> f64 {
+    side.high.asinh() - side.low.asinh()
+}
+
+/// The length of the longest side, far from 0 as part of a distance that grows faster than that.
+pub fn weighted_length(cell: &[Side]) -> f64 {
+    let longest = cell.iter().map(length).fold(0.0, f64::max);
+    longest / (1.0 + (extent(cell) / FAR).powi(2))
+}
+
 /// The box cut across its longest side; `None` where its ends are next to each other.
 pub fn halves(cell: &Cell) -> Option<[Cell; 2]> {
-    // Sizes of all orders count alike.
-    let length = |side: &Side| side.high.asinh() - side.low.asinh();
     let longest = (0..cell.len()).max_by(|a, b| length(&cell[*a]).total_cmp(&length(&cell[*b])))?;
     let (low, high) = (cell[longest].low, cell[longest].high);
     let cut = middle(low, high);

@@ -122,9 +122,9 @@ impl Search<'_> {
                 continue;
             };
             axes::move_to_middle(&mut point, cell);
-            if !self.admits(&point) {
+            let Some(point) = self.on_manifold(&point).filter(|point| self.admits(point)) else {
                 continue;
-            }
+            };
             match self.at(&point) {
                 Said::Refutes(place) => refuting = Place::larger(refuting, Some(place)),
                 Said::Agrees => {

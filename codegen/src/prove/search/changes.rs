@@ -5,7 +5,7 @@ use super::place::Place;
 use super::{MOST_TERMS, Open, Search};
 use crate::expr::{Atom, Expr, Function, Monomial, Symbol};
 use crate::manifold::{Factor, Kind};
-use crate::model::JointSpec;
+use crate::model::{JointSpec, Parameter};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
@@ -76,13 +76,18 @@ fn along(expression: &Expr, direction: &Direction) -> Expr {
     parts.fold(Expr::default(), |sum, part| &sum + &part)
 }
 
-/// Tangents of the domain: parameters that have more than one value, free scalars, rotations of the others two by two. Where the spec
+/// Tangents of the domain: parameters that have more than one value and do not move the manifold, free scalars, rotations of the others two by two. Where the spec
 /// declares relations there are tangents for one of them, of real coordinates.
 fn tangents(spec: &JointSpec) -> Vec<Direction> {
     let single = |symbol: &Symbol| vec![(symbol.clone(), Expr::integer(1))];
-    let ranges = spec.parameters.iter().filter(|p| !p.range.is_one_number());
-    let mut tangents: Vec<Direction> = ranges.map(|p| single(&p.symbol)).collect();
     let manifold = &spec.manifold.value;
+    let moves_manifold = |symbol: &Symbol| {
+        let mut relations = manifold.declared().iter();
+        relations.any(|relation| relation.symbols().contains(symbol))
+    };
+    let free = |p: &&Parameter| !p.range.is_one_number() && !moves_manifold(&p.symbol);
+    let ranges = spec.parameters.iter().filter(free);
+    let mut tangents: Vec<Direction> = ranges.map(|p| single(&p.symbol)).collect();
     match manifold.declared() {
         [] => manifold.factors().iter().for_each(|factor| {
             let free = factor

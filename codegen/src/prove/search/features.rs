@@ -1,5 +1,5 @@
 //! Narrow features by their cause: functions change fastest where their arguments are 0 or extremal. Along each variable such places are
-//! found by bisection with enclosures, and the claim is tried there, however narrow the feature is.
+//! found by bisection with enclosures and refined by Newton's method, and the claim is tried there and beside, however narrow the feature is.
 
 use super::Search;
 use super::axes::{self, Axis, Cell as Box, Side};
@@ -16,6 +16,13 @@ const MOST_CELLS: usize = 300;
 const MOST_ZEROS: usize = 4;
 /// Most arguments of functions that are looked at.
 const MOST_ARGUMENTS: usize = 12;
+/// Steps of Newton's method: from doubles to 256 bits, and one for multiple zeros.
+const NEWTON_STEPS: usize = 4;
+/// A step leads away that is larger than this part of the zero, or of a number of this size.
+const DOUBLE_BITS: f64 = 40.0;
+const NEAR_ZERO: f64 = -20.0;
+/// How far from a zero the claim is tried beside it, as halvings of its size or of 1.
+const DISTANCES: [i32; 3] = [4, 24, 60];
 /// Points through which the lines go.
 const LINES: usize = 2;
 
@@ -34,9 +41,11 @@ impl Search<'_> {
                 break;
             };
             for argument in arguments.iter().take(MOST_ARGUMENTS) {
-                let (whole, _) = axes::whole(self.identities.spec, &argument.symbols());
+                let (whole, _) = axes::on_one_manifold(self.identities.spec, &argument.symbols());
+                // Each line goes through an extremum along those before it: functions of several variables peak at one point.
+                let mut through = base.clone();
                 for side in whole {
-                    if let Some(place) = self.along(argument, &side, &base) {
+                    if let Some(place) = self.along(argument, &side, &mut through) {
                         if place.is_large() {
                             return Some(place);
                         }
@@ -48,22 +57,29 @@ impl Search<'_> {
         found
     }
 
-    /// Tries the claim where the argument is 0 or extremal on the line.
-    fn along(&self, argument: &Expr, side: &Side, base: &Point) -> Option<Place> {
+    /// Tries the claim where the argument is 0 or extremal on the line, and moves the point to an extremum.
+    fn along(&self, argument: &Expr, side: &Side, through: &mut Point) -> Option<Place> {
         let slope = match &side.axis {
             Axis::Real(symbol) => Some(argument.derivative(symbol)),
             Axis::Angle(..) => None,
         };
         let functions = [Some(argument.clone()), slope];
         let mut found = None;
+        let base = through.clone();
         for function in functions
             .iter()
             .flatten()
             .filter(|f| !f.symbols().is_empty())
         {
-            for cell in self.zeros(function, side, base) {
-                if let Some(place) = self.fails_in(&cell, base) {
-                    found = Place::larger(found, Some(place));
+            for (n, cell) in self.zeros(function, side, &base).iter().enumerate() {
+                let mut zero = base.clone();
+                axes::move_to_middle(&mut zero, cell);
+                refine(&mut zero, function, &side.axis);
+                for point in beside(&zero, &side.axis) {
+                    found = Place::larger(found, self.fails_at(&point));
+                }
+                if n == 0 {
+                    *through = zero;
                 }
             }
         }
@@ -75,6 +91,15 @@ impl Search<'_> {
         let mut enclosure = self.near(base, BITS);
         let mut open = vec![vec![side.clone()]];
         let mut found = vec![];
+        // Cutting never ends at 0, since there are doubles of all sizes beside it.
+        if side.low <= 0.0 && side.high >= 0.0 {
+            let (axis, low, high) = (side.axis.clone(), 0.0, 0.0);
+            let origin = vec![Side { axis, low, high }];
+            axes::bind(&mut enclosure, &origin, BITS);
+            if !enclosure.of(function).excludes_zero() {
+                found.push(origin);
+            }
+        }
         for _ in 0..MOST_CELLS {
             let Some(cell) = nearest(&mut open) else {
                 break;
@@ -93,6 +118,40 @@ impl Search<'_> {
         }
         found
     }
+}
+
+/// Newton's method from a zero in doubles to all bits of the point; a step that leads away is not taken.
+fn refine(point: &mut Point, function: &Expr, axis: &Axis) {
+    let Axis::Real(symbol) = axis else {
+        return;
+    };
+    let slope = function.derivative(symbol);
+    for _ in 0..NEWTON_STEPS {
+        let step = &point.evaluate(function) / &point.evaluate(&slope);
+        let x = point.value(symbol);
+        if !step.is_finite() || step.log2() > x.log2().max(NEAR_ZERO) - DOUBLE_BITS {
+            return;
+        }
+        point.bind(symbol, &x - &step);
+    }
+}
+
+/// The point, and points on both sides of it: a factor may be 0 in it, at which a feature does not show.
+fn beside(point: &Point, axis: &Axis) -> Vec<Point> {
+    let mut points = vec![point.clone()];
+    if let Axis::Real(symbol) = axis {
+        let x = point.value(symbol);
+        let size = x.abs().larger(&x.same(1));
+        for distance in DISTANCES {
+            let step = size.halved(distance);
+            for moved in [&x - &step, &x + &step] {
+                let mut beside = point.clone();
+                beside.bind(symbol, moved);
+                points.push(beside);
+            }
+        }
+    }
+    points
 }
 
 /// Takes the cell that is nearest to 0: of a periodic function there are others without end.

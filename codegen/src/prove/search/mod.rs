@@ -14,10 +14,12 @@ mod narrow;
 mod place;
 
 use super::Identities;
-use crate::expr::{Expr, budget};
+use crate::expr::{Expr, Number, budget};
+use crate::model::{End, Parameter};
 use crate::precise::{Enclosure, Interval, Point, Precise, Sampler};
 use place::Place;
 use std::cell::{Cell, OnceCell};
+use std::cmp::Ordering;
 
 /// Bits of the numbers, and of a few more where the first leave open what cancels.
 const BITS: usize = 256;
@@ -31,6 +33,8 @@ const MISSED_BITS: usize = 32;
 const CANCELLED_BITS: i32 = 128;
 /// What a point costs in term operations, and each term of a residual there.
 const COST: (u64, u64) = (150, 15);
+/// What finding the manifold again costs.
+const COST_OF_NEWTON: u64 = 3000;
 /// Most terms of a residual.
 const MOST_TERMS: usize = 400;
 
@@ -206,9 +210,26 @@ impl Search<'_> {
     fn fails_in(&self, cell: &[axes::Side], base: &Point) -> Option<Place> {
         let mut point = base.clone();
         axes::move_to_middle(&mut point, cell);
-        match self.admits(&point).then(|| self.at(&point)) {
+        self.fails_at(&point)
+    }
+
+    /// The point, where it belongs to the domain and the claim fails there.
+    fn fails_at(&self, point: &Point) -> Option<Place> {
+        match self.admits(point).then(|| self.at(point)) {
             Some(Said::Refutes(place)) => Some(place),
             _ => None,
+        }
+    }
+
+    /// The point on the manifold: a parameter that was moved may have taken the manifold with it.
+    fn on_manifold(&self, point: &Point) -> Option<Point> {
+        let spec = self.identities.spec;
+        match spec.manifold.value.declared().is_empty() {
+            true => Some(point.clone()),
+            false => {
+                budget::spend(COST_OF_NEWTON);
+                Sampler::new(spec, point.bits()).settled(point)
+            }
         }
     }
 
@@ -256,9 +277,26 @@ impl Search<'_> {
         let required = spec.requirements.iter().map(|r| &r.value.value);
         let mut positive = required.chain(&self.sides);
         let mut loci = spec.loci.iter().map(|locus| &locus.value.function);
-        positive.all(|e| enclosure.of(e).is_positive())
+        spec.parameters
+            .iter()
+            .all(|p| may_be(p, &point.value(&p.symbol)))
+            && positive.all(|e| enclosure.of(e).is_positive())
             && loci.all(|e| enclosure.of(e).excludes_zero())
     }
+}
+
+/// Whether a parameter may have the value.
+fn may_be(parameter: &Parameter, value: &Precise) -> bool {
+    let inside = |end: &Option<End>, inner: Ordering| match end {
+        Some(end) => match value.compare(&value.rational(&end.value)) {
+            Some(Ordering::Equal) => end.included,
+            order => order == Some(inner),
+        },
+        None => true,
+    };
+    (parameter.may_vanish() || !value.is_zero())
+        && inside(&parameter.range.lower, Ordering::Greater)
+        && inside(&parameter.range.upper, Ordering::Less)
 }
 
 /// All numbers that differ from this by rounding of the point.

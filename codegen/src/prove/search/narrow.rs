@@ -1,5 +1,5 @@
 //! Narrow features: cells in which an enclosure leaves room for the largest residual are cut first, so that the search ends where
-//! a bump is, however narrow.
+//! a bump is, however narrow. Where enclosures leave room everywhere, long cells near 0 come first.
 
 use super::Search;
 use super::axes::{self, Cell as Box};
@@ -14,6 +14,8 @@ const BITS: usize = 128;
 const MOST_CELLS: usize = 400;
 /// Most variables that are cut together; more are cut one at a time, the others held.
 const MOST_AXES: usize = 2;
+/// The binary logarithm of a room that is as good as any larger one.
+const MOST_ROOM: f64 = 8.0;
 /// Points from which one variable is varied at a time.
 const LINES: usize = 2;
 
@@ -22,7 +24,7 @@ impl Search<'_> {
     pub(super) fn narrow(&self) -> Option<Place> {
         let entries = self.open.iter().flat_map(|(entry, normal)| [entry, normal]);
         let symbols: BTreeSet<Symbol> = entries.flat_map(|e| e.symbols()).collect();
-        let (whole, complete) = axes::whole(self.identities.spec, &symbols);
+        let (whole, complete) = axes::on_one_manifold(self.identities.spec, &symbols);
         if whole.is_empty() {
             return None;
         }
@@ -48,13 +50,30 @@ impl Search<'_> {
     }
 
     fn largest_in(&self, whole: Box, base: &Point, most: usize) -> Option<Place> {
+        // Of cells with the same room, that which is nearest to 0.
+        let by_room = |room: f64, cell: &Box| (room, -axes::extent(cell));
+        let by_length = |room: f64, cell: &Box| {
+            let length = axes::weighted_length(cell).log2();
+            (room.clamp(-MOST_ROOM, MOST_ROOM) + length, 0.0)
+        };
+        let found = self.first_in(whole.clone(), base, most, by_room);
+        found.or_else(|| self.first_in(whole, base, most, by_length))
+    }
+
+    /// The place with the largest residual among the middles of cells, of which that with the largest order is cut next.
+    fn first_in(
+        &self,
+        whole: Box,
+        base: &Point,
+        most: usize,
+        order: impl Fn(f64, &Box) -> (f64, f64),
+    ) -> Option<Place> {
         let mut open = vec![(f64::INFINITY, whole)];
         let mut found: Option<Place> = None;
         for _ in 0..most {
-            // Of cells with the same room, that which is nearest to 0.
-            let order = |place: &usize| (open[*place].0, -axes::extent(&open[*place].1));
+            let of = |place: &usize| order(open[*place].0, &open[*place].1);
             let largest = (0..open.len()).max_by(|a, b| {
-                let (a, b) = (order(a), order(b));
+                let (a, b) = (of(a), of(b));
                 a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
             })?;
             let (_, cell) = open.swap_remove(largest);
