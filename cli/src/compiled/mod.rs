@@ -13,9 +13,9 @@ use crate::output::Failure;
 use hamel::compiled::Compiled;
 use hamel::dynamics::ForwardDerivatives;
 use hamel::integrate::{Form, Scheme};
-use hamel::mechanism::Mechanism;
 use hamel_codegen::scene::functions::{Kind, TooLong};
 use hamel_codegen::scene::{Build, Error, Language, Module};
+use hamel_scene::Scene;
 use library::{Library, Sizes};
 use std::sync::Arc;
 use std::time::Instant;
@@ -74,7 +74,7 @@ pub struct Cost {
     pub library: u64,
 }
 
-/// The functions `kinds` of the scene of `build`, which has that mechanism, in C by a compiler.
+/// The functions `kinds` of `scene`, which is that of `build`, in C by a compiler.
 ///
 /// # Errors
 /// A scene that the scene compiler refuses; a compiler that fails; a folder for temporary files that cannot be written; equations of another scene that are
@@ -84,7 +84,7 @@ pub fn compiled(
     label: &str,
     kinds: &[Kind],
     compiler: &Compiler,
-    mechanism: &Arc<Mechanism>,
+    scene: &Scene,
 ) -> Result<Equations, Failure> {
     let start = Instant::now();
     let build = build.language(Language::C99).name(NAME);
@@ -95,6 +95,7 @@ pub fn compiled(
     let folder = private_folder().map_err(temporary)?;
     let built = compiler.build(folder.path(), NAME, &written.module)?;
     let compilation = start.elapsed().as_secs_f64();
+    let mechanism = &scene.mechanism;
     let layout = mechanism.layout();
     let sizes = Sizes {
         bodies: mechanism.bodies().len(),
@@ -108,7 +109,11 @@ pub fn compiled(
     let library = library.map_err(|error| {
         Failure::Refused(format!("the compiled scene cannot be loaded: {error}"))
     })?;
-    let dynamics = Compiled::new(Arc::clone(mechanism), library.equations());
+    let dynamics = Compiled::starting_at(
+        Arc::clone(mechanism),
+        library.equations(),
+        &scene.configuration,
+    );
     let dynamics = dynamics.map_err(|error| Failure::Refused(error.to_string()))?;
     Ok(Equations {
         dynamics,

@@ -124,7 +124,7 @@ impl Subject {
             .collect();
         let build = hamel_codegen::scene_of(self.name, self.description.clone());
         let build = build.library(hamel_joints::specs());
-        compiled(build, self.name, &kinds, compiler, &scene.mechanism)
+        compiled(build, self.name, &kinds, compiler, scene)
     }
 
     fn build_row(&self, equations: &Equations, machine: &str) -> row::Build {

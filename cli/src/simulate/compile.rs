@@ -22,7 +22,7 @@ pub fn equations(args: &Args, plan: &Plan) -> Result<Equations, Failure> {
     // Of the text that the mechanism was made of: what the file holds by now may be another scene.
     let (build, label) = (plan.input.build()?, plan.input.label());
     let kinds = compiled::functions(plan.settings.form, *plan.settings.method.scheme());
-    let equations = compiled(build, label, kinds, &compiler, &plan.scene.mechanism)?;
+    let equations = compiled(build, label, kinds, &compiler, &plan.scene)?;
     progress.finish_and_clear();
     if !args.quiet {
         tell(&equations.left_out);

@@ -79,6 +79,67 @@ fn scenes_move_as_on_the_tree() {
     }
 }
 
+/// A body on its joint, without inertia but for these lines.
+fn body(name: &str, parent: &str, joint: &str, more: &str) -> String {
+    format!(
+        "[[body]]\nname = \"{name}\"\nparent = \"{parent}\"\njoint = {{ type = \"{joint}\" }}\n{more}\n"
+    )
+}
+
+/// A bead on a weightless arm, at home on the axis of the arm; and an arm of three parts, stretched at home, whose end is held across.
+fn singular_at_home() -> [(&'static str, String); 2] {
+    let none = "inertia_xx_yy_zz_xy_xz_yz = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]";
+    let arm = body(
+        "arm",
+        "world",
+        "revolute",
+        &format!("mass = 0.0\n{none}\ninitial.speeds = [1.0]"),
+    );
+    let along = "at = { axis = [1.0, 0.0, 0.0] }\ninitial.phi = [1.0]";
+    let bead = body(
+        "bead",
+        "arm",
+        "prismatic",
+        &format!("mass = 1.0\n{none}\n{along}"),
+    );
+    let part = |name, parent, more| {
+        let mass = "mass = 1.0\ncom = [0.5, 0.0, 0.0]\ninertia_xx_yy_zz_xy_xz_yz = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]";
+        body(
+            name,
+            parent,
+            "revolute",
+            &format!("{mass}\ninitial.phi = [0.7]\n{more}"),
+        )
+    };
+    let after = "at = { position = [1.0, 0.0, 0.0] }";
+    let parts = [
+        part("a", "world", ""),
+        part("b", "a", after),
+        part("c", "b", after),
+    ];
+    let held = "[[constraint]]\nname = \"p\"\nbody = \"c\"\npoint = [1.0, 0.0, 0.0]\ndirection = [1.0, 0.0, 0.0]\n";
+    [("bead", arm + &bead), ("held", parts.concat() + held)]
+}
+
+/// Compiled equations are compared with the tree's where the motion begins.
+#[test]
+fn home_may_be_singular() {
+    if !has_compiler() {
+        return;
+    }
+    for (name, text) in singular_at_home() {
+        let scene = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.toml"));
+        let text = format!("hamel = 1\ngravity = [0.0, 0.0, 0.0]\n{text}");
+        std::fs::write(&scene, text).expect("a folder of the build");
+        let scene = scene.to_str().expect("text");
+        for form in ["lagrangian", "hamiltonian"] {
+            moves_as_the_tree(&[
+                scene, "--form", form, "--method", "rk4", "--dt", "0.02", "--at", "0.1",
+            ]);
+        }
+    }
+}
+
 #[test]
 fn every_method_takes_compiled_equations() {
     if !has_compiler() {

@@ -28,14 +28,16 @@ pub enum CompiledError {
         /// Of the module.
         found: usize,
     },
-    /// Rates at home differ.
+    /// Rates differ.
     #[error(
-        "the equations compiled for `{scene}` are those of another mechanism: at home, `{speed}` of joint `{joint}` has the rate \
+        "the equations compiled for `{scene}` are those of another mechanism: {place}, `{speed}` of joint `{joint}` has the rate \
          {found:e}, not {expected:e}; compile its scene again"
     )]
     Other {
         /// The scene that was compiled.
         scene: &'static str,
+        /// Where they were compared.
+        place: &'static str,
         /// The joint.
         joint: String,
         /// The speed.
@@ -45,12 +47,43 @@ pub enum CompiledError {
         /// By the module.
         found: f64,
     },
-    /// The mechanism itself has no accelerations at home.
-    #[error(transparent)]
-    Dynamics(#[from] DynamicsError),
+    /// The mechanism itself has no rates wherever they were to be compared.
+    #[error(
+        "the equations compiled for `{scene}` cannot be compared with those of the mechanism, which have no value {place}, nor near home: {cause}"
+    )]
+    NoValue {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// Where they were to be compared first.
+        place: &'static str,
+        /// Why they have none there.
+        cause: DynamicsError,
+    },
 }
 
-/// How far rates at home may differ, relative to the largest: what conditioning leaves of doubles in the worst of tested robots
+/// Why two forms do not agree at one configuration.
+enum Unlike {
+    /// Rates differ.
+    Rate {
+        /// Which of the entries of v̄ it belongs to.
+        entry: usize,
+        expected: f64,
+        found: f64,
+    },
+    /// The tree has no value there.
+    NoValue(DynamicsError),
+}
+
+impl From<DynamicsError> for Unlike {
+    fn from(cause: DynamicsError) -> Self {
+        Self::NoValue(cause)
+    }
+}
+
+/// How many configurations near home are tried where home has no value.
+const NEAR_HOME: usize = 4;
+
+/// How far rates may differ, relative to the largest: what conditioning leaves of doubles in the worst of tested robots
 /// is 1e-8; another mass or length shows in the leading digits.
 const AGREEMENT: f64 = 1e-6;
 
@@ -66,11 +99,31 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// The equations for `mechanism`, compared with its own at home.
+    /// The equations for `mechanism`, compared with its own at home; where home has no value, near it.
     ///
     /// # Errors
-    /// A module of another mechanism.
+    /// A module of another mechanism; a mechanism without a value there.
     pub fn new(
+        mechanism: Arc<Mechanism>,
+        equations: &'static Equations,
+    ) -> Result<Self, CompiledError> {
+        Self::sized(mechanism, equations)?.compared(None)
+    }
+
+    /// The same, compared at the configuration `q` first, where a motion begins: home may be a place where the mechanism has no value.
+    ///
+    /// # Errors
+    /// Those of [`Compiled::new`].
+    pub fn starting_at(
+        mechanism: Arc<Mechanism>,
+        equations: &'static Equations,
+        q: &[f64],
+    ) -> Result<Self, CompiledError> {
+        Self::sized(mechanism, equations)?.compared(Some(q))
+    }
+
+    /// Equations that have the sizes of `mechanism`.
+    fn sized(
         mechanism: Arc<Mechanism>,
         equations: &'static Equations,
     ) -> Result<Self, CompiledError> {
@@ -94,33 +147,61 @@ impl Compiled {
                 });
             }
         }
-        let mut compiled = Self {
+        Ok(Self {
             equations,
             rows: vec![0.0; ForwardDerivatives::entries(&mechanism)],
             tree: Recursive::new(mechanism),
             inputs: core::array::from_fn(|_| vec![0.0; equations.freedoms]),
-        };
-        compiled.compare()?;
-        Ok(compiled)
+        })
     }
 
-    /// Holds the rates of both forms at home against the tree's, with speeds, momenta and efforts that differ from each other.
-    fn compare(&mut self) -> Result<(), CompiledError> {
-        let q = self.tree.mechanism().home();
+    /// Holds both forms against each other at the first place where the tree has a value.
+    fn compared(mut self, start: Option<&[f64]>) -> Result<Self, CompiledError> {
+        let mechanism = Arc::clone(self.tree.mechanism());
+        let start = start.map(|q| ("where the motion begins", q.to_vec()));
+        let home = ("at home", mechanism.home());
+        let near = (1..=NEAR_HOME).filter_map(|round| near_home(&mechanism, round));
+        let near = near.map(|q| ("near home", q));
+        let mut first = None;
+        for (place, q) in start.into_iter().chain([home]).chain(near) {
+            match self.compare(&q) {
+                Ok(()) => return Ok(self),
+                Err(Unlike::Rate {
+                    entry,
+                    expected,
+                    found,
+                }) => return Err(self.other(place, entry, expected, found)),
+                Err(Unlike::NoValue(cause)) => {
+                    first.get_or_insert((place, cause));
+                }
+            }
+        }
+        match first {
+            None => Ok(self),
+            Some((place, cause)) => Err(CompiledError::NoValue {
+                scene: self.equations.scene,
+                place,
+                cause,
+            }),
+        }
+    }
+
+    /// Holds the rates of both forms at `q` against each other, with speeds, momenta and efforts that differ among themselves.
+    fn compare(&mut self, q: &[f64]) -> Result<(), Unlike> {
         let numbers = |count: usize| (0..count).map(|i| 0.1 + 0.01 * i as f64).collect();
         let mut speeds: vec::Vec<f64> = numbers(self.equations.speeds);
         let efforts: vec::Vec<f64> = numbers(self.equations.freedoms);
-        self.tree.complete_speeds(&q, &mut speeds)?;
+        self.tree.complete_speeds(q, &mut speeds)?;
         let mut expected = vec![0.0; speeds.len()];
         let mut found = expected.clone();
         if let Some(forward) = self.equations.forward_dynamics {
             self.tree
-                .accelerations(&q, &speeds, &efforts, &mut expected)?;
-            forward(&q, &speeds, &efforts, &mut found);
-            self.close(&found, &expected)?;
+                .accelerations(q, &speeds, &efforts, &mut expected)?;
+            forward(q, &speeds, &efforts, &mut found);
+            Self::close(&found, &expected)?;
         }
-        self.compare_derivatives(&q, &speeds, &efforts)?;
-        self.compare_momenta(&q, &mut speeds, &efforts)
+        self.compare_derivatives(q, &speeds, &efforts)?;
+        self.compare_momenta(q, &mut speeds, &efforts)
     }
 
     /// The same of the port-Hamiltonian form.
@@ -129,7 +210,7 @@ impl Compiled {
         q: &[f64],
         speeds: &mut [f64],
         efforts: &[f64],
-    ) -> Result<(), CompiledError> {
+    ) -> Result<(), Unlike> {
         let Equations {
             momenta: by_speeds,
             speeds_from_momenta: by_momenta,
@@ -140,19 +221,19 @@ impl Compiled {
         self.tree.momenta(q, speeds, &mut momenta)?;
         if let Some(map) = by_speeds {
             map(q, speeds, &mut found);
-            self.close(&found, &momenta)?;
+            Self::close(&found, &momenta)?;
         }
         if let Some(map) = by_momenta {
             self.tree.speeds(q, &momenta, &mut expected)?;
             map(q, &momenta, &mut found);
-            self.close(&found, &expected)?;
+            Self::close(&found, &expected)?;
         }
         if let Some(momentum_rates) = momentum_rates {
             let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
             self.tree
                 .momentum_rates(q, &momenta, &mut given, speeds, &mut expected)?;
             momentum_rates(q, &momenta, efforts, speeds, &mut found);
-            self.close(&found, &expected)?;
+            Self::close(&found, &expected)?;
         }
         Ok(())
     }
@@ -163,14 +244,14 @@ impl Compiled {
         q: &[f64],
         speeds: &[f64],
         inputs: &[f64],
-    ) -> Result<(), CompiledError> {
+    ) -> Result<(), Unlike> {
         let mechanism = Arc::clone(self.tree.mechanism());
         if self.equations.forward_dynamics_derivatives.is_some() {
             let mut found = ForwardDerivatives::new(&mechanism);
             let mut expected = vec![0.0; speeds.len()];
             self.tree.accelerations(q, speeds, inputs, &mut expected)?;
             self.forward_dynamics_derivatives(q, speeds, inputs, &mut found)?;
-            self.close(found.rates(), &expected)?;
+            Self::close(found.rates(), &expected)?;
         }
         if self.equations.inverse_dynamics_derivatives.is_some() {
             let [mut found, mut expected] = [(); 2].map(|()| InverseDerivatives::new(&mechanism));
@@ -186,12 +267,12 @@ impl Compiled {
                 rows.map(|(row, effort)| effort + by.sum_of_row(row))
                     .collect()
             };
-            self.close(&changed(&found), &changed(&expected))?;
+            Self::close(&changed(&found), &changed(&expected))?;
         }
         Ok(())
     }
 
-    fn close(&self, found: &[f64], expected: &[f64]) -> Result<(), CompiledError> {
+    fn close(found: &[f64], expected: &[f64]) -> Result<(), Unlike> {
         let largest = expected
             .iter()
             .fold(0.0_f64, |most, rate| most.max(rate.abs()));
@@ -202,22 +283,27 @@ impl Compiled {
         };
         match found.iter().zip(expected).position(differs) {
             None => Ok(()),
-            Some(place) => Err(self.other(place, expected[place], found[place])),
+            Some(entry) => Err(Unlike::Rate {
+                entry,
+                expected: expected[entry],
+                found: found[entry],
+            }),
         }
     }
 
-    fn other(&self, place: usize, expected: f64, found: f64) -> CompiledError {
+    fn other(&self, place: &'static str, entry: usize, expected: f64, found: f64) -> CompiledError {
         let bodies = self.tree.mechanism().bodies().iter();
         let mut named = bodies
-            .filter(|body| body.ranges().speeds.contains(&place))
+            .filter(|body| body.ranges().speeds.contains(&entry))
             .map(|body| {
-                let own = place - body.ranges().speeds.start;
+                let own = entry - body.ranges().speeds.start;
                 let speed = body.joint().speeds().get(own).copied();
                 (String::from(body.joint_name()), speed.unwrap_or_default())
             });
         let (joint, speed) = named.next().unwrap_or_default();
         CompiledError::Other {
             scene: self.equations.scene,
+            place,
             joint,
             speed,
             expected,
@@ -291,6 +377,24 @@ impl Compiled {
             }
         }
     }
+}
+
+/// A configuration near home, another one in each round; none where a joint does not get there.
+fn near_home(mechanism: &Mechanism, round: usize) -> Option<vec::Vec<f64>> {
+    // Multiples of the golden section lie without pattern, so that no joint stands as another does.
+    let part = |freedom: usize| (0.618_034 * (freedom + round * 17) as f64) % 1.0;
+    let mut near = mechanism.home();
+    for (index, body) in mechanism.bodies().iter().enumerate() {
+        let ranges = body.ranges();
+        let phi: vec::Vec<f64> = ranges
+            .freedoms
+            .clone()
+            .map(|i| 0.1 + 0.2 * part(i))
+            .collect();
+        let moved = mechanism.configuration_from_local(index, &phi).ok()?;
+        near[ranges.configuration.clone()].copy_from_slice(&moved);
+    }
+    Some(near)
 }
 
 impl Dynamics for Compiled {
