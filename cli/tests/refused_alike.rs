@@ -84,6 +84,17 @@ fn compile_refuses_what_simulate_refuses_in_its_words() {
             arm(&format!("{REGULAR}\ninitial = {{ speeds = [1e200] }}")),
             "",
         ),
+        // Forces about the axis are finite, the square of the speed is not.
+        (
+            "too_much_energy",
+            arm(&format!("{REGULAR}\ninitial = {{ speeds = [1e160] }}")),
+            "at 0 s: the energy of body `arm` is beyond the range of numbers",
+        ),
+        (
+            "driven_too_fast",
+            arm(&format!("{REGULAR}\nmotion = {{ speeds = [1e160] }}")),
+            "at 0 s: the energy of body `arm` is beyond the range of numbers",
+        ),
     ] {
         let path = scene(name, &text);
         let [simulated, rust, c] = told(&path);

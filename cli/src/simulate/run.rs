@@ -10,14 +10,15 @@ use super::page::Page;
 use super::parquet::Parquet;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::sample::Sample;
+use super::sample::{self, Sample};
 use super::table::Summary;
 use crate::interrupt::{self, Heed};
 use crate::output::{self, Failure};
 use hamel::dynamics::Dynamics;
 use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State, Step};
-use hamel::mechanism::Mechanism;
+use hamel::mechanism::{Kinematics, Mechanism, StateError};
 use hamel::registry::JointRegistry;
+use hamel::shown::Number;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -177,7 +178,12 @@ fn sample<'a>(
 ) -> Result<Sample<'a>, Failure> {
     let at = (&*state.configuration, &*state.speeds);
     Sample::new(mechanism, state.time, at, efforts)
-        .map_err(|error| Failure::Simulation(error.to_string()))
+        .map_err(|error| without_value(state.time, &error))
+}
+
+/// The failure of a sample that cannot be told.
+fn without_value(time: f64, error: &StateError) -> Failure {
+    Failure::Simulation(format!("at {} s: {error}", Number(time)))
 }
 
 /// Writes samples as they come, so that a simulation that stops leaves its trajectory up to there.
@@ -223,22 +229,21 @@ impl<'a> Files<'a> {
         &mut self,
         mechanism: &Mechanism,
         step: &Step<'_>,
+        kinematics: &Kinematics,
         efforts: &[f64],
     ) -> Result<(), Failure> {
         if self.trajectory.is_none() && self.parquet.is_none() && self.page.is_none() {
             return Ok(());
         }
-        let kinematics = mechanism.kinematics(step.configuration, step.speeds);
-        let kinematics = kinematics.map_err(|error| Failure::Simulation(error.to_string()))?;
-        let sample = Sample::of(mechanism, step.time, &kinematics, efforts);
+        let sample = Sample::of(mechanism, step.time, kinematics, efforts);
         if let Some(trajectory) = &mut self.trajectory {
             trajectory.write(&sample)?;
         }
         if let Some(parquet) = &mut self.parquet {
-            parquet.write(&sample, step, &kinematics)?;
+            parquet.write(&sample, step, kinematics)?;
         }
         if let Some(page) = &mut self.page {
-            page.sample(step, &kinematics, efforts);
+            page.sample(step, kinematics, efforts);
         }
         Ok(())
     }
@@ -291,7 +296,10 @@ impl<'a> Recorder<'a> {
             page.step(step.time);
         }
         if step.sample.is_some() {
-            files.record(self.mechanism, step, efforts)?;
+            let at = (step.configuration, step.speeds);
+            let found = sample::kinematics(self.mechanism, at);
+            let found = found.map_err(|error| without_value(step.time, &error))?;
+            files.record(self.mechanism, step, &found, efforts)?;
             self.has_samples = true;
         }
         Ok(())
@@ -317,7 +325,11 @@ impl<'a> Recorder<'a> {
             is_interrupted: self.is_interrupted,
         };
         files.map_or(Ok(()), Files::finish)?;
-        self.failure.map_or(Ok(recorded), Err)
+        match self.failure {
+            None => Ok(recorded),
+            Some(Failure::Simulation(cause)) => Err(stopped(self.plan, recorded, &cause)),
+            Some(failure) => Err(failure),
+        }
     }
 }
 

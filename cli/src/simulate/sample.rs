@@ -57,18 +57,34 @@ pub struct BodySample<'a> {
     pub angular_velocity_body: [f64; 3],
 }
 
+/// All bodies in the state (`q`, `speeds`), where outputs have numbers for it.
+///
+/// # Errors
+/// A state of the wrong size; an energy that is not finite.
+pub fn kinematics(
+    mechanism: &Mechanism,
+    (q, speeds): (&[f64], &[f64]),
+) -> Result<Kinematics, StateError> {
+    let kinematics = mechanism.kinematics(q, speeds)?;
+    if !kinematics.energy().is_finite() {
+        // Which says whose energy it is.
+        mechanism.check_energy(q, speeds)?;
+    }
+    Ok(kinematics)
+}
+
 impl<'a> Sample<'a> {
     /// The mechanism at the time `t` in the state (`q`, `speeds`), under a controller's `efforts` (empty without one).
     ///
     /// # Errors
-    /// A state of the wrong size.
+    /// A state of the wrong size; an energy that is not finite.
     pub fn new(
         mechanism: &'a Mechanism,
         t: f64,
         (q, speeds): (&[f64], &[f64]),
         efforts: &[f64],
     ) -> Result<Self, StateError> {
-        let kinematics = mechanism.kinematics(q, speeds)?;
+        let kinematics = kinematics(mechanism, (q, speeds))?;
         Ok(Self::of(mechanism, t, &kinematics, efforts))
     }
 

@@ -89,6 +89,9 @@ impl<'a> Driver<'a> {
         }
         let begun = Standing::new(&mut flow, time, &initial.configuration, &initial.speeds)
             .and_then(|standing| {
+                let mechanism = &flow.mechanism;
+                // Rates may be finite where squares of speeds are not.
+                mechanism.check_energy(&standing.configuration, standing.speeds())?;
                 let order = options.method.scheme().order();
                 let between = Between::new(sampling, events, order, (&flow, &standing, time))?;
                 Ok((standing, between))

@@ -223,6 +223,15 @@ pub enum StateError {
         /// `pose`, `twist map` and the like.
         what: &'static str,
     },
+    /// The energy is beyond the range of numbers.
+    #[error(
+        "the energy of {} is beyond the range of numbers: the limit is {:e} J",
+        Owner(of.as_deref()), f64::MAX
+    )]
+    Energy {
+        /// The body; absent where it is that of springs, rotors or all bodies together.
+        of: Option<String>,
+    },
     /// Q is not on the joint's manifold.
     #[error(
         "joint `{joint}`: its configuration is off its manifold by {residual:e}, more than {limit:e}"
@@ -300,4 +309,16 @@ pub enum StateError {
         /// Largest value allowed.
         limit: f64,
     },
+}
+
+/// Whose energy it is.
+struct Owner<'a>(Option<&'a str>);
+
+impl Display for Owner<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match self.0 {
+            Some(body) => write!(f, "body `{body}`"),
+            None => f.write_str("the mechanism"),
+        }
+    }
 }

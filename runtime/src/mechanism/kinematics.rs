@@ -142,6 +142,17 @@ impl Mechanism {
         })
     }
 
+    /// Whether the energy at (q, v̄) is finite: squares of speeds are beyond the range of numbers where speeds are far within it.
+    ///
+    /// # Errors
+    /// When it is not, with the joint that has no value or the body whose energy it is; those of [`Mechanism::kinematics`].
+    pub fn check_energy(&self, q: &[f64], speeds: &[f64]) -> Result<(), StateError> {
+        match self.kinematics(q, speeds)?.energy().is_finite() {
+            true => Ok(()),
+            false => Err(self.infinite_energy((q, speeds))),
+        }
+    }
+
     /// Why the energy at (q, v̄) is not finite: a kernel of a joint, or else where the energy of a body is not.
     pub(crate) fn infinite_energy(&self, (q, speeds): (&[f64], &[f64])) -> StateError {
         let of_kernel = self.no_value(q, speeds);
@@ -151,10 +162,9 @@ impl Mechanism {
                 state.kinetic_energy.is_finite() && state.potential_energy.is_finite()
             };
             let place = states.iter().position(|state| !is_finite(state));
-            let joint = self.bodies.get(place.unwrap_or_default());
-            StateError::NoValue {
-                joint: joint.map_or("", Body::joint_name).into(),
-                what: "energy",
+            let body = place.and_then(|place| self.bodies.get(place));
+            StateError::Energy {
+                of: body.map(|body| body.name().into()),
             }
         })
     }
