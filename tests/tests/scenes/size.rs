@@ -1,11 +1,11 @@
-//! Loading takes work in proportion to the file: to its bodies, frames, names and errors.
+//! Loading takes work in proportion to the file, a scene or a robot: to its bodies, frames, names and errors.
 //!
 //! `cargo test` compares five thousand and fifty thousand of each. A million, with times and memory:
 //! `cargo test --release --package hamel-tests --test scenes size -- --ignored --nocapture --test-threads 1`.
 
 use cpu_time::ThreadTime;
 use hamel::registry::JointRegistry;
-use hamel_scene::Scene;
+use hamel_scene::{Diagnostics, Scene, urdf};
 use hamel_tests::fuzz::peak_memory;
 use std::fmt::Write;
 use std::time::Duration;
@@ -20,9 +20,10 @@ struct Family {
     text: fn(usize) -> String,
     /// How many errors a file of so many elements has.
     errors: fn(usize) -> usize,
+    read: fn(&str, &JointRegistry) -> Result<(), Diagnostics>,
 }
 
-const FAMILIES: [Family; 16] = [
+const FAMILIES: [Family; 20] = [
     accepted("bodies in a chain", |n| scene(n, |i| format!("b{i}"), "")),
     accepted("bodies on the world", |n| {
         repeated(HEAD, n, |i| body(&format!("b{i}"), "world", ""))
@@ -119,6 +120,40 @@ const FAMILIES: [Family; 16] = [
             )
         },
     ),
+    robot(
+        "links and joints",
+        |_| 0,
+        |n| robot_of(n, |_| String::new()),
+    ),
+    // Each follows the last joint, and has the last colour.
+    robot(
+        "joints that follow others, and materials",
+        |_| 0,
+        |n| {
+            let material =
+                |i: usize| format!("<material name=\"m{i}\"><color rgba=\"1 0 0 1\"/></material>");
+            let materials: String = (0..n).map(material).collect();
+            robot_of(n, |_| format!("<mimic joint=\"j{}\"/>", n - 1))
+                .replace(
+                    "<geometry>",
+                    &format!("<material name=\"m{}\"/><geometry>", n - 1),
+                )
+                .replace("</robot>", &(materials + "</robot>"))
+        },
+    ),
+    robot(
+        "links without names",
+        |n| n,
+        |n| {
+            let links = "<link/>".repeat(n);
+            format!("<robot name=\"r\">{links}</robot>")
+        },
+    ),
+    robot(
+        "unknown links",
+        |n| n,
+        |n| robot_of(n, |_| String::new()).replace("<parent link=\"", "<parent link=\"x"),
+    ),
 ];
 
 const HEAD: &str = "hamel = 1\ngravity = [0.0, 0.0, -9.81]\n";
@@ -132,7 +167,49 @@ const fn refused(
     errors: fn(usize) -> usize,
     text: fn(usize) -> String,
 ) -> Family {
-    Family { name, text, errors }
+    let read =
+        |text: &str, registry: &JointRegistry| Scene::parse(text, "large.toml", registry).map(drop);
+    Family {
+        name,
+        text,
+        errors,
+        read,
+    }
+}
+
+/// Read, and written as a scene.
+const fn robot(
+    name: &'static str,
+    errors: fn(usize) -> usize,
+    text: fn(usize) -> String,
+) -> Family {
+    let read = |text: &str, _: &JointRegistry| {
+        let import = urdf::read(text, "large.urdf", &urdf::Options::default());
+        import.map(|import| drop(import.to_toml()))
+    };
+    Family {
+        name,
+        text,
+        errors,
+        read,
+    }
+}
+
+/// A robot of `count` joints on one link, with `more` in each.
+fn robot_of(count: usize, more: impl Fn(usize) -> String) -> String {
+    let link = |name: &str| {
+        let inertia = "ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
+        format!(
+            "<link name=\"{name}\"><inertial><mass value=\"1\"/><inertia {inertia}/></inertial>\
+             <visual><geometry><sphere radius=\"1\"/></geometry></visual></link>"
+        )
+    };
+    let element = |i: usize| {
+        let (name, more) = (format!("l{i}"), more(i));
+        let ends = format!("<parent link=\"base\"/><child link=\"{name}\"/>");
+        link(&name) + &format!("<joint name=\"j{i}\" type=\"continuous\">{ends}{more}</joint>")
+    };
+    repeated("<robot name=\"r\">", count, element) + &link("base") + "</robot>"
 }
 
 fn repeated(head: &str, count: usize, element: impl Fn(usize) -> String) -> String {
@@ -167,9 +244,9 @@ fn on_one_body(count: usize, element: impl Fn(usize) -> String) -> String {
 fn time(family: &Family, count: usize, registry: &JointRegistry) -> Duration {
     let text = (family.text)(count);
     let start = ThreadTime::now();
-    let loaded = Scene::parse(&text, "large.toml", registry);
+    let loaded = (family.read)(&text, registry);
     let (found, shown) = match &loaded {
-        Ok(_) => (0, String::new()),
+        Ok(()) => (0, String::new()),
         Err(errors) => (errors.errors().len(), errors.render(false)),
     };
     let time = start.elapsed();

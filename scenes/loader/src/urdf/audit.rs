@@ -11,6 +11,13 @@ use crate::suggest::{nearest, one_of};
 use crate::text::{is_hidden, visible_line};
 use hamel::shown::Number;
 use roxmltree::Node;
+use std::collections::HashMap;
+
+/// The elements of one name in one element, as far as they have been read.
+struct Seen<'a, 'i> {
+    first: Node<'a, 'i>,
+    count: usize,
+}
 
 /// Reads a document element by element.
 pub(super) struct Audit<'s> {
@@ -23,36 +30,48 @@ pub(super) struct Audit<'s> {
 }
 
 impl Audit<'_> {
-    /// Reads `node`, which has the name of `schema`. Messages begin with `owner`.
-    pub(super) fn element(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
-        let owner = owner_of(node, owner);
-        for attribute in schema.attributes {
-            self.attribute(node, attribute, &owner);
-        }
-        self.unknown_attributes(node, schema, &owner);
-        if schema.name == "limit" && self.version >= (1, 2) {
-            self.limits(node, &owner);
-        }
-        self.text(node, &owner);
-        for child in node.children().filter(Node::is_element) {
-            self.child(child, node, schema, &owner);
-        }
-        self.missing_children(node, schema, &owner);
+    /// Reads the root, which has the name of `schema`.
+    pub(super) fn root(&mut self, node: Node<'_, '_>, schema: &Element) {
+        self.element(node, schema, "");
     }
 
-    fn child(&mut self, node: Node<'_, '_>, parent: Node<'_, '_>, schema: &Element, owner: &str) {
+    /// Reads `node`, which has the name of `schema`. Messages begin with `owner`.
+    fn element(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
+        for attribute in schema.attributes {
+            self.attribute(node, attribute, owner);
+        }
+        self.unknown_attributes(node, schema, owner);
+        if schema.name == "limit" && self.version >= (1, 2) {
+            self.limits(node, owner);
+        }
+        self.text(node, owner);
+        // Counted on the way: to look for others of its name from each child would take work in squares.
+        let mut seen = HashMap::new();
+        for child in node.children().filter(Node::is_element) {
+            let name = child.tag_name();
+            let first = Seen {
+                first: child,
+                count: 0,
+            };
+            let seen = seen.entry((name.namespace(), name.name())).or_insert(first);
+            seen.count += 1;
+            self.child(child, seen, schema, owner);
+        }
+        self.missing_children(node, schema, owner);
+    }
+
+    fn child(&mut self, node: Node<'_, '_>, seen: &Seen<'_, '_>, schema: &Element, owner: &str) {
         let name = node.tag_name().name();
         let known = schema
             .children
             .iter()
             .find(|child| child.element.name == name && node.tag_name().namespace().is_none());
         let Some(child) = known else {
-            return self.not_read(node, schema, owner);
+            return self.not_read(node, seen.count, schema, owner);
         };
-        let first = parent.children().find(|other| other.has_tag_name(name));
-        match first.filter(|first| *first != node && !child.several) {
-            Some(first) => self.second(node, first, owner),
-            None => self.element(node, child.element, owner),
+        match seen.count > 1 && !child.several {
+            true => self.second(node, seen.first, owner),
+            false => self.element(node, child.element, &owner_of(node, seen.count, owner)),
         }
     }
 
@@ -77,7 +96,7 @@ impl Audit<'_> {
     }
 
     /// An element that the schema does not have here.
-    fn not_read(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
+    fn not_read(&mut self, node: Node<'_, '_>, place: usize, schema: &Element, owner: &str) {
         let name = node.tag_name().name();
         let namespace = node.tag_name().namespace().unwrap_or_default();
         if namespace.contains("xacro") {
@@ -91,7 +110,7 @@ impl Audit<'_> {
             return;
         }
         let element = match owner {
-            "" => named(node),
+            "" => named(node, place),
             owner => owner.trim_end_matches(": ").to_owned(),
         };
         if let Some((_, message)) = NOT_READ.iter().find(|(known, _)| *known == name) {
@@ -208,26 +227,20 @@ impl Audit<'_> {
 }
 
 /// Links and joints begin the messages about what is in them.
-fn owner_of(node: Node<'_, '_>, owner: &str) -> String {
+fn owner_of(node: Node<'_, '_>, place: usize, owner: &str) -> String {
     match node.tag_name().name() {
-        "link" | "joint" if owner.is_empty() => format!("{}: ", named(node)),
+        "link" | "joint" if owner.is_empty() => format!("{}: ", named(node, place)),
         _ => owner.to_owned(),
     }
 }
 
-/// What messages call an element of the robot: by its name, or by what it refers to.
-fn named(node: Node<'_, '_>) -> String {
+/// What messages call an element of the robot: by its name, or by what it refers to, or by its place among those of its kind.
+fn named(node: Node<'_, '_>, place: usize) -> String {
     let kind = visible_line(node.tag_name().name());
     let name = node.attribute("name").or(node.attribute("reference"));
     match name {
         Some(name) => format!("{kind} `{}`", visible_line(name)),
-        None => {
-            let before = node.prev_siblings().skip(1);
-            let place = before
-                .filter(|other| other.tag_name() == node.tag_name())
-                .count();
-            format!("{kind} {}", place + 1)
-        }
+        None => format!("{kind} {place}"),
     }
 }
 

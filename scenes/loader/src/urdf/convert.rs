@@ -153,9 +153,8 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             };
             return self.attach(root, anchor);
         }
-        let joints = &self.robot.joints;
         let mut name = String::from("floating_base");
-        while joints.iter().any(|joint| joint.name == name) {
+        while self.robot.joint_names.contains(&*name) {
             name.push('_');
         }
         let joint = (name, "free", name_span(self.robot.links[root].node));
@@ -277,7 +276,8 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         self.anchors[link] = Some(anchor);
         let (node, owner) = (self.robot.links[link].node, self.owner(link));
         let Anchor { body, pose } = anchor;
-        let shapes = shapes::of_link(node, &owner, body, &pose, self.notices);
+        let materials = &self.robot.materials;
+        let shapes = shapes::of_link(node, &owner, materials, (body, &pose), self.notices);
         self.shapes.extend(shapes);
         let Some(mass) = self.mass(link) else { return };
         match anchor.body {

@@ -186,10 +186,8 @@ pub(super) fn tell(
     notices: &mut Notices,
 ) {
     let limits = facts.limits.as_ref();
-    let follows = |mimic: &Mimic| {
-        let mut names = robot.joints.iter().map(|joint| joint.name);
-        mimic.joint != joint.name && names.any(|name| name == mimic.joint)
-    };
+    let follows =
+        |mimic: &Mimic| mimic.joint != joint.name && robot.joint_names.contains(&*mimic.joint);
     let mimic = facts.mimic.as_ref().map(follows);
     let has = |name: &str| child(joint.node, name).is_some();
     let owner = format!("joint `{}`", joint.name);

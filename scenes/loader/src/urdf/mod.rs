@@ -38,6 +38,7 @@ use hamel::registry::JointRegistry;
 use nalgebra::Vector3;
 use robot::Robot;
 use roxmltree::{Document, Node};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// What a URDF does not say.
@@ -119,9 +120,11 @@ impl Import {
             ));
             head.extend(self.notices.iter().map(|notice| format!("- {notice}")));
         }
-        let facts = |name: &str| self.joints.iter().find(|joint| joint.name == name);
+        let facts = self.joints.iter().map(|joint| (&*joint.name, joint));
+        let facts: HashMap<&str, &JointFacts> = facts.collect();
         self.scene.to_toml(&head, |name| {
-            facts(name).map_or_else(Vec::new, JointFacts::lines)
+            let own = facts.get(name);
+            own.map_or_else(Vec::new, |facts| facts.lines())
         })
     }
 }
@@ -146,7 +149,7 @@ fn import(
         notices: &mut notices,
         version,
     };
-    audit.element(root, &schema::ROBOT, "");
+    audit.root(root, &schema::ROBOT);
     if sink.len() > 0 {
         return None;
     }

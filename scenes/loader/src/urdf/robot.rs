@@ -4,6 +4,7 @@
 
 use super::document::{attribute, child};
 use roxmltree::Node;
+use std::collections::{HashMap, HashSet};
 
 /// A robot.
 pub(super) struct Robot<'a, 'i> {
@@ -13,6 +14,10 @@ pub(super) struct Robot<'a, 'i> {
     pub(super) links: Vec<Link<'a, 'i>>,
     /// Its joints, in the order of the file.
     pub(super) joints: Vec<Joint<'a, 'i>>,
+    /// The names of the joints.
+    pub(super) joint_names: HashSet<&'a str>,
+    /// The elements of its materials by their names, the first of each name.
+    pub(super) materials: HashMap<&'a str, Node<'a, 'i>>,
 }
 
 /// A link.
@@ -63,10 +68,20 @@ impl<'a, 'i> Robot<'a, 'i> {
     pub(super) fn read(root: Node<'a, 'i>) -> Option<Self> {
         let named =
             |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
+        let joints = named("joint").map(Joint::read);
+        let joints: Vec<Joint<'a, 'i>> = joints.collect::<Option<_>>()?;
+        let mut materials = HashMap::new();
+        for node in named("material") {
+            if let Some(name) = node.attribute("name") {
+                materials.entry(name).or_insert(node);
+            }
+        }
         Some(Self {
             name: root.attribute("name"),
             links: named("link").map(Link::read).collect::<Option<_>>()?,
-            joints: named("joint").map(Joint::read).collect::<Option<_>>()?,
+            joint_names: joints.iter().map(|joint| joint.name).collect(),
+            joints,
+            materials,
         })
     }
 }

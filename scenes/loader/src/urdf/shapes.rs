@@ -10,13 +10,17 @@ use crate::source::Located;
 use hamel::spatial::Pose;
 use nalgebra::{Matrix3, Vector3, Vector4};
 use roxmltree::Node;
+use std::collections::HashMap;
+
+/// The elements of a robot's materials by their names.
+type Materials<'a, 'i> = HashMap<&'a str, Node<'a, 'i>>;
 
 /// The shapes of `link`, whose frame stands at `pose` on `body`.
 pub(super) fn of_link(
     link: Node<'_, '_>,
     owner: &str,
-    body: Option<usize>,
-    pose: &Pose<f64>,
+    materials: &Materials<'_, '_>,
+    (body, pose): (Option<usize>, &Pose<f64>),
     notices: &mut Notices,
 ) -> Vec<ShapeDescription> {
     let visuals = link.children().filter(|node| node.has_tag_name("visual"));
@@ -25,7 +29,7 @@ pub(super) fn of_link(
             body,
             at: pose.compose(&at),
             geometry,
-            color: color(visual),
+            color: color(visual, materials),
         }),
         Err(why) => {
             notices.add(why, owner);
@@ -94,15 +98,10 @@ fn at<T>(value: T) -> Located<T> {
 }
 
 /// The colour of a visual: its own, or that of the robot's material of its name.
-fn color(visual: Node<'_, '_>) -> Option<[u8; 3]> {
+fn color(visual: Node<'_, '_>, materials: &Materials<'_, '_>) -> Option<[u8; 3]> {
     let material = child(visual, "material")?;
-    let robot = visual.document().root_element();
-    let named = || {
-        let name = material.attribute("name")?;
-        let mut materials = robot.children();
-        materials.find(|node| node.has_tag_name("material") && node.attribute("name") == Some(name))
-    };
-    let color = child(material, "color").or_else(|| child(named()?, "color"))?;
+    let named = || child(*materials.get(material.attribute("name")?)?, "color");
+    let color = child(material, "color").or_else(named)?;
     let [red, green, blue, _] = numbers(color.attribute("rgba")?)?;
     let byte = |part: f64| (part.clamp(0.0, 1.0) * 255.0).round() as u8;
     Some([byte(red), byte(green), byte(blue)])

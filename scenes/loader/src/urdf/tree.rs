@@ -6,7 +6,7 @@ use crate::diagnostics::Diagnostic;
 use crate::parse::{cycles, order};
 use crate::read::Sink;
 use crate::source::Span;
-use crate::suggest::{all_of, nearest};
+use crate::suggest::{Suggestions, all_of};
 use roxmltree::Node;
 use std::collections::HashMap;
 
@@ -74,12 +74,15 @@ fn parents(
     sink: &mut Sink,
 ) -> Vec<Option<(usize, usize)>> {
     let mut parents: Vec<Option<(usize, usize)>> = vec![None; robot.links.len()];
+    let known: Vec<&str> = robot.links.iter().map(|link| link.name).collect();
+    let mut suggestions = Suggestions::default();
     for (index, joint) in robot.joints.iter().enumerate() {
         let ends = [("parent", joint.parent), ("child", joint.child)];
         let ends = ends.map(|(end, link)| match names.get(link) {
             Some(&link) => Some(link),
             None => {
-                sink.push(unknown_link(joint, end, link, robot));
+                let near = suggestions.nearest(link, &known);
+                sink.push(unknown_link(joint, (end, link), near, &known));
                 None
             }
         });
@@ -94,16 +97,20 @@ fn parents(
     parents
 }
 
-fn unknown_link(joint: &Joint<'_, '_>, end: &str, link: &str, robot: &Robot<'_, '_>) -> Diagnostic {
+fn unknown_link(
+    joint: &Joint<'_, '_>,
+    (end, link): (&str, &str),
+    near: Option<&str>,
+    known: &[&str],
+) -> Diagnostic {
     let message = format!(
         "joint `{}`: its {end} `{link}` is not a link of the robot",
         joint.name
     );
     let error = Diagnostic::new(place(joint.node, end, "link"), message);
-    let names = robot.links.iter().map(|link| link.name);
-    match nearest(link, names.clone()) {
+    match near {
         Some(near) => error.label(format!("did you mean `{near}`?")),
-        None => error.help(format!("its links are {}", all_of(names))),
+        None => error.help(format!("its links are {}", all_of(known.iter().copied()))),
     }
 }
 
