@@ -1,20 +1,25 @@
 //! Texts in cells of CSV files: what a spreadsheet would take for a formula begins with an apostrophe, which makes it text.
 
 /// How formulas begin, in one spreadsheet or another.
-const FORMULAS: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+const FORMULAS: [char; 10] = ['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r'];
 
 /// The text as a cell, which no spreadsheet runs. A text that begins so already gets one more apostrophe, so that [`text`] gives it back.
 pub fn cell(text: &str) -> String {
-    match text.trim_start_matches('\'').starts_with(FORMULAS) {
+    match is_run(text.trim_start_matches('\'')) {
         true => format!("'{text}"),
         false => text.to_owned(),
     }
 }
 
+/// Whether a spreadsheet may take the text for a formula: some leave out blanks before it.
+fn is_run(text: &str) -> bool {
+    text.starts_with(FORMULAS) || text.trim_start().starts_with(FORMULAS)
+}
+
 /// The text of a cell.
 pub fn text(cell: &str) -> &str {
     match cell.strip_prefix('\'') {
-        Some(rest) if rest.trim_start_matches('\'').starts_with(FORMULAS) => rest,
+        Some(rest) if is_run(rest.trim_start_matches('\'')) => rest,
         _ => cell,
     }
 }
@@ -40,7 +45,9 @@ mod tests {
 
     #[test]
     fn no_cell_is_a_formula_and_every_text_comes_back() {
-        for formula in ["=1+1", "+1", "-1", "@f()", "\t=1", "\r=1", "'=1", "''=1"] {
+        for formula in [
+            "=1+1", "+1", "-1", "@f()", "\t=1", "\r=1", "'=1", "''=1", "＝1", "＋1", " =1",
+        ] {
             let cell = cell(formula);
             assert!(cell.starts_with('\''), "{formula}");
             assert_eq!(text(&cell), formula);

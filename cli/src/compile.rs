@@ -119,6 +119,11 @@ impl FunctionName {
 /// Mistakes in the scene; what cannot be compiled; a file that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let header = header(args);
+    let stem = args.output.as_ref().and_then(|path| path.file_stem());
+    if let Some(stem) = stem.filter(|stem| header.is_some() && stem.to_str().is_none()) {
+        let name = stem.to_string_lossy().into_owned();
+        return Err(Failure::Refused(Error::Name(name).to_string()));
+    }
     if args.lanes && header.is_some() {
         return Err(Failure::Options(Error::Lanes.to_string()));
     }

@@ -14,17 +14,44 @@ static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
 /// How many stand.
 static HEEDING: AtomicUsize = AtomicUsize::new(0);
 
-/// Listens from now on.
+/// Listens from now on. A signal that whoever started the program wants ignored, as nohup does, stays ignored.
+#[cfg(target_os = "linux")]
 pub fn listen() {
-    // Where one of the signals is ignored, as under nohup, all stay as they are: files are whole without this.
-    drop(ctrlc::try_set_handler(|| {
-        let is_heeded = HEEDING.load(Ordering::SeqCst) > 0;
-        if is_heeded && !IS_REQUESTED.swap(true, Ordering::SeqCst) {
-            return;
-        }
-        remove_unfinished();
-        std::process::exit(EXIT_CODE.into());
-    }));
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored().unwrap_or(0);
+    let wanted = [SIGINT, SIGTERM, SIGHUP];
+    let wanted = wanted.into_iter().filter(|n| ignored >> (n - 1) & 1 == 0);
+    // Where signals cannot be had, files are whole without this.
+    let Ok(mut signals) = signal_hook::iterator::Signals::new(wanted) else {
+        return;
+    };
+    std::thread::spawn(move || signals.forever().for_each(|_| end()));
+}
+
+/// The signals that are ignored, signal n as bit n − 1: the kernel tells them without unsafe code.
+#[cfg(target_os = "linux")]
+fn ignored() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let mask = status
+        .lines()
+        .find_map(|line| line.strip_prefix("SigIgn:"))?;
+    u64::from_str_radix(mask.trim(), 16).ok()
+}
+
+/// Listens from now on. Where one of the signals is ignored, all stay as they are: files are whole without this.
+#[cfg(not(target_os = "linux"))]
+pub fn listen() {
+    drop(ctrlc::try_set_handler(end));
+}
+
+/// Notes an interrupt, or ends the program.
+fn end() {
+    let is_heeded = HEEDING.load(Ordering::SeqCst) > 0;
+    if is_heeded && !IS_REQUESTED.swap(true, Ordering::SeqCst) {
+        return;
+    }
+    remove_unfinished();
+    std::process::exit(EXIT_CODE.into());
 }
 
 /// Whether the program is to end.

@@ -61,6 +61,12 @@ fn what_c_cannot_have_is_refused() {
     let said = String::from_utf8_lossy(&quoted.stderr);
     assert_eq!(quoted.status.code(), Some(1), "{said}");
     assert!(said.contains("C cannot include"), "{said}");
+
+    let broken = folder.join("a\nb.c");
+    let broken = hamel(&["compile", scene, "-o", broken.to_str().expect("text")]);
+    let said = String::from_utf8_lossy(&broken.stderr);
+    assert_eq!(broken.status.code(), Some(1), "{said}");
+    assert!(said.contains("C cannot include"), "{said}");
     assert!(
         std::fs::read_dir(&folder)
             .expect("a folder")

@@ -151,6 +151,21 @@ fn descriptions_are_text_on_a_page() {
     assert!(!text.contains("<script>alert") && !text.contains('\u{202e}'));
 }
 
+/// Devices have no end.
+#[cfg(unix)]
+#[test]
+fn what_has_no_end_is_not_read_to_it() {
+    for arguments in [
+        ["simulate", "/dev/zero"].as_slice(),
+        &["joints", "check", "/dev/zero"],
+    ] {
+        let refused = hamel(arguments);
+        assert_eq!(refused.status.code(), Some(1));
+        let told = said(&refused);
+        assert!(told.contains("it is larger than"), "{told}");
+    }
+}
+
 #[test]
 fn files_that_are_not_utf8_are_refused_with_their_line() {
     let broken = |name: &str, lines: &str| write(name, [lines.as_bytes(), b"\xff\n"].concat());

@@ -1,14 +1,26 @@
 //! Texts of files.
 
-use std::io::{self, ErrorKind};
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
+
+/// The largest file that is read, in bytes: a spec is much smaller, and its reader says by how much another is too large.
+const LARGEST_FILE: u64 = 16 << 20;
 
 /// The text of a file.
 ///
 /// # Errors
 /// A file that cannot be read; one that is not UTF-8, with the line where it stops being so.
 pub fn read(path: &Path) -> io::Result<String> {
-    String::from_utf8(std::fs::read(path)?).map_err(|error| {
+    let mut bytes = vec![];
+    File::open(path)?
+        .take(LARGEST_FILE + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        let message = format!("it is larger than {} MiB", LARGEST_FILE >> 20);
+        return Err(io::Error::new(ErrorKind::InvalidData, message));
+    }
+    String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let bytes = error.as_bytes();
         let line = 1 + bytes[..valid].iter().filter(|byte| **byte == b'\n').count();

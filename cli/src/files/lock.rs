@@ -2,6 +2,7 @@
 
 use crate::output::Failure;
 use std::fs::{File, OpenOptions, TryLockError};
+use std::io;
 use std::path::Path;
 
 /// The file that is locked. It stays: without it two commands could lock one file each.
@@ -21,6 +22,10 @@ impl Lock {
     pub fn of(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(NAME);
         let failed = |error| Failure::write(&path, error);
+        // To open a pipe would wait for its reader.
+        if path.metadata().is_ok_and(|known| !known.is_file()) {
+            return Err(failed(io::Error::other("it is not a regular file")));
+        }
         let mut options = OpenOptions::new();
         let file = options.create(true).append(true).open(&path);
         let file = file.map_err(failed)?;

@@ -170,6 +170,9 @@ fn text<R: Row>(folder: &Path) -> Result<Vec<u8>, Failure> {
     if !path.exists() {
         return Ok(Vec::new());
     }
+    if !path.is_file() {
+        return Err(foreign(&path, &"it is not a regular file"));
+    }
     let mut text = fs::read(&path).map_err(|error| Failure::write(&path, error))?;
     if !has_columns::<R>(&text) {
         return Err(foreign(&path, &"its columns are others"));

@@ -6,7 +6,7 @@ use crate::cells::cell;
 use crate::files::{Draft, Output};
 use crate::output::Failure;
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Read};
+use std::io::{self, BufReader, BufWriter, Read};
 
 /// Endings of a body's columns; each stands after the body's name and a point.
 const COLUMNS: [&str; 12] = [
@@ -128,7 +128,15 @@ impl<'a> Trajectory<'a> {
 
     fn record(&mut self, fields: impl Iterator<Item = String>) -> Result<(), Failure> {
         let written = self.writer.write_record(fields);
-        written.map_err(|error| Failure::write(self.output.path(), error.into()))
+        written.map_err(|error| Failure::write(self.output.path(), cause(error)))
+    }
+}
+
+/// The failure to write that stands behind an error, with its kind: whether the reader has gone is asked later.
+fn cause(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
     }
 }
 

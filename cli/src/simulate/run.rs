@@ -64,10 +64,11 @@ fn interrupted(plan: &Plan, solution: &Solution) -> Failure {
         count => match plan.files().map(|path| path.display().to_string()) {
             files if plan.has_files() => {
                 let files: Vec<String> = files.collect();
-                format!(
-                    "; the {count} samples until then are in {}",
-                    files.join(", ")
-                )
+                let samples = match count {
+                    1 => String::from("; the sample until then is"),
+                    _ => format!("; the {count} samples until then are"),
+                };
+                format!("{samples} in {}", files.join(", "))
             }
             _ => String::new(),
         },
@@ -311,7 +312,10 @@ impl<'a> Recorder<'a> {
             return false;
         }
         let since = *self.interrupted.get_or_insert_with(Instant::now);
-        self.is_interrupted = step.sample.is_some() || since.elapsed() > PATIENCE;
+        // A motion that is at its end was not cut short.
+        let is_over = step.time >= self.plan.settings.t_end;
+        let is_late = since.elapsed() > PATIENCE;
+        self.is_interrupted = !is_over && (step.sample.is_some() || is_late);
         self.is_interrupted
     }
 

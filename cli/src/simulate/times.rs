@@ -13,8 +13,12 @@ const MOST_SAMPLES: f64 = 1e6;
 pub fn regular(t_end: f64, step: f64) -> Result<Vec<f64>, Failure> {
     let count = t_end / step;
     if count > MOST_SAMPLES {
+        let count = match count.is_finite() {
+            true => format!("{count:.3e}"),
+            false => format!("more than {:e}", f64::MAX),
+        };
         return Err(Failure::Options(format!(
-            "a sample each {:?} s until {:?} s makes {count:.3e} samples, and the limit is {MOST_SAMPLES:e}: \
+            "a sample each {:?} s until {:?} s makes {count} samples, and the limit is {MOST_SAMPLES:e}: \
              choose a larger --sample-step",
             Number(step),
             Number(t_end)

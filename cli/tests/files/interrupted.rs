@@ -87,6 +87,46 @@ fn an_interrupted_simulation_leaves_whole_files_of_what_there_is() {
     assert!(page.trim_end().ends_with("</html>"), "the page has no end");
 }
 
+/// A shell lets programs in its background ignore Ctrl-C; they still hear that they are to end.
+#[cfg(target_os = "linux")]
+#[test]
+fn one_ignored_signal_leaves_the_others_heard() {
+    let place = Place::new();
+    let program = env!("CARGO_BIN_EXE_hamel");
+    let mut command = std::process::Command::new("sh");
+    let script = format!("trap '' INT; exec {program} {LONG} --quiet");
+    command.args(["-c", &script]).current_dir(place.path("."));
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = child.spawn().expect("a shell");
+    begun(&place, &mut child);
+    send(&child, Signal::SIGINT);
+    sleep(Duration::from_millis(100));
+    assert!(
+        child.try_wait().expect("a child").is_none(),
+        "INT was heard"
+    );
+    send(&child, Signal::SIGTERM);
+    ended(&place, child);
+    assert!(rows(&place.read("a.csv")) > 1);
+}
+
+/// The last sample is the end, whether it was interrupted or not.
+#[test]
+fn a_simulation_that_reaches_its_end_is_done() {
+    let place = Place::new();
+    let words = "simulate top.toml --method rk4 --dt 1e-3 --at 500 --csv a.csv";
+    let mut child = start(&place, words);
+    begun(&place, &mut child);
+    send(&child, Signal::SIGINT);
+    let output = child.wait_with_output().expect("it ends");
+    // Where the machine is slow, its patience with a sample that is far away ends first, and no file is written.
+    let code = match place.path("a.csv").exists() {
+        true => 0,
+        false => 130,
+    };
+    assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+}
+
 #[test]
 fn samples_as_json_are_whole_too() {
     let place = Place::new();

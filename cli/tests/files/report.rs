@@ -19,6 +19,21 @@ fn a_folder_is_written_by_one_command_at_a_time() {
     place.done(REPORT);
 }
 
+/// To open a pipe would wait for its other end.
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_the_folder_is_refused() {
+    for name in [".hamel.lock", "work.csv"] {
+        let place = Place::new();
+        fs::create_dir(place.path("report")).expect("a folder");
+        let pipe = place.path("report").join(name);
+        let made = std::process::Command::new("mkfifo").arg(pipe).status();
+        assert!(made.expect("a program of every system").success());
+        let told = place.refused(REPORT, 1);
+        assert!(told.contains("not a regular file"), "{told}");
+    }
+}
+
 #[test]
 fn files_of_others_in_the_folder_are_left_alone() {
     let place = Place::new();

@@ -26,8 +26,10 @@ fn a_folder_that_is_not_there_is_told() {
 #[cfg(unix)]
 mod unix {
     use super::{Place, fs};
+    use crate::place::said;
+    use std::io::Read;
     use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
-    use std::process::Command;
+    use std::process::{Command, Stdio};
 
     fn mode(place: &Place, name: &str) -> u32 {
         let found = fs::metadata(place.path(name)).expect("a file");
@@ -77,6 +79,21 @@ mod unix {
         place.done("simulate top.toml --t-end 0.3 --csv a.csv");
         assert_eq!(place.read("b.csv"), before);
         assert!(place.read("a.csv").len() > before.len());
+    }
+
+    #[test]
+    fn a_reader_that_has_enough_is_no_failure() {
+        let place = Place::new();
+        let words = "simulate top.toml --t-end 20 --sample-step 1e-3 --quiet --csv /dev/stdout";
+        let mut command = place.command(words);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("the program starts");
+        let mut begin = [0; 100];
+        let mut reader = child.stdout.take().expect("a pipe");
+        reader.read_exact(&mut begin).expect("it writes");
+        drop(reader);
+        let output = child.wait_with_output().expect("it ends");
+        assert!(output.status.success(), "{}", said(&output));
     }
 
     #[test]

@@ -128,7 +128,7 @@ impl std::fmt::Display for Error {
             Self::Template(error) => write!(f, "{error}"),
             Self::Name(name) => write!(
                 f,
-                "the module is named {name:?}, and C cannot include `{name}.h`: quotes, backslashes and characters that are not seen must not be in a name"
+                "the module is named {name:?}, and C cannot include `{name}.h`: quotes, backslashes, ends of lines, bytes that are not UTF-8 and characters that are not seen must not be in a name"
             ),
             Self::Lanes => f.write_str(
                 "lanes are of modules in Rust, whose functions are generic over scalars: a module in C takes one state at a time",
@@ -302,7 +302,7 @@ impl Build {
             Language::C99 if self.lanes => Err(Error::Lanes),
             Language::C99 => {
                 let name = self.module_name();
-                if name.contains(['"', '\\']) || !is_visible(&name) {
+                if name.contains(['"', '\\', '\n', '\t']) || !is_visible(&name) {
                     return Err(Error::Name(name));
                 }
                 let texts = emit::c99::module(model, functions, label, &name);

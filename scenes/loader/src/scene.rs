@@ -14,6 +14,8 @@ use crate::text;
 use hamel::integrate::State;
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -25,8 +27,7 @@ pub fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
     let name = path.display().to_string();
     let refuse =
         |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
-    let bytes =
-        std::fs::read(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
+    let bytes = limited(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
     let text =
         text::from_utf8(bytes).map_err(|reason| refuse(format!("cannot read {name}: {reason}")))?;
     // One error, not one for each thing that it lacks: such a file is one that is being written, or was not written to its end.
@@ -35,6 +36,23 @@ pub fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
         false => Ok((text, name)),
     }
 }
+
+/// The bytes of a file that is not larger than any scene or robot: devices have no end.
+fn limited(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = vec![];
+    let file = File::open(path)?;
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > LARGEST_FILE {
+        true => Err(io::Error::other(format!(
+            "it is larger than {} MiB",
+            LARGEST_FILE >> 20
+        ))),
+        false => Ok(bytes),
+    }
+}
+
+/// The largest file that is read, in bytes: a million bodies take less than half of it.
+const LARGEST_FILE: u64 = 512 << 20;
 
 /// What is said of a scene that cannot be read, should no error say more.
 const INCOMPLETE: &str = "the scene is not complete";
