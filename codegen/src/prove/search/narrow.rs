@@ -57,7 +57,10 @@ impl Search<'_> {
             (room.clamp(-MOST_ROOM, MOST_ROOM) + length, 0.0)
         };
         let found = self.first_in(whole.clone(), base, most, by_room);
-        found.or_else(|| self.first_in(whole, base, most, by_length))
+        // Of two variables so few cells would see nothing but the coarsest features.
+        let is_line = whole.len() == 1;
+        let by_length = || self.first_in(whole, base, most / 2, by_length);
+        found.or_else(|| is_line.then(by_length).flatten())
     }
 
     /// The place with the largest residual among the middles of cells, of which that with the largest order is cut next.
