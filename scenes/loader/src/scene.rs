@@ -39,8 +39,10 @@ pub fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
 
 /// The bytes of a file that is not larger than any scene or robot: devices have no end.
 fn limited(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = vec![];
     let file = File::open(path)?;
+    // Room for all of it, so that it is read at once: who saves it meanwhile is less likely to be met half way.
+    let size = file.metadata()?.len().min(LARGEST_FILE);
+    let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(0) + 1);
     file.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > LARGEST_FILE {
         true => Err(io::Error::other(format!(

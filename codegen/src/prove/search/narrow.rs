@@ -57,9 +57,9 @@ impl Search<'_> {
             (room.clamp(-MOST_ROOM, MOST_ROOM) + length, 0.0)
         };
         let found = self.first_in(whole.clone(), base, most, by_room);
-        // Of two variables so few cells would see nothing but the coarsest features.
+        // Of two variables so few cells would see nothing but the coarsest features; of lines there are several where there are fewer for each.
         let is_line = whole.len() == 1;
-        let by_length = || self.first_in(whole, base, most / 2, by_length);
+        let by_length = || self.first_in(whole, base, most * most / MOST_CELLS, by_length);
         found.or_else(|| is_line.then(by_length).flatten())
     }
 

@@ -29,6 +29,7 @@ pub(crate) use controller::Joints;
 use elements::Elements;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::Vector3;
+use toml::Spanned;
 use toml::de::DeTable;
 
 /// Version of the scene format.
@@ -78,13 +79,24 @@ pub(crate) fn draft(text: &str, sink: &mut Sink) -> Option<Draft> {
         sink.push(error.help("a robot in URDF is a file whose name ends in `.urdf`"));
         return None;
     }
+    let root = table(text, sink)?;
+    let mut fields = Fields::new(String::new(), 0..0, root.get_ref());
+    Some(scene(&mut fields, sink)).inspect(|_| fields.finish(sink))
+}
+
+/// The keys of a file. Where there are none, that is the one error: such a file is one that is being written, or was not written to its end.
+fn table<'a>(text: &'a str, sink: &mut Sink) -> Option<Spanned<DeTable<'a>>> {
     let (root, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
         syntax::report(text, &errors, sink);
         return None;
     }
-    let mut fields = Fields::new(String::new(), 0..0, root.get_ref());
-    Some(scene(&mut fields, sink)).inspect(|_| fields.finish(sink))
+    if root.get_ref().is_empty() {
+        let error = Diagnostic::new(0..0, "the file holds nothing but comments");
+        sink.push(error.help(format!("begin it with `hamel = {VERSION}`")));
+        return None;
+    }
+    Some(root)
 }
 
 /// The joints of bodies; `None` where some could not be read, which may be the ones that are spoken of.
@@ -101,11 +113,7 @@ pub(crate) fn controller(
     joints: &Joints<'_>,
     sink: &mut Sink,
 ) -> Option<ControllerDescription> {
-    let (root, errors) = DeTable::parse_recoverable(text);
-    if !errors.is_empty() {
-        syntax::report(text, &errors, sink);
-        return None;
-    }
+    let root = table(text, sink)?;
     let mut fields = Fields::new(String::new(), 0..0, root.get_ref());
     version(&mut fields, sink);
     let found = controller::controller(&mut fields, Some(joints), sink);
