@@ -5,7 +5,7 @@ use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Sweeps of the iteration at most, many times what it takes.
-const MOST_SWEEPS: usize = 100_000;
+pub(crate) const MOST_SWEEPS: usize = 100_000;
 
 /// Largest entry of what is balanced: with larger ones squares of norms overflow, and balancing does not end.
 const LARGEST: f64 = 1e140;

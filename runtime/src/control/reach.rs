@@ -5,8 +5,8 @@
 //! or grow by 1e-16 to 1e-8 of the rates of A, and the solver would find a huge cost for it instead of none.
 
 use super::scales;
-use crate::eigen::eigenvalues;
-use nalgebra::{Complex, ComplexField, DMatrix, DVector};
+use crate::eigen::{MOST_SWEEPS, eigenvalues};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector, SVD};
 
 /// Regularity of `A − μ` that passes for none, of rows and columns of norm 1: some hundred roundings, times 1e4 for the conditioning of coordinates.
 const SINGULAR: f64 = 1e-10;
@@ -55,8 +55,8 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
     if !a.iter().chain(b.iter()).all(|x| x.is_finite()) {
         return None;
     }
-    // The same motions in states of like size: units of states and inputs must not decide.
-    let (balanced, reach) = scales::balanced(a, b)?;
+    // The same motions in states of like size: units of states and inputs must not decide. Inputs of size 1 have norms that are numbers.
+    let (balanced, reach) = scales::balanced(a, &of_size_one(b))?;
     let values = eigenvalues(balanced.clone())?;
     let mut lasting = values
         .iter()
@@ -68,6 +68,15 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
             eigenvalue: [value.re, value.im],
         })
     })
+}
+
+/// The matrix with columns whose largest entry is 1.
+fn of_size_one(b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut columns = b.clone();
+    for mut column in columns.column_iter_mut() {
+        column /= size_of(column.amax());
+    }
+    columns
 }
 
 /// Whether the motion of an eigenvalue does not fade, or might not but for rounding: whether `A − μ` is regular at the nearest μ that does not.
@@ -122,9 +131,10 @@ fn size_of(norm: f64) -> f64 {
     if norm > 0.0 { norm } else { 1.0 }
 }
 
-/// The state that has the largest part in the direction in which rows reach no further than `least`.
+/// The state that has the largest part in the direction in which rows reach no further than `least`. `None` also where the singular values
+/// cannot be found.
 fn faint((whole, sizes): (DMatrix<Complex<f64>>, DVector<f64>), least: f64) -> Option<usize> {
-    let found = whole.svd(true, false);
+    let found = SVD::try_new(whole, true, false, 5.0 * f64::EPSILON, MOST_SWEEPS)?;
     let singular = found.singular_values.iter().enumerate();
     let (place, _) = singular
         .min_by(|left, right| left.1.total_cmp(right.1))
@@ -132,4 +142,26 @@ fn faint((whole, sizes): (DMatrix<Complex<f64>>, DVector<f64>), least: f64) -> O
     let direction = found.u?;
     let part = |state: usize| direction[(state, place)].modulus() / sizes[state];
     (0..sizes.len()).max_by(|&i, &j| part(i).total_cmp(&part(j)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Time, beyond};
+    use nalgebra::DMatrix;
+
+    /// Squares of these entries are beyond doubles: the norms were infinite, and the singular values were looked for without an end.
+    #[test]
+    fn inputs_and_weights_of_any_size_are_judged() {
+        let oscillator = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, 0.0]);
+        for size in [1e308, 1e-308, f64::MAX] {
+            let reached = DMatrix::from_row_slice(2, 2, &[size, 0.0, 0.0, 2.0]);
+            for time in [Time::Continuous, Time::Discrete] {
+                assert_eq!(beyond(&oscillator, &reached, time), None, "{size}");
+            }
+            let drift = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, 0.0]);
+            let missed = DMatrix::from_row_slice(2, 1, &[size, 0.0]);
+            let found = beyond(&drift, &missed, Time::Continuous);
+            assert_eq!(found.map(|motion| motion.state), Some(1), "{size}");
+        }
+    }
 }
