@@ -55,8 +55,8 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
     if !a.iter().chain(b.iter()).all(|x| x.is_finite()) {
         return None;
     }
-    // The same motions in states of like size: units of states and inputs must not decide. Inputs of size 1 have norms that are numbers.
-    let (balanced, reach) = scales::balanced(a, &of_size_one(b))?;
+    // The same motions in states of like size: units of states and inputs must not decide.
+    let (balanced, reach) = scales::balanced(a, b)?;
     let values = eigenvalues(balanced.clone())?;
     let mut lasting = values
         .iter()
@@ -68,15 +68,6 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
             eigenvalue: [value.re, value.im],
         })
     })
-}
-
-/// The matrix with columns whose largest entry is 1.
-fn of_size_one(b: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut columns = b.clone();
-    for mut column in columns.column_iter_mut() {
-        column /= size_of(column.amax());
-    }
-    columns
 }
 
 /// Whether the motion of an eigenvalue does not fade, or might not but for rounding: whether `A − μ` is regular at the nearest μ that does not.
@@ -149,7 +140,8 @@ mod tests {
     use super::{Time, beyond};
     use nalgebra::DMatrix;
 
-    /// Squares of these entries are beyond doubles: the norms were infinite, and the singular values were looked for without an end.
+    /// Squares of these entries are beyond doubles: with norms that are infinite or 0, what is reached passes for missed, or the singular values
+    /// are looked for without an end.
     #[test]
     fn inputs_and_weights_of_any_size_are_judged() {
         let oscillator = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, 0.0]);

@@ -39,7 +39,7 @@ pub(super) fn divided(b: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
 /// A and B with states of like size, also as the inputs move them, and inputs that do no more in any state than its own motion.
 pub(super) fn balanced(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     let first = balance(&mut a.clone())?;
-    let (own, driven) = (similar(a, &first), divided(b, &first));
+    let (own, driven) = (similar(a, &first), divided(&of_size_one(b), &first));
     let n = a.nrows();
     let mut loops = loops(&own, &driven);
     let scales = balance(&mut loops)?.rows(0, n).into_owned();
@@ -56,6 +56,18 @@ pub(super) fn balanced(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Option<(DMatrix<f6
         }
     }
     Some((a, b))
+}
+
+/// The matrix with columns whose largest entry is 1: squares of larger ones may be beyond doubles, and norms with them.
+fn of_size_one(b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut columns = b.clone();
+    for mut column in columns.column_iter_mut() {
+        let largest = column.amax();
+        if largest > 0.0 {
+            column /= largest;
+        }
+    }
+    columns
 }
 
 /// A and B with a feedback that closes each way of B by the rate of the state it drives.
