@@ -156,4 +156,20 @@ mod tests {
             assert_eq!(found.map(|motion| motion.state), Some(1), "{size}");
         }
     }
+
+    /// A ball joint whose attitudes weigh 1e308: a scene that a fuzzer found, for which the singular values were looked for without an end.
+    #[test]
+    fn huge_weights_of_attitudes_beside_small_ones_of_rates_end() {
+        let states = DMatrix::from_fn(6, 6, |i, j| match (i, j) {
+            (0..=2, 3..=5) if j == i + 3 => 1.0,
+            (3..=5, 0..=2) if i == j + 3 && j < 2 => -2.4,
+            (3, 1) | (4, 2) => 0.3,
+            _ => 0.0,
+        });
+        let weights = |i: usize| if i < 3 { 1.01e308 } else { 2.0 };
+        let weights = DMatrix::from_fn(6, 6, |i, j| if i == j { weights(i) } else { 0.0 });
+        for time in [Time::Continuous, Time::Discrete] {
+            assert_eq!(beyond(&states.transpose(), &weights, time), None);
+        }
+    }
 }
