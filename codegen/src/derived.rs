@@ -5,6 +5,7 @@ use crate::emit::names::Names;
 use crate::expr::{Expr, Rational, Role, Symbol};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The kernels of a joint, in the order in which they are emitted: one method each of the runtime's `Joint` trait.
@@ -83,7 +84,8 @@ impl Structure {
         let entries = || outputs.iter().flat_map(Matrix::entries);
         let moves = |entry: &Expr| {
             let symbols = entry.symbols();
-            symbols.iter().any(|symbol| symbol.role == Role::Coordinate)
+            let moving = [Role::Coordinate, Role::Intermediate];
+            symbols.iter().any(|symbol| moving.contains(&symbol.role))
         };
         match outputs {
             _ if outputs.iter().all(Matrix::is_zero) => Self::Zero,
@@ -160,6 +162,21 @@ pub struct Kernel {
     pub structure: Structure,
 }
 
+impl Kernel {
+    /// The results with the values of the lines before them in their places, as far as these have formulas.
+    pub fn expanded(&self) -> Vec<Matrix> {
+        let mut values: BTreeMap<Symbol, Expr> = BTreeMap::new();
+        for step in &self.steps {
+            if let Step::Let(symbol, value) = step {
+                let value = value.substitute(&values);
+                values.insert(symbol.clone(), value);
+            }
+        }
+        let put_in = |output: &Matrix| output.map(|entry| entry.substitute(&values));
+        self.outputs.iter().map(put_in).collect()
+    }
+}
+
 /// Sizes of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
@@ -229,6 +246,26 @@ pub struct Claim {
     pub points: usize,
 }
 
+/// A value that kernels name in a line of their own: a `let` of the spec, an entry of one, or a derivative of that.
+#[derive(Clone, Debug)]
+pub struct Word {
+    /// Its name.
+    pub symbol: Symbol,
+    /// Its value in stored scalars, parameters and the words before it.
+    pub value: Expr,
+    /// The `let` or its entry: the name itself, but for derivatives.
+    pub base: String,
+    /// The freedoms along which a derivative is taken, one after the other.
+    pub along: Vec<usize>,
+}
+
+impl Word {
+    /// Whether it is a derivative of a `let`.
+    pub fn is_derivative(&self) -> bool {
+        !self.along.is_empty()
+    }
+}
+
 /// A joint with all that follows from its spec.
 #[derive(Clone, Debug)]
 pub struct Derived {
@@ -244,6 +281,8 @@ pub struct Derived {
     pub arguments: Arguments,
     /// All kernels, in the order of [`KernelKind`].
     pub kernels: Vec<Kernel>,
+    /// What kernels name in lines of their own, each after those in its value.
+    pub words: Vec<Word>,
     /// ∂Φ/∂ϕ of the stored scalars at ϕ = 0, N×K.
     pub tangent: Matrix,
     /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame, 6×K.

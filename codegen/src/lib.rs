@@ -21,6 +21,7 @@ pub mod precise;
 pub mod prove;
 #[cfg(feature = "scene")]
 pub mod scene;
+mod simplify;
 pub mod source;
 pub mod spec;
 

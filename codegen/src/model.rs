@@ -87,6 +87,30 @@ pub struct Requirement {
     pub text: String,
 }
 
+/// A scalar that the author names: a `let`, or an entry of one.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// `lean`; `contact1` for an entry of a vector, `arm11` for one of a matrix.
+    pub symbol: Symbol,
+    /// Its value in parameters, stored scalars and the names before it.
+    pub value: Expr,
+}
+
+/// What a spec declares in the author's own names.
+#[derive(Clone, Debug, Default)]
+pub struct Worded {
+    /// The `let`s, entry by entry, in order.
+    pub named: Vec<Named>,
+    /// H.
+    pub pose: Option<PoseExpr>,
+    /// X, where declared.
+    pub twist_map: Option<Matrix>,
+    /// A, where declared.
+    pub constraint: Option<Matrix>,
+    /// S̄, where declared.
+    pub speed_basis: Option<Matrix>,
+}
+
 /// One direction of local motion: a local coordinate ϕ and a velocity v of the same name.
 #[derive(Clone, Debug)]
 pub struct Freedom {
@@ -156,6 +180,8 @@ pub struct JointSpec {
     pub speed_basis: Option<Declared<Matrix>>,
     /// Names of the speeds, where declared.
     pub speed_names: Option<Declared<Vec<String>>>,
+    /// The same in the author's names.
+    pub worded: Worded,
     /// Claims that need no proof.
     pub unproved: Vec<Declared<Unproved>>,
 }

@@ -88,6 +88,7 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     name_sides(&mut spec, &expansion);
     budget::begin(task::KERNELS);
     let kernels = expand::kernels(&spec, &expansion)?;
+    let (kernels, words) = crate::simplify::in_words(&spec, &expansion, kernels);
     if let Some(number) = expand::beyond_doubles(&kernels) {
         return Err(vec![beyond_doubles(&spec, &number)]);
     }
@@ -105,6 +106,7 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
         arguments: expansion.arguments,
         imperceptible: expansion.imperceptible,
         kernels,
+        words,
         claims,
         programs: Programs::default(),
         spec,

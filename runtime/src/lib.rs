@@ -31,6 +31,7 @@ pub mod erased;
 #[path = "unshared.rs"]
 pub mod erased;
 pub mod finite;
+pub mod group;
 #[cfg(feature = "alloc")]
 pub mod integrate;
 pub mod joint;

@@ -33,6 +33,15 @@ const RESERVED: &[&str] = &[
     "tangent",
     "tangent_there",
     "from_rows",
+    "rows_at",
+    "dot",
+    "part",
+    "put",
+    "put_block",
+    "stacked",
+    "differential",
+    "local_rate",
+    "nearest",
     "self",
     "core",
     "hamel",
@@ -81,7 +90,8 @@ pub struct NameSet {
 }
 
 impl NameSet {
-    fn is_free(&self, name: &str) -> bool {
+    /// Whether nothing has this name yet.
+    pub fn is_free(&self, name: &str) -> bool {
         !self.taken.contains(name)
     }
 

@@ -66,7 +66,7 @@ pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
 }
 
 /// Coordinates in the declared basis of the element with the given standard coordinates.
-fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Vec<Expr> {
+pub fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Vec<Expr> {
     let columns: Vec<Vec<Expr>> = freedoms
         .iter()
         .map(|freedom| freedom.generator.clone())

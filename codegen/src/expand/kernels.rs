@@ -4,22 +4,11 @@ use super::{Expansion, finite, general, hamel};
 use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
-use crate::expr::{Expr, Symbol};
+use crate::expr::Symbol;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use crate::spec::code;
-
-/// Most terms of Ẋ̄^c that are multiplied out: a little more than the longest of the library, that of the ellipsoid.
-const LONGEST_RATE: usize = 250;
-
-fn terms_of(matrix: &Matrix) -> usize {
-    matrix
-        .entries()
-        .iter()
-        .map(|entry| entry.terms().len())
-        .sum()
-}
 
 /// All kernels of a joint.
 pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
@@ -32,7 +21,6 @@ pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, V
     let mut kernels = maker.pose_and_velocity();
     kernels.extend(maker.nonholonomic());
     kernels.extend(maker.finite_maps()?);
-    kernels.extend(maker.bias());
     kernels.sort_by_key(|kernel| kernel.kind);
     Ok(kernels)
 }
@@ -222,47 +210,6 @@ impl Maker<'_> {
             .velocity_map_inverse
             .times(&Matrix::symbols(&self.x.arguments.velocity));
         self.short(&self.x.motion.tangent().times(&rates))
-    }
-
-    /// `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`, with `ϕ̇ = S₀⁻¹ S̄ v̄`.
-    fn bias(&self) -> Vec<Kernel> {
-        let basis = &self.x.nonholonomic.speed_basis;
-        let speeds = Matrix::symbols(&self.x.arguments.speeds);
-        let rates = self.short(&self.x.velocity_map_inverse.times(basis).times(&speeds));
-        let zero = Matrix::zeros(6, basis.columns());
-        let slopes = self.child_slopes.iter().zip(&self.x.nonholonomic.slopes);
-        let rate = slopes
-            .enumerate()
-            .fold(zero, |sum, (k, (child, of_basis))| {
-                let moved = self.x.twist_map_child.times(of_basis);
-                sum.plus(&child.times(basis).plus(&moved).scale(rates.at(k, 0)))
-            });
-        let rate = self.short(&rate);
-        let rate = match terms_of(&rate) > LONGEST_RATE {
-            true => self.grouped_rate(&rates),
-            false => rate,
-        };
-        let acceleration = rate.times(&speeds);
-        let momentum = rate
-            .transpose()
-            .times(&Matrix::symbols(&self.x.arguments.wrench));
-        vec![
-            plain(KernelKind::BiasAcceleration, vec![acceleration]),
-            plain(KernelKind::BiasMomentum, vec![momentum]),
-        ]
-    }
-
-    /// Ẋ̄^c from derivatives of X̄^c, with sums kept together: multiplied out, products of long ones would be longer than anything
-    /// can be made of.
-    fn grouped_rate(&self, rates: &Matrix) -> Matrix {
-        let map = speed_map(self.spec, self.x);
-        let grouped = |k: usize| {
-            let slope = self.short(&self.x.motion.along_each(&map, k));
-            slope.map(Expr::grouped).scale(&rates.at(k, 0).grouped())
-        };
-        let zero = Matrix::zeros(map.rows(), map.columns());
-        let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| sum.plus(&grouped(k)));
-        rate.map(Expr::grouped)
     }
 }
 

@@ -6,7 +6,7 @@ mod complement;
 pub(crate) mod dimension;
 mod directions;
 mod elimination;
-mod finite;
+pub(crate) mod finite;
 mod general;
 mod hamel;
 mod imperceptible;
@@ -25,6 +25,7 @@ pub use kernels::{kernels, speed_map};
 pub use motion::{Motion, exponential, local_element};
 pub use nonholonomic::{Nonholonomic, speed_names};
 pub use numbers::beyond_doubles;
+pub use steps::Steps;
 pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
 
 use crate::algebra;

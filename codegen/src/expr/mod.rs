@@ -130,6 +130,11 @@ impl Expr {
         }
     }
 
+    /// Whether a name would say nothing more: a number, a parameter, a symbol, or the opposite of one.
+    pub fn is_plain(&self) -> bool {
+        self.is_constant() || self.as_symbol().is_some() || (-self).as_symbol().is_some()
+    }
+
     /// Whether this depends on no symbol but parameters.
     pub fn is_constant(&self) -> bool {
         self.symbols()

@@ -88,8 +88,8 @@ impl Products {
         let wrench = Matrix::symbols(&arguments.wrench);
         let map = &derived.speed_map;
         let bias = derived.kernel(KernelKind::BiasAcceleration);
-        let bias = bias.and_then(|kernel| kernel.outputs.first());
-        let bias = bias.cloned().unwrap_or_else(|| Matrix::zeros(6, 1));
+        let bias = bias.and_then(|kernel| kernel.expanded().into_iter().next());
+        let bias = bias.unwrap_or_else(|| Matrix::zeros(6, 1));
         let along = |column: &Matrix| Product::new(along_each(derived, column));
         Self {
             local_twist_map: Product::new(derived.local_twist_map.clone()),

@@ -7,6 +7,7 @@ mod count;
 mod divisor;
 mod exponential;
 mod factor;
+mod few;
 mod fused;
 mod numbered;
 mod pairs;

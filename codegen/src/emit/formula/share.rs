@@ -2,6 +2,7 @@
 
 use super::divisor::shared_sums;
 use super::exponential::in_range;
+use super::few::{named, with_few_shared};
 use super::pairs::extract_pairs;
 use super::reciprocal::share_reciprocals;
 use super::shapes::{Shape, Shapes};
@@ -67,7 +68,7 @@ impl Binding {
 }
 
 /// A kernel's body: lines in order, then the entries of all its outputs, one matrix after the other, row by row.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Program {
     /// The lines before the result.
     pub bindings: Vec<Binding>,
@@ -103,12 +104,21 @@ impl Program {
             sharing.step(step, &mut remaining);
         }
         let outputs = remaining.map(|formula| sharing.rewrite(formula)).collect();
+        let mut names = sharing.taken;
         Self {
             bindings: sharing.bindings,
             outputs,
         }
         .mapped(&|node| node.opened().polished())
         .pruned()
+        .few(&mut names)
+    }
+
+    /// With few shared values, called by a letter and an index where no name says what they are.
+    fn few(self, names: &mut NameSet) -> Self {
+        let is_shared = |name: &Symbol| usize::from(name.index) >= FIRST_INDEX;
+        let few = with_few_shared(self, is_shared).pruned();
+        named(few, names, is_shared)
     }
 
     /// Without lines whose results nothing uses.
@@ -124,7 +134,7 @@ impl Program {
         }
     }
 
-    fn mapped(mut self, f: &impl Fn(&Node) -> Node) -> Self {
+    pub(super) fn mapped(mut self, f: &impl Fn(&Node) -> Node) -> Self {
         let map = |node: &mut Node| *node = f(node);
         for binding in &mut self.bindings {
             match binding {
@@ -299,7 +309,9 @@ impl Sharing {
     }
 
     fn bind(&mut self, formula: usize, value: Node) -> Node {
-        let name = self.fresh(&describe(&value));
+        self.count += 1;
+        let name = format!("shared{}", self.count);
+        let name = Symbol::new(Role::Intermediate, FIRST_INDEX + self.count, &name);
         let symbol = Node::Symbol(name.clone());
         self.names.insert(formula, symbol.clone());
         self.bindings.push(Binding::Value { name, value });

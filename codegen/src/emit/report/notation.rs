@@ -1,7 +1,7 @@
 //! How a joint's symbols and expressions are set, in the symbols of the paper: `Q₁₁ v₁ − ½ (a + b)`.
 
 use super::typeset::{Equation, Mark, Math, composed, named};
-use crate::derived::Derived;
+use crate::derived::{Derived, Word};
 use crate::emit::formula::{Node, factored};
 use crate::expr::{Expr, Symbol};
 use crate::manifold::{Factor, Kind};
@@ -47,7 +47,23 @@ impl Notation {
         for parameter in &derived.spec.parameters {
             by_symbol.insert(parameter.symbol.clone(), named(&parameter.symbol.name));
         }
-        Self { by_symbol }
+        let mut notation = Self { by_symbol };
+        for word in &derived.words {
+            notation.name_word(word, &arguments.local);
+        }
+        notation
+    }
+
+    /// A derivative is set as one: `∂lean/∂ϕ₁`.
+    fn name_word(&mut self, word: &Word, locals: &[Symbol]) {
+        let name = word.along.iter().fold(named(&word.base), |name, &k| {
+            let name = match name {
+                Math::Partial(..) => name.grouped(),
+                name => name,
+            };
+            Math::Partial(Box::new(name), Box::new(self.set_symbol(&locals[k])))
+        });
+        self.name(&word.symbol, name);
     }
 
     /// A symbol, set.

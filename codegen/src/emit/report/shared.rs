@@ -26,6 +26,8 @@ pub fn equations(
     let mut definitions = vec![];
     for binding in &program.bindings {
         match binding {
+            // Names of the spec are told once, before all formulas.
+            Binding::Value { name, .. } if is_word(derived, name) => {}
             Binding::Value { name, value } => {
                 let left = Math::Letter('w').with_index(Math::integer(definitions.len() + 1));
                 let right = notation.formula(value);
@@ -62,4 +64,8 @@ pub fn equations(
             .chain(definitions)
             .collect(),
     )
+}
+
+fn is_word(derived: &Derived, name: &Symbol) -> bool {
+    derived.words.iter().any(|word| word.symbol == *name)
 }

@@ -6,7 +6,7 @@ use super::units;
 use crate::derived::{Claim, Derived, Kernel, Method as FoundBy, Structure};
 use crate::emit::formula::Counts;
 use crate::emit::names::Names;
-use crate::emit::rust::Method;
+use crate::emit::rust::{self, Method};
 use crate::expr::Rational;
 use crate::model::Parameter;
 use num_traits::{One, Zero};
@@ -138,11 +138,15 @@ pub(super) fn counts(derived: &Derived) -> Vec<CountRow> {
     let names = Names::new(derived);
     let row = |kernel: &Kernel| {
         let method = Method::new(derived, kernel, &names);
+        let products = rust::products(derived, kernel);
         CountRow {
             kernel: method.name().to_owned(),
             structure: structure_in_words(kernel.structure).to_owned(),
-            operations: method.counts(),
-            besides: besides(kernel.method),
+            operations: products.unwrap_or_else(|| method.counts()),
+            besides: products.map_or_else(
+                || besides(kernel.method),
+                |_| Some("all by products of other kernels"),
+            ),
         }
     };
     derived.kernels.iter().map(row).collect()

@@ -1,5 +1,7 @@
 //! Documentation of emitted code: what a kernel maps, its shape, frame and units, its equation, its cost.
 
+use super::absent;
+use super::bias;
 use super::kernel::Method;
 use super::numeric;
 use super::signature::{Output, Signature};
@@ -43,6 +45,7 @@ pub fn module(derived: &Derived) -> TokenStream {
     };
     lines.push(String::new());
     lines.extend(storage(derived, &report));
+    lines.extend(absent::in_words(derived));
     lines.extend([String::new(), "```text".into()]);
     for (i, formula) in main_formulas(derived).into_iter().enumerate() {
         lines.extend((i > 0).then(String::new));
@@ -103,15 +106,30 @@ fn claims(report: &Report) -> Vec<String> {
 
 /// The documentation of a kernel.
 pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenStream {
-    let mut lines = vec![meaning(kernel.kind).to_owned(), String::new()];
+    let mut lines = vec![meaning(kernel.kind).to_owned()];
     let shape = shape_of(derived, kernel);
     let cost = match numeric::sentence(kernel) {
         Some(sentence) => sentence.to_owned(),
-        None => format!("Operations: {}.", method.counts()),
+        None => format!(
+            "Operations: {}{}.",
+            method.counts(),
+            instead(derived, kernel)
+        ),
     };
     lines.push(format!("{shape}{} {cost}", constancy(kernel.structure)));
     lines.extend(origin(&sources(&derived.spec, kernel.kind)));
     outer(&lines)
+}
+
+/// What the products of other kernels would take, for a kernel that follows from them.
+fn instead(derived: &Derived, kernel: &Kernel) -> String {
+    match kernel.kind {
+        KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
+            let products = bias::operations(derived, kernel.kind).total();
+            format!(", instead of {products} operations by products")
+        }
+        _ => String::new(),
+    }
 }
 
 /// The statements of the spec that a kernel comes from: one in full, several by line and first word.
@@ -132,7 +150,7 @@ fn origin(sources: &[Statement]) -> Vec<String> {
             several.iter().map(short).collect::<Vec<_>>().join(", ")
         }
     };
-    vec![String::new(), format!("From {text}.")]
+    vec![format!("From {text}.")]
 }
 
 fn constancy(structure: Structure) -> &'static str {

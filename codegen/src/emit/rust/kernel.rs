@@ -1,8 +1,8 @@
 //! One kernel as a method of the trait `Joint`.
 
-use super::comment::comment;
+use super::collect_identifiers;
+use super::group::Calls;
 use super::numeric;
-use super::origin::Origins;
 use super::result;
 use super::signature::{Argument, Signature};
 use super::tokens::{Writer, ident};
@@ -10,6 +10,7 @@ use crate::derived::{self, Derived, Kernel, KernelKind, Primitive};
 use crate::emit::formula::{Binding, Counts, Program};
 use crate::emit::names::Names;
 use crate::expr::{Role, Symbol};
+use crate::matrix::Matrix;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
@@ -26,6 +27,8 @@ pub struct Method<'a> {
     names: Names,
     program: Arc<Program>,
     used: BTreeSet<Symbol>,
+    /// The calls of groups that compute it, instead of its formulas.
+    calls: Option<Calls<'a>>,
 }
 
 /// Name of the method of a kernel.
@@ -37,9 +40,19 @@ impl<'a> Method<'a> {
     /// Factors and names what the kernel computes.
     pub fn new(derived: &'a Derived, kernel: &'a Kernel, names: &Names) -> Self {
         let mut names = names.clone();
-        let bound = kernel.steps.iter().flat_map(derived::Step::bound);
-        bound.for_each(|symbol| names.claim(symbol));
-        let program = derived.program(kernel);
+        let calls = Calls::new(derived, kernel);
+        let program = match &calls {
+            Some(calls) => {
+                calls.bound().iter().for_each(|symbol| names.claim(symbol));
+                let entries = Matrix::column_vector(calls.expressions());
+                Arc::new(Program::new(&[], &[entries], names.taken()))
+            }
+            None => {
+                let bound = kernel.steps.iter().flat_map(derived::Step::bound);
+                bound.for_each(|symbol| names.claim(symbol));
+                derived.program(kernel)
+            }
+        };
         program
             .bindings
             .iter()
@@ -54,6 +67,7 @@ impl<'a> Method<'a> {
             names,
             program,
             used,
+            calls,
         }
     }
 
@@ -70,6 +84,10 @@ impl<'a> Method<'a> {
     /// The operations of the emitted method.
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::of_program(&self.program);
+        if let Some(calls) = &self.calls {
+            counts += calls.counts();
+            return counts;
+        }
         let relations = self.program.outputs.len();
         if self.kernel.kind == KernelKind::Residual && relations > 0 {
             counts += Counts {
@@ -93,8 +111,9 @@ impl<'a> Method<'a> {
             }
             None => self.body(),
         };
+        let read = identifiers(&body);
         let arguments = self.signature.arguments.iter().map(|&argument| {
-            let is_read = whole.map_or_else(|| self.reads(argument), |whole| whole == argument);
+            let is_read = read.contains(argument.name());
             let name = ident(&format!(
                 "{}{}",
                 if is_read { "" } else { "_" },
@@ -111,8 +130,8 @@ impl<'a> Method<'a> {
 
     /// The argument that is returned as it stands, if the kernel does just that.
     fn returned_argument(&self) -> Option<Argument> {
-        self.whole_argument()
-            .filter(|_| self.kernel.method == derived::Method::Formula)
+        let is_formula = self.kernel.method == derived::Method::Formula && self.calls.is_none();
+        self.whole_argument().filter(|_| is_formula)
     }
 
     /// The argument that the formulas are, if they are just that.
@@ -135,19 +154,6 @@ impl<'a> Method<'a> {
             .find(is_it)
             .copied()
             .filter(|_| returns_vector)
-    }
-
-    fn reads(&self, argument: Argument) -> bool {
-        let calls = self.kernel.method != derived::Method::Formula;
-        // What calls the runtime hands its arguments on.
-        calls || self.reads_scalars(argument)
-    }
-
-    fn reads_scalars(&self, argument: Argument) -> bool {
-        argument
-            .symbols(&self.derived.arguments)
-            .iter()
-            .any(|symbol| self.used.contains(symbol))
     }
 
     fn body(&self) -> TokenStream {
@@ -190,35 +196,23 @@ impl<'a> Method<'a> {
             .arguments
             .iter()
             .map(|argument| self.read(*argument));
+        let lines = self.calls.as_ref().map(|calls| calls.lines(&writer));
         let bindings = self.bindings(&writer);
-        let result = result::tokens(&writer, self.kernel, &self.signature, &self.program.outputs);
+        let outputs = &self.program.outputs;
+        let result = match &self.calls {
+            Some(calls) => calls.result(&writer, outputs),
+            None => result::tokens(&writer, self.kernel, &self.signature, outputs),
+        };
         let constants = writer.constants();
-        quote! { #(#parameters)* #(#arguments)* #constants #bindings #result }
+        quote! { #(#parameters)* #(#arguments)* #lines #constants #bindings #result }
     }
 
-    /// The lines before the result; above those that compute functions of one statement, where it stands in the spec.
+    /// The lines before the result.
     fn bindings(&self, writer: &Writer<'_>) -> TokenStream {
-        let bindings = &self.program.bindings;
-        let origins = Origins::new(self.derived, self.kernel.kind);
-        let origins = origins.of(bindings);
-        let lines = bindings.iter().enumerate().map(|(i, binding)| {
-            let line = self.binding(writer, binding);
-            let begins = i == 0 || origins[i - 1] != origins[i];
-            match origins[i].filter(|_| begins) {
-                Some(origin) => {
-                    let group = bindings[i..].iter().zip(&origins[i..]);
-                    let group = group.take_while(|(_, other)| **other == Some(origin));
-                    let names: Vec<&str> = group
-                        .flat_map(|(binding, _)| binding.names())
-                        .map(|name| self.names.get(name))
-                        .collect();
-                    let comment = comment(&format!("{origin}: {}", names.join(", ")));
-                    quote! { #comment #line }
-                }
-                None => line,
-            }
-        });
-        lines.collect()
+        let bindings = self.program.bindings.iter();
+        bindings
+            .map(|binding| self.binding(writer, binding))
+            .collect()
     }
 
     /// Reads from an argument the scalars that are used.
@@ -291,7 +285,13 @@ impl<'a> Method<'a> {
     }
 }
 
-/// The symbols that a kernel's lines bind.
+/// Every identifier in the tokens.
+fn identifiers(tokens: &TokenStream) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    collect_identifiers(tokens.clone(), &mut found);
+    found
+}
+
 /// A call of the runtime; `names` are its results, row by row.
 fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> TokenStream {
     match primitive {

@@ -1,15 +1,18 @@
 //! Rust source of a joint: one module with its type, its kernels and its registry entry.
 
+mod absent;
+mod bias;
 mod comment;
 mod docs;
 mod entry;
 mod example;
+pub mod group;
 mod index;
 mod joint;
 mod kernel;
 mod limits;
+mod lines;
 mod numeric;
-mod origin;
 mod patterns;
 mod result;
 mod signature;
@@ -18,6 +21,7 @@ mod spacing;
 mod tests;
 mod tokens;
 
+pub use bias::products;
 pub use comment::comment;
 pub use docs::meaning;
 pub use index::{Index, index};
@@ -32,7 +36,7 @@ use std::collections::BTreeSet;
 use tokens::ident;
 
 /// Version of the runtime's trait `Joint` that is emitted.
-pub const KERNEL_INTERFACE: u32 = 5;
+pub const KERNEL_INTERFACE: u32 = 6;
 
 /// The first line of an emitted file, without the comment signs. `label` is the spec's path as the reader knows it.
 pub fn header(label: &str) -> String {
@@ -54,7 +58,8 @@ pub fn file(derived: &Derived, label: &str) -> Result<String, WriteError> {
 /// Simplifies the formulas of all kernels, which takes most of the time of writing: whoever writes them finds them simplified.
 pub(crate) fn simplify(derived: &Derived) {
     let names = Names::new(derived);
-    for kernel in &derived.kernels {
+    let written = |kernel: &&crate::derived::Kernel| absent::absent(derived, kernel).is_none();
+    for kernel in derived.kernels.iter().filter(written) {
         Method::new(derived, kernel, &names);
     }
 }
@@ -82,8 +87,25 @@ fn items(derived: &Derived) -> TokenStream {
 }
 
 /// What an emitted file may import, by module. Functions that `build` calls are not among them: a parameter may have their names.
-fn imports() -> [(TokenStream, &'static [&'static str]); 5] {
+fn imports() -> [(TokenStream, &'static [&'static str]); 6] {
     [
+        (
+            quote! { ::hamel::group },
+            &[
+                "part",
+                "put",
+                "put_block",
+                "real",
+                "s1",
+                "s2",
+                "s3",
+                "se2",
+                "se3",
+                "so2",
+                "so3",
+                "stacked",
+            ],
+        ),
         (
             quote! { ::hamel::joint },
             &[
@@ -93,14 +115,15 @@ fn imports() -> [(TokenStream, &'static [&'static str]); 5] {
                 "Structures",
                 "VelocityFrame",
                 "from_rows",
+                "rows_at",
             ],
         ),
         (quote! { ::hamel::nalgebra }, &["SMatrix", "SVector"]),
         (
             quote! { ::hamel::registry },
-            &["JointEntry", "Limit", "ParameterError", "ParameterInfo"],
+            &["JointEntry", "ParameterError", "ParameterInfo"],
         ),
-        (quote! { ::hamel::scalar }, &["Scalar"]),
+        (quote! { ::hamel::scalar }, &["Scalar", "dot"]),
         (quote! { ::hamel::spatial }, &["Pose", "nearest_rotation"]),
     ]
 }

@@ -166,11 +166,8 @@ fn complete(derived: &Derived) -> Derived {
     let mut complete = derived.clone();
     let of = |kind: KernelKind| -> Option<Declared<Matrix>> {
         let kernel = derived.kernel(kind)?;
-        let value = kernel.outputs.first()?.clone();
-        kernel
-            .steps
-            .is_empty()
-            .then_some(Declared { value, span: 0..0 })
+        let value = kernel.expanded().into_iter().next()?;
+        Some(Declared { value, span: 0..0 })
     };
     if derived.shape.constraints > 0 {
         let spec = &mut complete.spec;
