@@ -186,6 +186,19 @@ pub struct JointSpec {
     pub unproved: Vec<Declared<Unproved>>,
 }
 
+/// The claims that a spec may leave unproved: identities.
+pub const CHECKABLE: &[&str] = &[
+    "pose_in_se3",
+    "retract_at_zero",
+    "retract_on_manifold",
+    "twist_map_in_frame",
+    "twist_map_matches_pose",
+    "velocity_map_first_order",
+    "velocity_map_inverse",
+    "twist_map_child",
+    "speeds_meet_constraint",
+];
+
 /// A claim that the author wants to rest on evaluation at points.
 #[derive(Clone, Debug)]
 pub struct Unproved {

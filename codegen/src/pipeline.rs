@@ -1,16 +1,19 @@
 //! The whole pipeline: text in, proven kernels out.
 
-use crate::derived::{Derived, Kernel, Programs};
+use crate::derived::Derived;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::domain::{Critical, Domain};
 use crate::expand::task;
 use crate::expand::{self, Expansion};
 use crate::expr::budget::{self, Exhausted};
 use crate::expr::{Expr, Rational};
+use crate::formula::{Names, Program};
+use crate::kernel::{Kernel, KernelKind};
 use crate::matrix::Matrix;
 use crate::model::{Declared, JointSpec, Locus};
 use crate::{prove, spec};
 use num_bigint::BigInt;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Bound on symbolic work for one joint, in term operations: less than a second, also on a machine that is busy. The largest joint of
@@ -92,9 +95,10 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     if let Some(number) = expand::beyond_doubles(&kernels) {
         return Err(vec![beyond_doubles(&spec, &number)]);
     }
-    let ideal = spec.manifold.value.ideal();
     budget::begin(task::FORMULAS);
     kernels.iter().for_each(spend_on_formulas);
+    let programs = programs(&spec, &expansion, &kernels);
+    let ideal = spec.manifold.value.ideal();
     Ok(Derived {
         shape: expansion.shape,
         cut_out: expand::dimension::cut_out(&spec),
@@ -108,9 +112,23 @@ fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
         kernels,
         words,
         claims,
-        programs: Programs::default(),
+        programs,
         spec,
     })
+}
+
+/// The formulas of kernels in the names of their joint.
+fn programs(
+    spec: &JointSpec,
+    expansion: &Expansion,
+    kernels: &[Kernel],
+) -> BTreeMap<KernelKind, Program> {
+    let names = Names::new(&spec.parameters, &expansion.arguments);
+    let program = |kernel: &Kernel| {
+        let program = Program::in_names(&kernel.steps, &kernel.outputs, names.clone());
+        (kernel.kind, program)
+    };
+    kernels.iter().map(program).collect()
 }
 
 /// Where functions have a value on one component of the manifold alone and nothing is excepted, its border is named like an exception: the

@@ -126,7 +126,7 @@ impl<'a> Domain<'a> {
 
     /// Whether the expression is one term of a rational and parameters that are never 0.
     pub fn is_unit(&self, e: &Expr) -> bool {
-        is_unit(e) && e.symbols().is_disjoint(&self.vanishing)
+        e.is_unit() && e.symbols().is_disjoint(&self.vanishing)
     }
 
     /// Whether the expression is positive everywhere.
@@ -247,11 +247,6 @@ fn under_root(expression: &Expr) -> Option<Expr> {
 fn away_from((index, locus): (usize, &Expr)) -> Expr {
     let t = Symbol::new(Role::Intermediate, index, "inverse_of_locus");
     &Expr::one() - &(&Expr::symbol(&t) * locus)
-}
-
-/// Whether the expression is one term of a rational and parameters.
-pub fn is_unit(e: &Expr) -> bool {
-    e.terms().len() == 1 && e.leading().is_some_and(|(monomial, _)| monomial.is_unit())
 }
 
 /// The expression of one monomial.

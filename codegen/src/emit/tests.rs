@@ -1,11 +1,12 @@
 //! What is emitted from whole specs: parses, is the same each time, reads as the paper does, and survives odd names.
 
-use super::names::{number_name, type_name};
 use super::rust::{Index, file, index};
+use super::types::type_name;
 use super::{Accuracy, Report, explain_text, page};
 use crate::derive;
 use crate::derived::Derived;
 use crate::expr::Rational;
+use crate::formula::names::number_name;
 
 const BALL: &str = "hamel = 1;
 /// Ball joint. Three rotations.

@@ -10,7 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::manifold::{Factor, Kind};
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, combinations};
 use crate::model::{Freedom, JointSpec};
 use crate::spec::code;
 
@@ -215,7 +215,7 @@ pub fn confinement(
     let slopes = relation_slopes(spec);
     // The k independent directions of Φ annihilate the relations, so that their rank is at most the codimension.
     let transposed = slopes.transpose();
-    let small = super::rank::combinations(transposed.columns(), codimension);
+    let small = combinations(transposed.columns(), codimension);
     let mut last = Expr::zero();
     for columns in small {
         let chosen = Matrix::from_columns(

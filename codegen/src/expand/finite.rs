@@ -3,8 +3,8 @@
 use super::motion::local_element;
 use super::steps::Steps;
 use crate::algebra;
-use crate::derived::{Primitive, Step};
 use crate::expr::{Expr, Symbol};
+use crate::kernel::{Primitive, Step};
 use crate::manifold::{Factor, Kind};
 use crate::matrix::Matrix;
 use crate::model::{Freedom, JointSpec};

@@ -1,10 +1,10 @@
 //! The kernels of a joint from its expansion, in the order in which they are emitted.
 
 use super::{Expansion, finite, general, hamel};
-use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::Symbol;
+use crate::kernel::{Kernel, KernelKind, Method, Step, Structure};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;

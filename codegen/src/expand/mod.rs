@@ -29,10 +29,10 @@ pub use steps::Steps;
 pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
 
 use crate::algebra;
-use crate::derived::{Arguments, Shape};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expr::{Expr, Role, Symbol, budget};
+use crate::kernel::{Arguments, Shape};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::{JointSpec, VelocityFrame};

@@ -95,6 +95,14 @@ impl Expr {
         self.terms.is_empty()
     }
 
+    /// Whether this is one term of a rational and parameters.
+    pub fn is_unit(&self) -> bool {
+        self.terms().len() == 1
+            && self
+                .leading()
+                .is_some_and(|(monomial, _)| monomial.is_unit())
+    }
+
     /// Whether this is one.
     pub fn is_one(&self) -> bool {
         self.as_rational().is_some_and(|value| value.is_one())

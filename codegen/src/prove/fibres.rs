@@ -1,6 +1,6 @@
 //! The fibres of H: whether one pose has one Q.
 
-use crate::derived::{Claim, Proof};
+use super::{Claim, Proof};
 use crate::domain::{Critical, Domain};
 use crate::expand::is_exponential;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol};

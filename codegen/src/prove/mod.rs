@@ -8,6 +8,7 @@
 //! undecided, unless it says `unproved` for that claim. Ranks, signs and invertibility need a certificate that holds at every
 //! configuration.
 
+mod claim;
 mod conditions;
 mod defined;
 mod degenerate;
@@ -17,10 +18,10 @@ mod retract;
 mod search;
 mod twist;
 
+pub use claim::{Claim, Proof};
 pub use conditions::wrong_conditions;
 pub use defined::retract_is_smooth;
 
-use crate::derived::{Claim, Proof};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Domain, LAST_PRECISION};
 use crate::expand::{self, Expansion};
@@ -31,19 +32,6 @@ use crate::model::{Declared, JointSpec, Unproved};
 use crate::spec::code;
 use search::{Points, Verdict};
 use std::ops::{Deref, Range};
-
-/// The claims that a spec may leave unproved: identities.
-pub const CHECKABLE: &[&str] = &[
-    "pose_in_se3",
-    "retract_at_zero",
-    "retract_on_manifold",
-    "twist_map_in_frame",
-    "twist_map_matches_pose",
-    "velocity_map_first_order",
-    "velocity_map_inverse",
-    "twist_map_child",
-    "speeds_meet_constraint",
-];
 
 /// The claims about what is declared, which need no derivation; an error of these makes errors of all others.
 pub fn prove_declared(spec: &JointSpec) -> Result<Vec<Claim>, Vec<Diagnostic>> {

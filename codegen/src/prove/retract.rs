@@ -1,7 +1,7 @@
 //! Claims about Φ: it starts at Q, stays on the manifold, and is what the generator can invert.
 
+use super::Proof;
 use super::{Attempt, Identities, Prover, certified, refuted, symbolic};
-use crate::derived::Proof;
 use crate::diagnostic::Diagnostic;
 use crate::expand::{Confinement, Motion, dimension, exponential};
 use crate::expr::{Expr, Symbol, budget};

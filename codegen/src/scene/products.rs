@@ -4,9 +4,9 @@
 //! The runtime forms the same products in numbers: `hamel::joint::Products`.
 
 use crate::derived::{Derived, KernelKind};
-use crate::emit::formula::Program;
 use crate::expr::budget::{self, Exhausted};
 use crate::expr::{Expr, Symbol};
+use crate::formula::Program;
 use crate::matrix::Matrix;
 use crate::pipeline::WORK_LIMIT;
 use std::cell::OnceCell;
@@ -51,10 +51,8 @@ impl JointType {
 
     /// The formulas of one of its products, in its own names.
     pub fn program<'a>(&self, product: &'a Product) -> &'a Program {
-        let formulas = || {
-            self.derived
-                .formulas(&[], std::slice::from_ref(&product.value))
-        };
+        let value = std::slice::from_ref(&product.value);
+        let formulas = || Program::in_names(&[], value, self.derived.names());
         product.program.get_or_init(formulas)
     }
 }

@@ -2,9 +2,9 @@
 
 use super::kernels::{LONG, least_work, terms, with_lines};
 use super::words::Words;
-use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::expand::{Expansion, Steps, speed_map};
 use crate::expr::{Expr, Symbol};
+use crate::kernel::{Kernel, KernelKind, Method, Step, Structure};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use std::collections::{BTreeMap, BTreeSet};

@@ -2,11 +2,11 @@
 
 use super::twists;
 use super::words::{Words, opened};
-use crate::derived::{Kernel, KernelKind, Method, Step, Word};
-use crate::emit::formula::{Counts, Program};
-use crate::emit::names::NameSet;
 use crate::expand::{self, Expansion};
 use crate::expr::{Expr, Symbol, budget};
+use crate::formula::names::NameSet;
+use crate::formula::{Counts, Program};
+use crate::kernel::{Kernel, KernelKind, Method, Step, Word};
 use crate::manifold::weight;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;

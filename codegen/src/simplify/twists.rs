@@ -2,9 +2,9 @@
 
 use super::kernels::{LONG, base, terms};
 use super::words::Words;
-use crate::derived::{Kernel, KernelKind};
 use crate::expand::Expansion;
 use crate::expr::Expr;
+use crate::kernel::{Kernel, KernelKind};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 

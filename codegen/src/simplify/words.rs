@@ -1,9 +1,9 @@
 //! The author's names: `let`s of the spec and their derivatives, as values that kernels are made of.
 
 use super::shortened;
-use crate::derived::Word;
 use crate::expand::Motion;
 use crate::expr::{Application, Atom, Expr, Function, Role, Symbol, budget};
+use crate::kernel::Word;
 use crate::manifold::{Ideal, weight};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;

@@ -1,6 +1,6 @@
 //! The operations that documentation and pages tell of group functions are those that the runtime does.
 
-use hamel_codegen::emit::rust::group::FUNCTIONS;
+use hamel_codegen::emit::method::group::FUNCTIONS;
 
 #[test]
 fn group_functions_do_the_operations_that_are_told() {

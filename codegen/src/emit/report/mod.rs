@@ -20,7 +20,7 @@ pub use provenance::{Statement, sources, statement};
 pub use series::{Series, series};
 pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, proof_in_words};
 
-use super::names::type_name;
+use super::types::type_name;
 use crate::derived::{Derived, Shape};
 use crate::model::{Declared, JointSpec, Locus, VelocityFrame};
 use notation::Notation;

@@ -2,8 +2,8 @@
 
 use super::typeset::{Equation, Mark, Math, composed, named};
 use crate::derived::{Derived, Word};
-use crate::emit::formula::{Node, factored};
 use crate::expr::{Expr, Symbol};
+use crate::formula::{Node, factored};
 use crate::manifold::{Factor, Kind};
 use crate::matrix::Matrix;
 use std::collections::BTreeMap;

@@ -5,9 +5,9 @@ use super::limits;
 use super::tokens::ident;
 use super::type_ident;
 use crate::derived::Derived;
-use crate::emit::names::Names;
 use crate::emit::report::summary;
-use crate::emit::text::is_visible;
+use crate::formula::Names;
+use crate::text::is_visible;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -63,7 +63,7 @@ fn build(derived: &Derived) -> TokenStream {
             }
         };
     }
-    let names = Names::of_parameters(derived);
+    let names = Names::of_parameters(&derived.spec.parameters);
     let fields: Vec<_> = parameters
         .iter()
         .map(|parameter| ident(names.get(&parameter.symbol)))

@@ -1,19 +1,18 @@
 //! The type of a joint and its implementation of the trait.
 
-use super::absent::absent;
 use super::docs;
-use super::kernel::Method;
 use super::limits;
 use super::numeric;
 use super::patterns;
 use super::tokens::{ident, signed_literal};
 use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
-use crate::emit::names::Names;
+use crate::emit::method::Method;
+use crate::emit::method::absent;
 use crate::emit::report::summary;
-use crate::emit::text::inline;
 use crate::expr::Rational;
 use crate::model::VelocityFrame;
+use crate::text::inline;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -24,7 +23,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let [n, k, s, c] = sizes(derived);
     let constants = constants(derived);
     let parameters = parameters(derived);
-    let names = Names::new(derived);
+    let names = derived.names();
     let method = |kernel: &Kernel| {
         let method = Method::new(derived, kernel, &names);
         method.tokens(&docs::kernel(derived, kernel, &method))

@@ -2,9 +2,9 @@
 
 use super::tokens::{Writer, ident, signed_literal};
 use crate::derived::Derived;
-use crate::emit::formula::{Program, factored};
-use crate::emit::names::Names;
 use crate::expr::Rational;
+use crate::formula::Names;
+use crate::formula::{Program, factored};
 use crate::model::{End, Interval, Parameter};
 use num_traits::ToPrimitive;
 use proc_macro2::TokenStream;

@@ -1,9 +1,9 @@
 //! The last expression of a method: matrices as rows, so that a reader sees them.
 
-use super::signature::{Output, Signature};
 use super::tokens::Writer;
 use crate::derived::{Kernel, KernelKind};
-use crate::emit::formula::Node;
+use crate::emit::method::{Output, Signature};
+use crate::formula::Node;
 use crate::matrix::Matrix;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

@@ -5,7 +5,7 @@
 use super::{Index, file, imports, index};
 use crate::derive;
 use crate::derived::{Derived, Kernel, KernelKind, Method, Structure};
-use crate::emit::names::{Names, type_name};
+use crate::emit::types::type_name;
 use crate::emit::{Accuracy, Report, explain_text, page};
 use crate::expr::{Expr, Rational};
 use crate::matrix::Matrix;
@@ -329,10 +329,7 @@ fn no_type_and_no_variable_is_called_like_an_import() {
                 "hamel = 1; joint some({name}: m) {{ config q: R1; H = trans_x({name} * q); }}"
             ));
             let parameter = &joint.spec.parameters[0].symbol;
-            assert_eq!(
-                Names::new(&joint).get(parameter),
-                format!("{name}_parameter")
-            );
+            assert_eq!(joint.names().get(parameter), format!("{name}_parameter"));
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Formulas as Rust tokens, generic in the scalar `T`.
 
-use crate::emit::formula::{Binding, Chain, Node, Program};
-use crate::emit::names::{NameSet, Names, is_number_word, number_name};
 use crate::expr::{Function, Rational, Symbol};
+use crate::formula::Names;
+use crate::formula::names::{NameSet, is_number_word, number_name};
+use crate::formula::{Binding, Chain, Node, Program};
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 use proc_macro2::{Ident, Literal, Span, TokenStream};

@@ -1,7 +1,7 @@
 //! Where each body's share lies in the arguments, for the header.
 
-use crate::emit::text::one_line;
 use crate::scene::model::{Body, Model};
+use crate::text::one_line;
 use serde::Serialize;
 use std::ops::Range;
 

@@ -1,15 +1,16 @@
 //! Subexpressions that occur more than once are computed once, under a name that says what they are.
 
+use super::Names;
 use super::divisor::shared_sums;
 use super::exponential::in_range;
 use super::few::{named, with_few_shared};
+use super::names::{NameSet, describe};
 use super::pairs::extract_pairs;
 use super::reciprocal::share_reciprocals;
 use super::shapes::{Shape, Shapes};
 use super::{Counts, Node, factored};
-use crate::derived::{Primitive, Step};
-use crate::emit::names::{NameSet, describe};
 use crate::expr::{Expr, Function, Role, Symbol};
+use crate::kernel::{Primitive, Step};
 use crate::matrix::Matrix;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
@@ -93,6 +94,13 @@ impl Program {
             true => together,
             false => alone,
         }
+    }
+
+    /// The same in the names of a joint, which it takes for the symbols that its lines bind.
+    pub fn in_names(steps: &[Step], outputs: &[Matrix], mut names: Names) -> Self {
+        let bound = steps.iter().flat_map(Step::bound);
+        bound.for_each(|symbol| names.claim(symbol));
+        Self::new(steps, outputs, names.taken())
     }
 
     fn of_formulas(steps: &[Step], mut formulas: Vec<Node>, taken: &NameSet) -> Self {

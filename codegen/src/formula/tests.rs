@@ -1,9 +1,9 @@
 //! Formulas keep the value of their expression, are counted as they are written, and have names of their own.
 
 use super::{Binding, Counts, Node, Program, factored};
-use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
-use crate::emit::names::NameSet;
 use crate::expr::{Expr, Number, Role, Symbol, evaluate_f64};
+use crate::formula::names::NameSet;
+use crate::kernel::{Kernel, KernelKind, Method, Step, Structure};
 use crate::matrix::Matrix;
 use std::collections::BTreeMap;
 

@@ -1,10 +1,9 @@
 //! c = Ẋ̄^c v̄ and its dual: by products of other kernels, as the runtime forms them, or by formulas of their own.
 
+use super::Method;
 use super::absent::{Absent, absent};
-use super::kernel::Method;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
-use crate::emit::formula::Counts;
-use crate::emit::names::Names;
+use crate::formula::Counts;
 use crate::matrix::Matrix;
 
 /// A formula of its own is written where the products take more than this many times its work, with function calls as [`Counts::work`]
@@ -96,7 +95,7 @@ fn product(derived: &Derived, kind: KernelKind) -> Counts {
 }
 
 fn evaluated(derived: &Derived, kind: KernelKind) -> Counts {
-    let names = Names::new(derived);
+    let names = derived.names();
     let kernel = derived.kernel(kind);
     kernel.map_or_else(Counts::default, |kernel| {
         Method::new(derived, kernel, &names).counts()

@@ -2,13 +2,10 @@
 
 use crate::algebra::hat;
 use crate::derived::KernelKind;
-use crate::emit::rust::tokens::ident;
 use crate::expand::finite::in_basis;
 use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::{Factor, Kind};
 use crate::model::{Freedom, JointSpec};
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
 
 /// First index of the symbols made here, above all that a derivation numbers itself and below those of shared terms.
 const FIRST_INDEX: usize = 0x4000;
@@ -34,7 +31,8 @@ pub struct Part<'a> {
     pub freedoms: Vec<usize>,
     /// Its basis.
     pub basis: Basis,
-    factor: &'a Factor,
+    /// The factor itself.
+    pub factor: &'a Factor,
     spec: &'a JointSpec,
 }
 
@@ -117,23 +115,6 @@ impl Part<'_> {
             _ => false,
         };
         (!is_left).then_some(name)
-    }
-
-    /// The path of a function of its group; of real vectors with their size.
-    pub fn path(&self, function: &str) -> TokenStream {
-        let (module, function) = (ident(module(self.factor.kind)), ident(function));
-        match self.factor.kind {
-            Kind::Real(size) => {
-                let size = Literal::usize_unsuffixed(size);
-                quote! { #module::#function::<T, #size> }
-            }
-            _ => quote! { #module::#function },
-        }
-    }
-
-    /// A name for something of this factor: `r_moved`.
-    pub fn named(&self, what: &str) -> Ident {
-        ident(&format!("{}_{what}", self.factor.name.to_ascii_lowercase()))
     }
 
     /// The algebra element `Σ b_k ϕ_k`, in the standard basis.

@@ -1,106 +1,21 @@
 //! One kernel as a method of the trait `Joint`.
 
 use super::collect_identifiers;
-use super::group::Calls;
 use super::numeric;
 use super::result;
-use super::signature::{Argument, Signature};
 use super::tokens::{Writer, ident};
-use crate::derived::{self, Derived, Kernel, KernelKind, Primitive};
-use crate::emit::formula::{Binding, Counts, Program};
-use crate::emit::names::Names;
+use crate::derived::{self, Primitive, Shape};
+use crate::emit::method::{Argument, Method, Output, Signature};
 use crate::expr::{Role, Symbol};
-use crate::matrix::Matrix;
+use crate::formula::Binding;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 /// Up to this many scalars are read one by one where an argument has more.
 const FEW: usize = 3;
 
-/// A kernel, ready to be written.
-pub struct Method<'a> {
-    derived: &'a Derived,
-    kernel: &'a Kernel,
-    signature: Signature,
-    names: Names,
-    program: Arc<Program>,
-    used: BTreeSet<Symbol>,
-    /// The calls of groups that compute it, instead of its formulas.
-    calls: Option<Calls<'a>>,
-}
-
-/// Name of the method of a kernel.
-pub fn method_name(derived: &Derived, kernel: &Kernel) -> &'static str {
-    Signature::new(kernel, derived.shape).name
-}
-
-impl<'a> Method<'a> {
-    /// Factors and names what the kernel computes.
-    pub fn new(derived: &'a Derived, kernel: &'a Kernel, names: &Names) -> Self {
-        let mut names = names.clone();
-        let calls = Calls::new(derived, kernel);
-        let program = match &calls {
-            Some(calls) => {
-                calls.bound().iter().for_each(|symbol| names.claim(symbol));
-                let entries = Matrix::column_vector(calls.expressions());
-                Arc::new(Program::new(&[], &[entries], names.taken()))
-            }
-            None => {
-                let bound = kernel.steps.iter().flat_map(derived::Step::bound);
-                bound.for_each(|symbol| names.claim(symbol));
-                derived.program(kernel)
-            }
-        };
-        program
-            .bindings
-            .iter()
-            .flat_map(Binding::names)
-            .for_each(|symbol| names.adopt(symbol));
-        let signature = Signature::new(kernel, derived.shape);
-        let used = program.symbols();
-        Self {
-            derived,
-            kernel,
-            signature,
-            names,
-            program,
-            used,
-            calls,
-        }
-    }
-
-    /// Name of the method.
-    pub fn name(&self) -> &'static str {
-        self.signature.name
-    }
-
-    /// What it computes.
-    pub fn program(&self) -> &Program {
-        &self.program
-    }
-
-    /// The operations of the emitted method.
-    pub fn counts(&self) -> Counts {
-        let mut counts = Counts::of_program(&self.program);
-        if let Some(calls) = &self.calls {
-            counts += calls.counts();
-            return counts;
-        }
-        let relations = self.program.outputs.len();
-        if self.kernel.kind == KernelKind::Residual && relations > 0 {
-            counts += Counts {
-                additions: relations,
-                multiplications: relations,
-                fused: relations,
-                divisions: 0,
-                calls: 1,
-            };
-        }
-        counts
-    }
-
+impl Method<'_> {
     /// The method, with its documentation.
     pub fn tokens(&self, docs: &TokenStream) -> TokenStream {
         let whole = self.returned_argument();
@@ -147,7 +62,7 @@ impl<'a> Method<'a> {
                 && output.rows() == symbols.len()
                 && output.entries().iter().zip(symbols).all(same)
         };
-        let returns_vector = matches!(self.signature.output, super::signature::Output::Vector(_));
+        let returns_vector = matches!(self.signature.output, Output::Vector(_));
         self.signature
             .arguments
             .iter()
@@ -314,6 +229,29 @@ fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> 
             quote! {
                 let rotation = nearest_rotation(&#argument);
                 let [#(#columns),*]: [[T; 3]; 3] = rotation.into();
+            }
+        }
+    }
+}
+
+impl Signature {
+    /// The type that the method returns.
+    pub fn output_type(&self, shape: Shape) -> TokenStream {
+        let size = Literal::usize_unsuffixed;
+        match self.output {
+            Output::Pose => quote! { Pose<T> },
+            Output::Scalar => quote! { T },
+            Output::Vector(rows) => {
+                let rows = size(rows);
+                quote! { SVector<T, #rows> }
+            }
+            Output::Matrix(rows, columns) => {
+                let (rows, columns) = (size(rows), size(columns));
+                quote! { SMatrix<T, #rows, #columns> }
+            }
+            Output::Slices(rows, columns) => {
+                let (rows, columns, count) = (size(rows), size(columns), size(shape.freedoms));
+                quote! { [SMatrix<T, #rows, #columns>; #count] }
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Operations of the runtime's group functions, as a test counts them on the runtime itself.
 
 use super::factor::module;
-use crate::emit::formula::Counts;
+use crate::formula::Counts;
 use crate::manifold::Kind;
 
 /// A function of a group, with its operations.

@@ -2,8 +2,8 @@
 
 use super::share::Binding;
 use super::{Counts, Node, Program};
-use crate::emit::names::{NameSet, number_name};
 use crate::expr::{Role, Symbol};
+use crate::formula::names::{NameSet, number_name};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 

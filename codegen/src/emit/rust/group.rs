@@ -1,136 +1,14 @@
-//! Kernels as calls of the runtime's groups: finite maps of Φ = Q exp(ϕ), projection and residual of known manifolds.
-//!
-//! A factor's part of Q and of ϕ goes to the functions of its group in `hamel::group`. Where ϕ is not in the group's standard basis, the
-//! element goes there as a formula, and the logarithm comes back through one.
-
-mod cost;
-mod factor;
-
-pub use cost::{FUNCTIONS, GroupFunction};
+//! Calls of the runtime's groups, as they are written.
 
 use super::tokens::{Writer, ident};
-use crate::derived::{Derived, Kernel, KernelKind, Method};
-use crate::emit::formula::{Counts, Node};
-use crate::expr::{Expr, Symbol};
+use crate::derived::KernelKind;
+use crate::emit::method::group::{Basis, Calls, Part, module};
+use crate::formula::Node;
 use crate::manifold::Kind;
-use crate::matrix::Matrix;
-use factor::{Basis, Part, parts};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-/// A kernel that calls groups.
-pub struct Calls<'a> {
-    kind: KernelKind,
-    parts: Vec<Part<'a>>,
-    /// N and K.
-    sizes: [usize; 2],
-}
-
-impl<'a> Calls<'a> {
-    /// The kernel as calls; nothing where a factor has no function for it.
-    pub fn new(derived: &'a Derived, kernel: &Kernel) -> Option<Self> {
-        let spec = &derived.spec;
-        let is_finite = matches!(
-            kernel.kind,
-            KernelKind::Retract
-                | KernelKind::Local
-                | KernelKind::RetractDifferential
-                | KernelKind::RetractDifferentialInverse
-        );
-        let is_rate = kernel.kind == KernelKind::ConfigurationRate;
-        let is_of_manifold = matches!(kernel.kind, KernelKind::Project | KernelKind::Residual);
-        let serves = match is_finite {
-            true => derived.kernel(KernelKind::RetractTangent).is_none(),
-            false if is_rate => true,
-            false => is_of_manifold && spec.manifold.value.declared().is_empty(),
-        };
-        if !serves || kernel.method != Method::Formula {
-            return None;
-        }
-        let parts = parts(spec);
-        let called = parts
-            .iter()
-            .any(|part| part.function(kernel.kind).is_some());
-        let fits = |part: &Part<'_>| match kernel.kind {
-            KernelKind::Retract | KernelKind::Local => part.basis != Basis::Subalgebra,
-            KernelKind::RetractDifferential | KernelKind::RetractDifferentialInverse => {
-                part.function(kernel.kind).is_none() || part.basis == Basis::Standard
-            }
-            KernelKind::ConfigurationRate => part.basis == Basis::Standard,
-            _ => true,
-        };
-        let sizes = [derived.shape.configuration, derived.shape.freedoms];
-        let fits =
-            called && parts.iter().all(fits) && (!is_rate || are_rates(derived, &parts, kernel));
-        fits.then_some(Self {
-            kind: kernel.kind,
-            parts,
-            sizes,
-        })
-    }
-
-    /// The operations of the functions that are called.
-    pub fn counts(&self) -> Counts {
-        let mut counts = Counts::default();
-        let called = self
-            .parts
-            .iter()
-            .filter_map(|part| part.function(self.kind).map(|name| (part, name)));
-        for (part, name) in called {
-            counts += cost::of(part.kind(), name);
-        }
-        if self.kind == KernelKind::Residual {
-            let relations = self
-                .parts
-                .iter()
-                .filter(|part| part.function(self.kind).is_some())
-                .count();
-            counts += Counts {
-                additions: relations.saturating_sub(1),
-                calls: 1,
-                ..Counts::default()
-            };
-        }
-        counts
-    }
-
-    /// The names of logarithms, for the formulas that take them to the declared basis.
-    pub fn bound(&self) -> Vec<Symbol> {
-        match self.kind {
-            KernelKind::Local if !self.is_in_order() => {
-                self.parts.iter().flat_map(Part::logarithm).collect()
-            }
-            _ => vec![],
-        }
-    }
-
-    /// The formulas that the calls need: algebra elements that are not parts of ϕ, or ϕ from logarithms that are not.
-    pub fn expressions(&self) -> Vec<Expr> {
-        match self.kind {
-            KernelKind::Retract => {
-                let others = self
-                    .parts
-                    .iter()
-                    .filter(|part| part.basis != Basis::Standard);
-                others.flat_map(Part::element).collect()
-            }
-            KernelKind::Local if !self.is_in_order() => {
-                let mut locals = vec![Expr::zero(); self.sizes[1]];
-                for (place, value) in self.parts.iter().flat_map(Part::in_declared_basis) {
-                    locals[place] = value;
-                }
-                locals
-            }
-            _ => vec![],
-        }
-    }
-
-    /// Whether ϕ is the logarithms one after the other.
-    fn is_in_order(&self) -> bool {
-        self.parts.iter().all(|part| part.basis == Basis::Standard)
-            && self.parts.is_sorted_by_key(|part| part.freedoms.first())
-    }
-
+impl Calls<'_> {
     /// Lines before the formulas.
     pub fn lines(&self, writer: &Writer<'_>) -> TokenStream {
         if self.bound().is_empty() {
@@ -193,15 +71,6 @@ impl<'a> Calls<'a> {
                 }
             }
         })
-    }
-
-    /// Whether Φ adds ϕ to Q.
-    fn is_sum(&self) -> bool {
-        self.is_in_order()
-            && self
-                .parts
-                .iter()
-                .all(|part| matches!(part.kind(), Kind::Real(_)))
     }
 
     fn retract(&self, writer: &Writer<'_>, values: &[Node]) -> TokenStream {
@@ -319,10 +188,21 @@ impl<'a> Calls<'a> {
     }
 }
 
-/// Whether Q̇ is `Q v^` on every factor.
-fn are_rates(derived: &Derived, parts: &[Part<'_>], kernel: &Kernel) -> bool {
-    let velocity = &derived.arguments.velocity;
-    let rates = parts.iter().flat_map(|part| part.rates(velocity));
-    let entries = kernel.outputs.iter().flat_map(Matrix::entries).cloned();
-    kernel.steps.is_empty() && rates.eq(entries)
+impl Part<'_> {
+    /// The path of a function of its group; of real vectors with their size.
+    fn path(&self, function: &str) -> TokenStream {
+        let (module, function) = (ident(module(self.factor.kind)), ident(function));
+        match self.factor.kind {
+            Kind::Real(size) => {
+                let size = Literal::usize_unsuffixed(size);
+                quote! { #module::#function::<T, #size> }
+            }
+            _ => quote! { #module::#function },
+        }
+    }
+
+    /// A name for something of this factor: `r_moved`.
+    fn named(&self, what: &str) -> Ident {
+        ident(&format!("{}_{what}", self.factor.name.to_ascii_lowercase()))
+    }
 }
