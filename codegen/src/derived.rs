@@ -3,7 +3,7 @@
 use crate::expr::Rational;
 use crate::formula::{Names, Program};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::model::{ConfigurationSpace, JointSpec};
 use std::collections::BTreeMap;
 
 pub use crate::kernel::{
@@ -16,6 +16,8 @@ pub use crate::prove::{Claim, Proof};
 pub struct Derived {
     /// The spec.
     pub spec: JointSpec,
+    /// Where the joint lives. It must not come to what the spec excepts, or else to the border of the side on which its functions have a value.
+    pub space: ConfigurationSpace,
     /// Sizes.
     pub shape: Shape,
     /// Dimension of what the relations that are checked cut out: k, or more where Q moves in an orbit that they do not describe.
@@ -42,6 +44,20 @@ pub struct Derived {
     pub claims: Vec<Claim>,
     /// The formulas of each kernel, as they are written everywhere.
     pub(crate) programs: BTreeMap<KernelKind, Program>,
+}
+
+/// The formulas of kernels in the names of their joint.
+pub(crate) fn programs(
+    spec: &JointSpec,
+    arguments: &Arguments,
+    kernels: &[Kernel],
+) -> BTreeMap<KernelKind, Program> {
+    let names = Names::new(&spec.parameters, arguments);
+    let program = |kernel: &Kernel| {
+        let program = Program::in_names(&kernel.steps, &kernel.outputs, names.clone());
+        (kernel.kind, program)
+    };
+    kernels.iter().map(program).collect()
 }
 
 /// That of a kernel that a joint does not have.

@@ -20,6 +20,7 @@ pub mod matrix;
 pub mod model;
 mod pipeline;
 pub mod precise;
+pub mod prepare;
 pub mod prove;
 #[cfg(feature = "scene")]
 pub mod scene;

@@ -145,6 +145,47 @@ pub struct PoseExpr {
     pub translation: Matrix,
 }
 
+/// Where a joint lives: its manifold without the exceptions, for the values that its parameters may take.
+#[derive(Clone, Debug)]
+pub struct ConfigurationSpace {
+    /// Parameters in order.
+    pub parameters: Vec<Parameter>,
+    /// Conditions on the parameters.
+    pub requirements: Vec<Declared<Requirement>>,
+    /// Where Q lives.
+    pub manifold: Manifold,
+    /// Where Q must not come.
+    pub loci: Vec<Declared<Locus>>,
+    /// The stored scalars at home, in order.
+    pub home: Vec<Expr>,
+}
+
+impl ConfigurationSpace {
+    /// That of a spec, as declared.
+    pub fn declared(spec: &JointSpec) -> Self {
+        let declared = spec.home.as_ref().map(|home| home.value.clone());
+        Self {
+            parameters: spec.parameters.clone(),
+            requirements: spec.requirements.clone(),
+            manifold: spec.manifold.value.clone(),
+            loci: spec.loci.clone(),
+            home: declared.unwrap_or_else(|| spec.manifold.value.home()),
+        }
+    }
+
+    /// Parameters and stored scalars, in order.
+    pub(crate) fn symbols(&self) -> Vec<Symbol> {
+        let parameters = self.parameters.iter().map(|p| p.symbol.clone());
+        parameters.chain(self.manifold.coordinates()).collect()
+    }
+
+    /// Each stored scalar at home.
+    pub(crate) fn home_values(&self) -> BTreeMap<Symbol, Expr> {
+        let coordinates = self.manifold.coordinates().into_iter();
+        coordinates.zip(self.home.iter().cloned()).collect()
+    }
+}
+
 /// A joint as its spec declares it: parsed, evaluated, shapes checked; nothing derived, nothing proved.
 #[derive(Clone, Debug)]
 pub struct JointSpec {
@@ -209,19 +250,9 @@ pub struct Unproved {
 }
 
 impl JointSpec {
-    /// Parameters and stored scalars, in order.
-    pub(crate) fn symbols(&self) -> Vec<Symbol> {
-        let parameters = self.parameters.iter().map(|p| p.symbol.clone());
-        parameters
-            .chain(self.manifold.value.coordinates())
-            .collect()
-    }
-
-    /// Each stored scalar at home: as declared, else at the identity of each factor.
-    pub(crate) fn home_values(&self) -> BTreeMap<Symbol, Expr> {
-        let manifold = &self.manifold.value;
-        let declared = self.home.as_ref().map(|home| home.value.clone());
-        let home = declared.unwrap_or_else(|| manifold.home());
-        manifold.coordinates().into_iter().zip(home).collect()
+    /// The freedoms of one factor.
+    pub(crate) fn freedoms_of(&self, factor: usize) -> impl Iterator<Item = &Freedom> {
+        let freedoms = self.freedoms.value.iter();
+        freedoms.filter(move |freedom| freedom.factor == factor)
     }
 }

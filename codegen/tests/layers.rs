@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// From what knows nothing to what knows all. `derive` calls the steps parse, expand, prove, simplify; `build` and `scene` use what it gives.
-const ORDER: [&str; 28] = [
+/// From what knows nothing to what knows all. `derive` calls the steps parse, prepare, expand, prove, simplify; `build` and `scene` use what it gives.
+const ORDER: [&str; 29] = [
     "text",
     "diagnostic",
     "source",
@@ -16,9 +16,10 @@ const ORDER: [&str; 28] = [
     "algebra",
     "precise",
     "domain",
+    "spec",
+    "prepare",
     "kernel",
     "formula",
-    "spec",
     "expand",
     "prove",
     "simplify",

@@ -124,6 +124,6 @@ fn by_each(derived: &Derived, column: &Matrix, symbols: &[Symbol]) -> Matrix {
 
 fn beside(derived: &Derived, rows: usize, columns: impl Iterator<Item = Vec<Expr>>) -> Matrix {
     let columns: Vec<Vec<Expr>> = columns.collect();
-    let ideal = derived.spec.manifold.value.ideal();
+    let ideal = derived.space.manifold.ideal();
     ideal.simplest_entries(&Matrix::from_columns(rows, &columns))
 }

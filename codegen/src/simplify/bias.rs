@@ -6,19 +6,19 @@ use crate::expand::{Expansion, Steps, speed_map};
 use crate::expr::{Expr, Symbol};
 use crate::kernel::{Kernel, KernelKind, Method, Step, Structure};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Both kernels; `map` is X̄^c = X^c S̄ in words.
 pub fn kernels(
-    spec: &JointSpec,
+    joint: &Prepared,
     expansion: &Expansion,
     words: &Words<'_>,
     map: &Matrix,
 ) -> Vec<Kernel> {
-    let maker = Maker { spec, expansion };
+    let maker = Maker { joint, expansion };
     let few = words.functions_alone();
-    let speed_map = speed_map(spec, expansion);
+    let speed_map = speed_map(joint, expansion);
     let is_long = terms(std::slice::from_ref(&speed_map)) > LONG / 2;
     let kernels = maker.by_slices(words, map, Entries::Lines);
     let kernels = kernels.into_iter().enumerate();
@@ -44,14 +44,14 @@ enum Entries {
 }
 
 struct Maker<'a> {
-    spec: &'a JointSpec,
+    joint: &'a Prepared,
     expansion: &'a Expansion,
 }
 
 impl Maker<'_> {
     /// By the chain rule through the stored scalars, with their rates as lines.
     fn by_coordinates(&self, words: &Words<'_>) -> [Kernel; 2] {
-        let map = speed_map(self.spec, self.expansion);
+        let map = speed_map(self.joint, self.expansion);
         let mut steps = Steps::default();
         let rates = self.coordinate_rates(&map, words, &mut steps);
         let along = |symbol: &Symbol| rates.get(symbol).cloned().unwrap_or_default();

@@ -9,7 +9,7 @@ use crate::formula::{Counts, Program};
 use crate::kernel::{Kernel, KernelKind, Method, Step, Word};
 use crate::manifold::weight;
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Kernels of which every entry is shortened.
@@ -27,17 +27,17 @@ const OF_CONFIGURATION: [KernelKind; 9] = [
 
 /// The kernels with what they compute in few operations, and under the names that the spec gives.
 pub fn in_words(
-    spec: &JointSpec,
+    joint: &Prepared,
     expansion: &Expansion,
     kernels: Vec<Kernel>,
 ) -> (Vec<Kernel>, Vec<Word>) {
-    let mut words = Words::new(spec, &expansion.motion);
+    let mut words = Words::new(joint, &expansion.motion);
     if !words.are_used() {
-        return (as_derived(spec, expansion, kernels, &words), vec![]);
+        return (as_derived(joint, expansion, kernels, &words), vec![]);
     }
-    let twists = twists::of_pose(spec, expansion, &mut words);
+    let twists = twists::of_pose(joint, expansion, &mut words);
     let shortened = kernels.into_iter().map(|mut kernel| {
-        if let Some(outputs) = declared(spec, kernel.kind) {
+        if let Some(outputs) = declared(joint, kernel.kind) {
             kernel.outputs = as_declared(&words, &outputs);
             return kernel;
         }
@@ -63,7 +63,7 @@ pub fn in_words(
             false => with_lines(&words, kernel),
         });
     let mut kernels: Vec<Kernel> = finished.collect();
-    kernels.extend(super::bias::kernels(spec, expansion, &words, &speed_map));
+    kernels.extend(super::bias::kernels(joint, expansion, &words, &speed_map));
     kernels.sort_by_key(|kernel| kernel.kind);
     let used = kernels.iter().flat_map(|kernel| &kernel.steps);
     let used: BTreeSet<&Symbol> = used.flat_map(Step::bound).collect();
@@ -75,13 +75,13 @@ pub fn in_words(
 
 /// The kernels as they were derived, with c and its dual.
 fn as_derived(
-    spec: &JointSpec,
+    joint: &Prepared,
     expansion: &Expansion,
     mut kernels: Vec<Kernel>,
     words: &Words<'_>,
 ) -> Vec<Kernel> {
-    let map = expand::speed_map(spec, expansion);
-    kernels.extend(super::bias::kernels(spec, expansion, words, &map));
+    let map = expand::speed_map(joint, expansion);
+    kernels.extend(super::bias::kernels(joint, expansion, words, &map));
     kernels.sort_by_key(|kernel| kernel.kind);
     kernels
 }
@@ -179,8 +179,8 @@ fn as_declared(words: &Words<'_>, outputs: &[Matrix]) -> Vec<Matrix> {
 }
 
 /// The matrices that the spec declares of a kernel, in the names that it uses.
-fn declared(spec: &JointSpec, kind: KernelKind) -> Option<Vec<Matrix>> {
-    let worded = &spec.worded;
+fn declared(joint: &Prepared, kind: KernelKind) -> Option<Vec<Matrix>> {
+    let worded = &joint.spec.worded;
     match kind {
         KernelKind::Pose => {
             let pose = worded.pose.clone()?;

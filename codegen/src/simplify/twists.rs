@@ -6,7 +6,7 @@ use crate::expand::Expansion;
 use crate::expr::Expr;
 use crate::kernel::{Kernel, KernelKind};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::prepare::Prepared;
 
 /// The velocity of Φ in words, in both frames, where it is X.
 pub struct Twists {
@@ -26,8 +26,13 @@ impl Twists {
 }
 
 /// `vee(∂R Rᵀ)` and `∂p − ω × p`, and in the child frame `vee(Rᵀ ∂R)` and `Rᵀ ∂p`.
-pub fn of_pose(spec: &JointSpec, expansion: &Expansion, words: &mut Words<'_>) -> Twists {
-    let pose = spec.worded.pose.as_ref().unwrap_or(&spec.pose.value);
+pub fn of_pose(joint: &Prepared, expansion: &Expansion, words: &mut Words<'_>) -> Twists {
+    let pose = joint
+        .spec
+        .worded
+        .pose
+        .as_ref()
+        .unwrap_or(&joint.spec.pose.value);
     let rotation = words.shorten_each(&pose.rotation);
     let position = words.shorten_each(&pose.translation);
     words.name_derivatives(&rotation.beside(&position));

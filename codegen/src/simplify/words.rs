@@ -6,7 +6,7 @@ use crate::expr::{Application, Atom, Expr, Function, Role, Symbol, budget};
 use crate::kernel::Word;
 use crate::manifold::{Ideal, weight};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::prepare::Prepared;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -37,11 +37,11 @@ pub struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// The `let`s of the spec.
-    pub fn new(spec: &'a JointSpec, motion: &'a Motion) -> Self {
-        let freedoms = spec.freedoms.value.iter();
+    /// The `let`s of the joint.spec.
+    pub fn new(joint: &'a Prepared, motion: &'a Motion) -> Self {
+        let freedoms = joint.spec.freedoms.value.iter();
         let mut words = Self {
-            ideal: spec.manifold.value.ideal(),
+            ideal: joint.space.manifold.ideal(),
             motion,
             freedoms: freedoms.map(|freedom| freedom.name.as_str()).collect(),
             words: vec![],
@@ -49,12 +49,12 @@ impl<'a> Words<'a> {
             derivatives: BTreeMap::new(),
             definitions: vec![],
             found: RefCell::default(),
-            as_derived: has_exponentials(spec),
+            as_derived: has_exponentials(joint),
         };
         if words.as_derived {
             return words;
         }
-        for named in &spec.worded.named {
+        for named in &joint.spec.worded.named {
             words.declare(&named.symbol, &named.value);
         }
         words
@@ -343,12 +343,23 @@ pub(super) fn opened(expression: &Expr) -> Expr {
 }
 
 /// Whether exponentials, or functions that are made of them, occur in what the spec declares.
-fn has_exponentials(spec: &JointSpec) -> bool {
-    let pose = [&spec.pose.value.rotation, &spec.pose.value.translation];
-    let others = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
+fn has_exponentials(joint: &Prepared) -> bool {
+    let pose = [
+        &joint.spec.pose.value.rotation,
+        &joint.spec.pose.value.translation,
+    ];
+    let others = [
+        &joint.spec.twist_map,
+        &joint.spec.constraint,
+        &joint.spec.speed_basis,
+    ];
     let others = others.into_iter().flatten().map(|declared| &declared.value);
     let matrices = pose.into_iter().chain(others);
-    let moved = spec.retract.iter().flat_map(|declared| &declared.value);
+    let moved = joint
+        .spec
+        .retract
+        .iter()
+        .flat_map(|declared| &declared.value);
     let mut entries = matrices.flat_map(Matrix::entries).chain(moved);
     entries.any(holds_exponential)
 }

@@ -32,7 +32,7 @@ fn at(chart: &[f64], parameters: &[f64]) -> Point {
 fn the_library_holds() {
     for name in crate::spec_names() {
         let derived = crate::derived(&name);
-        let count = super::dimensions(&derived.spec);
+        let count = super::dimensions(&derived.space);
         let parameters: Vec<f64> = (0..derived.spec.parameters.len())
             .map(|i| 1.5 / (1.0 + i as f64))
             .collect();

@@ -25,7 +25,7 @@ pub fn absent(derived: &Derived, kernel: &Kernel) -> Option<Absent> {
         | KernelKind::Residual => zero(kernel),
         KernelKind::J22 if structure_of(KernelKind::Gamma) == Some(Structure::Zero) => zero(kernel),
         KernelKind::Constraint if derived.shape.constraints == 0 => Some(Absent::Zero),
-        KernelKind::Singularity if derived.spec.loci.is_empty() => Some(Absent::Identity),
+        KernelKind::Singularity if derived.space.loci.is_empty() => Some(Absent::Identity),
         KernelKind::VelocityMap | KernelKind::VelocityMapInverse => identity(kernel)
             .filter(|_| structure_of(KernelKind::VelocityMap) == Some(Structure::Identity)),
         KernelKind::RetractDifferential | KernelKind::RetractDifferentialInverse => {

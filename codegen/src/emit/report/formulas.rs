@@ -149,7 +149,7 @@ fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option
         None => name,
     };
     let equations = equations(derived, notation, kernel, &name);
-    let statement = statement(&derived.spec, kind).unwrap_or_default();
+    let statement = statement(derived, kind).unwrap_or_default();
     (!equations.is_empty()).then(|| Formula::new(title, equations, statement))
 }
 

@@ -19,7 +19,7 @@ impl Notation {
     pub fn new(derived: &Derived) -> Self {
         let mut by_symbol = BTreeMap::new();
         let arguments = &derived.arguments;
-        let factors = derived.spec.manifold.value.factors();
+        let factors = derived.space.manifold.factors();
         let names: Vec<Math> = factors.iter().flat_map(names_of_factor).collect();
         for (symbol, name) in arguments.configuration.iter().zip(&names) {
             by_symbol.insert(symbol.clone(), name.clone());

@@ -116,7 +116,7 @@ pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenS
         ),
     };
     lines.push(format!("{shape}{} {cost}", constancy(kernel.structure)));
-    lines.extend(origin(&sources(&derived.spec, kernel.kind)));
+    lines.extend(origin(&sources(derived, kernel.kind)));
     outer(&lines)
 }
 

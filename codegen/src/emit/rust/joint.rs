@@ -169,7 +169,7 @@ fn constants(derived: &Derived) -> TokenStream {
     let structures = structures(derived);
     let patterns = patterns::tokens(derived);
     let inertias = derived.imperceptible.iter().map(inertia);
-    let loci = spec.loci.iter().map(|locus| &locus.value.text);
+    let loci = derived.space.loci.iter().map(|locus| &locus.value.text);
     quote! {
         const NAME: &'static str = #name;
         #coordinates

@@ -63,7 +63,7 @@ fn codimension(derived: &Derived) -> usize {
         .flat_map(|column| column.entries())
         .flat_map(|entry| entry.symbols())
         .collect();
-    let factors = derived.spec.manifold.value.factors().iter();
+    let factors = derived.space.manifold.factors().iter();
     let apart: usize = factors
         .filter(|factor| !factor.coordinates.iter().any(|q| named.contains(q)))
         .map(|factor| factor.coordinates.len() - factor.kind.dimension())

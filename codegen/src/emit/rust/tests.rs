@@ -4,7 +4,7 @@
 
 use super::{Index, file, imports, index};
 use crate::derive;
-use crate::derived::{Derived, Kernel, KernelKind, Method, Structure};
+use crate::derived::{Derived, Kernel, KernelKind, Method, Structure, programs};
 use crate::emit::types::type_name;
 use crate::emit::{Accuracy, Report, explain_text, page};
 use crate::expr::{Expr, Rational};
@@ -60,6 +60,7 @@ fn patched(mut derived: Derived, kernels: Vec<Kernel>) -> Derived {
         .retain(|kernel| kernels.iter().all(|new| new.kind != kernel.kind));
     derived.kernels.extend(kernels);
     derived.kernels.sort_by_key(|kernel| kernel.kind);
+    derived.programs = programs(&derived.spec, &derived.arguments, &derived.kernels);
     derived
 }
 
@@ -70,7 +71,7 @@ fn numeric_ball() -> Derived {
         Matrix::symbols(&ball.arguments.configuration),
         &ball.arguments.local,
     );
-    let relations = Matrix::column_vector(ball.spec.manifold.value.relations());
+    let relations = Matrix::column_vector(ball.space.manifold.relations());
     let slopes = |of: &Matrix, symbols: &[crate::expr::Symbol]| {
         let columns: Vec<Vec<Expr>> = symbols
             .iter()
@@ -209,7 +210,7 @@ fn loci_become_a_distance() {
     let mut ball = derived(BALL);
     let functions = [0, 4].map(|n| Expr::symbol(&ball.arguments.configuration[n]));
     for (function, text) in functions.iter().zip(["Q[1, 1]", "Q[2, 2]"]) {
-        ball.spec.loci.push(declared(Locus {
+        ball.space.loci.push(declared(Locus {
             function: function.clone(),
             text: text.into(),
             docs: String::new(),

@@ -42,7 +42,7 @@ impl<'a> Calls<'a> {
         let serves = match is_finite {
             true => derived.kernel(KernelKind::RetractTangent).is_none(),
             false if is_rate => true,
-            false => is_of_manifold && spec.manifold.value.declared().is_empty(),
+            false => is_of_manifold && derived.space.manifold.declared().is_empty(),
         };
         if !serves || kernel.method != Method::Formula {
             return None;

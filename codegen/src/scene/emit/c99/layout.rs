@@ -55,7 +55,7 @@ fn part(range: Range<usize>, names: Vec<String>) -> Part {
 }
 
 fn stored(body: &Body) -> Vec<String> {
-    let coordinates = body.joint.derived.spec.manifold.value.coordinates();
+    let coordinates = body.joint.derived.space.manifold.coordinates();
     coordinates
         .iter()
         .map(|symbol| symbol.name.to_string())
