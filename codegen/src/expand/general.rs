@@ -1,4 +1,4 @@
-//! Finite maps of a joint whose Φ is any map: Φ as declared and its derivatives, the rest by the runtime's Newton method.
+//! What the runtime's Newton method needs: Φ as declared where it is any map, and the relations of declared manifolds.
 
 use super::finite::residual_of_factor;
 use super::motion::exponential;
@@ -34,17 +34,8 @@ pub fn retract(spec: &JointSpec) -> Option<Matrix> {
     Some(Matrix::column_vector(declared.value.clone()))
 }
 
-/// ∂Φ/∂ϕ of the stored scalars, N×k.
-pub fn retract_tangent(spec: &JointSpec) -> Option<Matrix> {
-    let moved = &spec.retract.as_ref()?.value;
-    let freedoms = &spec.freedoms.value;
-    Some(Matrix::from_fn(moved.len(), freedoms.len(), |i, j| {
-        moved[i].derivative(&freedoms[j].local)
-    }))
-}
-
-/// The declared relations with those of the known manifolds that they touch, and their derivatives by the stored scalars.
-pub fn relations(spec: &JointSpec) -> Option<(Matrix, Matrix)> {
+/// The declared relations with those of the known manifolds that they touch, as a column.
+pub fn relations(spec: &JointSpec) -> Option<Matrix> {
     let manifold = &spec.manifold.value;
     let declared: &[Expr] = manifold.declared();
     if declared.is_empty() {
@@ -56,10 +47,7 @@ pub fn relations(spec: &JointSpec) -> Option<(Matrix, Matrix)> {
         .iter()
         .filter(|factor| factor.coordinates.iter().any(|q| named.contains(q)));
     let own = touched.flat_map(residual_of_factor);
-    let all: Vec<Expr> = own.chain(declared.iter().cloned()).collect();
-    let coordinates = manifold.coordinates();
-    let gradient = Matrix::from_fn(all.len(), coordinates.len(), |i, j| {
-        all[i].derivative(&coordinates[j])
-    });
-    Some((Matrix::column_vector(all), gradient))
+    Some(Matrix::column_vector(
+        own.chain(declared.iter().cloned()).collect(),
+    ))
 }

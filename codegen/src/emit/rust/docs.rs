@@ -236,9 +236,6 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
         }
         KernelKind::Local => "The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.",
-        KernelKind::RetractTangent => {
-            "∂Φ/∂ϕ at finite ϕ: ϕ̇ to the rates of the stored scalars of Φ(Q, ϕ)."
-        }
         KernelKind::RetractDifferential => {
             "D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D."
         }
@@ -250,7 +247,6 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "Root of the sum of squares of the manifold's relations: 0 on the manifold."
         }
         KernelKind::Relations => "The relations of the manifold: 0 on it.",
-        KernelKind::RelationGradient => "Derivatives of the relations by the stored scalars.",
         KernelKind::Singularity => {
             "Least absolute value of the functions whose zeros the joint must stay away from."
         }

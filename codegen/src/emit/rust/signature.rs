@@ -128,9 +128,6 @@ impl Signature {
             ),
             KernelKind::Retract => ("retract", vec![Configuration, Local], Vector(n)),
             KernelKind::Local => ("local", vec![Configuration, Target], Vector(k)),
-            KernelKind::RetractTangent => {
-                ("retract_tangent", vec![Configuration, Local], Matrix(n, k))
-            }
             KernelKind::RetractDifferential => (
                 "retract_differential",
                 vec![Configuration, Local],
@@ -144,7 +141,6 @@ impl Signature {
             KernelKind::Project => ("project", q(), Vector(n)),
             KernelKind::Residual => ("residual", q(), Scalar),
             KernelKind::Relations => ("relations", q(), Vector(relations)),
-            KernelKind::RelationGradient => ("relation_gradient", q(), Matrix(relations, n)),
             KernelKind::Singularity => ("singularity", q(), Scalar),
             KernelKind::BiasAcceleration => {
                 ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
