@@ -39,16 +39,12 @@ pub enum KernelKind {
     Retract,
     /// ϕ(Q, Q′).
     Local,
-    /// ∂Φ/∂ϕ at finite ϕ, of the stored scalars, N×K: only where Φ is no exponential.
-    RetractTangent,
     /// Differential D of Φ at finite ϕ.
     RetractDifferential,
     /// Inverse differential of Φ at finite ϕ.
     RetractDifferentialInverse,
     /// The relations of the manifold, as a column: only where the spec declares some.
     Relations,
-    /// Derivatives of [`KernelKind::Relations`] by the stored scalars: only where the spec declares some.
-    RelationGradient,
     /// Projection onto the manifold.
     Project,
     /// Residual of the manifold's relations.
@@ -134,7 +130,7 @@ impl Step {
 pub enum Method {
     /// By its formulas.
     Formula,
-    /// By a K×K solve of the runtime, with the kernels that define it: D and D⁻¹ where Φ is not exp.
+    /// By a K×K solve of the runtime, with the derivatives of Φ: D and D⁻¹ where Φ is not exp.
     Solve,
     /// By Newton's method of the runtime, from the value of its formulas or from 0.
     Newton,

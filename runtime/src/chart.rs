@@ -6,7 +6,7 @@
 //! those that are inverted by Newton's method included.
 
 use crate::erased::{Sizes, vector};
-use crate::finite::differential;
+use crate::finite::least_squares;
 use crate::joint::Joint;
 use crate::scalar::Dual;
 use nalgebra::{SMatrix, SVector};
@@ -107,7 +107,7 @@ where
                 by_base.set_column(k, &derivative(&rate));
                 derivative(&q)
             });
-            carried = differential(&SMatrix::from_columns(&dragged), &tangent);
+            carried = least_squares(&tangent, &SMatrix::from_columns(&dragged));
             moved = self.joint.retract_differential(&self.base, &self.phi);
             by_phi = columns(|k| derivative(&self.rate(&base, &(phi + along(k))).1));
         }

@@ -151,24 +151,17 @@ impl Maker<'_> {
         ])
     }
 
-    /// Any other Φ: as declared, with what the runtime's solvers need.
+    /// Any other Φ: as declared, the rest by the runtime's solvers.
     fn general_maps(&self) -> Vec<Kernel> {
-        let formulas = [
-            (KernelKind::Retract, general::retract(self.joint)),
-            (
-                KernelKind::RetractTangent,
-                general::retract_tangent(self.joint),
-            ),
-        ];
-        let formulas = formulas
-            .into_iter()
-            .filter_map(|(kind, value)| Some(with(kind, vec![], value?, Structure::General)));
+        let retract = general::retract(self.joint)
+            .map(|value| with(KernelKind::Retract, vec![], value, Structure::General));
         let solved = [
             (KernelKind::Local, Method::Newton),
             (KernelKind::RetractDifferential, Method::Solve),
             (KernelKind::RetractDifferentialInverse, Method::Solve),
         ];
-        formulas
+        retract
+            .into_iter()
             .chain(solved.map(|(kind, method)| by_runtime(kind, method)))
             .collect()
     }
@@ -199,13 +192,12 @@ impl Maker<'_> {
             singular,
         );
         singular.outputs.extend(side_of_home(joint, self.loci));
-        let Some((values, gradient)) = relations else {
+        let Some(relations) = relations else {
             return vec![rate, project, residual, singular];
         };
         project.method = Method::Newton;
-        let values = plain(KernelKind::Relations, vec![values]);
-        let gradient = plain(KernelKind::RelationGradient, vec![gradient]);
-        vec![rate, project, residual, singular, values, gradient]
+        let relations = plain(KernelKind::Relations, vec![relations]);
+        vec![rate, project, residual, singular, relations]
     }
 
     /// `Q̇ = Σ_k δ_k (S₀⁻¹ v)_k`, (31).

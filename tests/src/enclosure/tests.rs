@@ -7,14 +7,12 @@ use hamel_codegen::matrix::Matrix;
 use hamel_codegen::scene::JointType;
 
 /// Kernels that no law here evaluates: finite maps beside Φ, home, and what tells how far a configuration is from where it belongs.
-const UNJUDGED: [KernelKind; 10] = [
+const UNJUDGED: [KernelKind; 8] = [
     KernelKind::Home,
     KernelKind::Local,
-    KernelKind::RetractTangent,
     KernelKind::RetractDifferential,
     KernelKind::RetractDifferentialInverse,
     KernelKind::Relations,
-    KernelKind::RelationGradient,
     KernelKind::Project,
     KernelKind::Residual,
     KernelKind::Singularity,

@@ -126,9 +126,6 @@ impl Signature {
             ),
             KernelKind::Retract => ("retract", vec![Configuration, Local], Vector(n)),
             KernelKind::Local => ("local", vec![Configuration, Target], Vector(k)),
-            KernelKind::RetractTangent => {
-                ("retract_tangent", vec![Configuration, Local], Matrix(n, k))
-            }
             KernelKind::RetractDifferential => (
                 "retract_differential",
                 vec![Configuration, Local],
@@ -142,7 +139,6 @@ impl Signature {
             KernelKind::Project => ("project", q(), Vector(n)),
             KernelKind::Residual => ("residual", q(), Scalar),
             KernelKind::Relations => ("relations", q(), Vector(relations)),
-            KernelKind::RelationGradient => ("relation_gradient", q(), Matrix(relations, n)),
             KernelKind::Singularity => ("singularity", q(), Scalar),
             KernelKind::BiasAcceleration => {
                 ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
@@ -186,9 +182,6 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
         }
         KernelKind::Local => "The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.",
-        KernelKind::RetractTangent => {
-            "∂Φ/∂ϕ at finite ϕ: ϕ̇ to the rates of the stored scalars of Φ(Q, ϕ)."
-        }
         KernelKind::RetractDifferential => {
             "D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D."
         }
@@ -200,7 +193,6 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "Root of the sum of squares of the manifold's relations: 0 on the manifold."
         }
         KernelKind::Relations => "The relations of the manifold: 0 on it.",
-        KernelKind::RelationGradient => "Derivatives of the relations by the stored scalars.",
         KernelKind::Singularity => {
             "Least absolute value of the functions whose zeros the joint must stay away from."
         }

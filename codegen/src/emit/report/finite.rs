@@ -14,10 +14,9 @@ pub struct FiniteRow {
     pub method: String,
 }
 
-const FINITE: [KernelKind; 9] = [
+const FINITE: [KernelKind; 8] = [
     KernelKind::Retract,
     KernelKind::Local,
-    KernelKind::RetractTangent,
     KernelKind::RetractDifferential,
     KernelKind::RetractDifferentialInverse,
     KernelKind::Relations,

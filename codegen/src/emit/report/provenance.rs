@@ -129,13 +129,11 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         KernelKind::SpeedBasisGradient => vec![speeds, &[Motion]],
         KernelKind::Retract
         | KernelKind::Local
-        | KernelKind::RetractTangent
         | KernelKind::RetractDifferential
         | KernelKind::RetractDifferentialInverse => vec![&[Manifold, Motion]],
-        KernelKind::Relations
-        | KernelKind::RelationGradient
-        | KernelKind::Project
-        | KernelKind::Residual => vec![&[Manifold]],
+        KernelKind::Relations | KernelKind::Project | KernelKind::Residual => {
+            vec![&[Manifold]]
+        }
         KernelKind::Singularity => vec![&[Loci]],
         KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
             vec![twist, speeds, &[Pose, Motion]]

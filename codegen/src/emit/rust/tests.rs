@@ -67,27 +67,12 @@ fn patched(mut derived: Derived, kernels: Vec<Kernel>) -> Derived {
 /// The ball joint as if nothing were known of its Φ and its manifold.
 fn numeric_ball() -> Derived {
     let ball = derived(BALL);
-    let (q, phi) = (
-        Matrix::symbols(&ball.arguments.configuration),
-        &ball.arguments.local,
-    );
+    let q = Matrix::symbols(&ball.arguments.configuration);
     let relations = Matrix::column_vector(ball.space.manifold.relations());
-    let slopes = |of: &Matrix, symbols: &[crate::expr::Symbol]| {
-        let columns: Vec<Vec<Expr>> = symbols
-            .iter()
-            .map(|symbol| of.derivative(symbol).entries().to_vec())
-            .collect();
-        Matrix::from_columns(of.rows(), &columns)
-    };
-    let gradient = slopes(&relations, &ball.arguments.configuration);
-    let cross = Matrix::tilde(Matrix::symbols(phi).entries());
-    let turned = Matrix::from_fn(3, 3, |i, j| q.at(3 * i + j, 0).clone()).times(&cross);
-    let tangent = slopes(&Matrix::column_vector(turned.entries().to_vec()), phi);
     patched(
         ball,
         vec![
             by(Method::Newton, KernelKind::Local, vec![]),
-            by(Method::Formula, KernelKind::RetractTangent, vec![tangent]),
             by(Method::Solve, KernelKind::RetractDifferential, vec![]),
             by(
                 Method::Solve,
@@ -95,11 +80,6 @@ fn numeric_ball() -> Derived {
                 vec![],
             ),
             by(Method::Formula, KernelKind::Relations, vec![relations]),
-            by(
-                Method::Formula,
-                KernelKind::RelationGradient,
-                vec![gradient],
-            ),
             by(Method::Newton, KernelKind::Project, vec![q]),
         ],
     )
@@ -111,32 +91,23 @@ fn maps_without_closed_form_call_the_runtime() {
     assert_contains(
         &text,
         &[
-            "::hamel::finite::local(target, |phi| self.retract(q, phi), |phi| self.retract_tangent(q, phi))",
+            "::hamel::finite::local(q, target, |q, phi| self.retract(q, phi))",
             "fn retract_differential<T: Scalar>(&self, q: &SVector<T, 9>, phi: &SVector<T, 3>) -> SMatrix<T, 3, 3> { \
-             let moved = self.retract(q, phi); let tangent = self.retract_tangent(q, phi); \
-             let tangent_there = self.retract_tangent(&moved, &SVector::zeros()); \
-             ::hamel::finite::differential(&tangent, &tangent_there) }",
-            "::hamel::finite::differential_inverse(&tangent, &tangent_there, rate)",
-            "::hamel::finite::project(q, 6, |q| self.relations(q), |q| self.relation_gradient(q))",
+             ::hamel::finite::differential(q, phi, |q, phi| self.retract(q, phi)) }",
+            "::hamel::finite::differential_inverse(q, phi, rate, |q, phi| self.retract(q, phi))",
+            "::hamel::finite::project(q, 6, |q| self.relations(q))",
             "By Newton's method from ϕ = 0, in at most [`LOCAL_ITERATIONS`]",
         ],
     );
 }
 
 #[test]
-fn kernels_beside_the_trait_are_methods_of_the_type() {
+fn relations_are_a_method_of_the_type() {
     let text = emitted(&numeric_ball());
     let (own, of_trait) = text
         .split_once("impl Joint<9, 3, 3, 0> for Ball {")
         .expect("the implementation");
-    assert_contains(
-        own,
-        &[
-            "impl Ball {",
-            "pub fn retract_tangent<T: Scalar>(",
-            "pub fn relation_gradient<T: Scalar>(",
-        ],
-    );
+    assert_contains(own, &["impl Ball {", "pub fn relations<T: Scalar>("]);
     assert!(!of_trait.contains("fn relations<"), "{of_trait}");
 }
 
@@ -172,7 +143,7 @@ fn a_projection_solves_as_many_relations_as_the_coset_has() {
         let text = emitted(&derived(&format!(
             "hamel = 1; joint some {{ config Q: SE3; basis {basis} of se3; velocity in child; H = Q; }}"
         )));
-        assert_contains(&text, &[&format!("{rank}, |q| self.relations(q),")]);
+        assert_contains(&text, &[&format!("{rank}, |q| self.relations(q))")]);
     }
 }
 

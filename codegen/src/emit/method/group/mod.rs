@@ -40,7 +40,9 @@ impl<'a> Calls<'a> {
         let is_rate = kernel.kind == KernelKind::ConfigurationRate;
         let is_of_manifold = matches!(kernel.kind, KernelKind::Project | KernelKind::Residual);
         let serves = match is_finite {
-            true => derived.kernel(KernelKind::RetractTangent).is_none(),
+            true => derived
+                .kernel(KernelKind::Local)
+                .is_some_and(|local| local.method == Method::Formula),
             false if is_rate => true,
             false => is_of_manifold && derived.space.manifold.declared().is_empty(),
         };
