@@ -190,7 +190,8 @@ impl Slopes<'_> {
         by_local: &[f64],
         by_velocity: &[f64],
     ) {
-        let (Some(own), Some((joint, q))) = (view.mechanism.bodies().get(body), view.kernels(body))
+        let (Some(own), Some((joint, q))) =
+            (view.mechanism.bodies().get(body), view.joint_there(body))
         else {
             return self.spoil();
         };

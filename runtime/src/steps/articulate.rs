@@ -1,6 +1,7 @@
 //! Elimination of a joint's freedoms from the inertia and the wrench of what it carries, one freedom after the other.
 
 use super::place::Parts;
+use crate::erased::nan;
 use crate::joint::Joint;
 use crate::scalar::Scalar;
 use crate::spatial::fused::{add_scaled, cross, dot};
@@ -32,18 +33,29 @@ impl<T: Scalar> Pivot<T> {
 
 /// A freedom that moves no inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PivotFailure {
+pub struct PivotFailure<T = f64> {
     /// Which of the joint's speeds.
     pub speed: usize,
     /// `d_j`.
-    pub pivot: f64,
+    pub pivot: T,
     /// What its rounding amounts to.
-    pub limit: f64,
+    pub limit: T,
+}
+
+impl<T: Scalar> PivotFailure<T> {
+    /// Of a pivot that is not known.
+    pub(crate) fn unknown() -> Self {
+        Self {
+            speed: 0,
+            pivot: nan(),
+            limit: nan(),
+        }
+    }
 }
 
 /// `X_jᵀ F`, without the part that this column does not have.
 #[inline(always)]
-pub(super) fn power<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn power<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     j: usize,
     column: &Vector6<T>,
     wrench: &Vector6<T>,
@@ -62,7 +74,7 @@ where
 }
 
 /// An inertia, rigid or articulated, that can be applied to half a twist at less than the whole cost.
-pub(super) trait Inertia<T> {
+pub(crate) trait Inertia<T> {
     /// The momentum of a twist.
     fn of(&self, twist: &Vector6<T>) -> Vector6<T>;
     /// The momentum of a rotation about the origin.
@@ -103,7 +115,7 @@ impl<T: Scalar> Inertia<T> for SpatialInertia<T> {
 
 /// `I X_j`, without the part that this column does not have.
 #[inline(always)]
-pub(super) fn momentum<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn momentum<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     inertia: &impl Inertia<T>,
     j: usize,
     column: &Vector6<T>,
@@ -123,72 +135,78 @@ where
 
 /// What rounding can make of `X_jᵀ I X_j`, from the traces of the angular and of the linear part of I.
 #[inline(always)]
-fn rounding<J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    (moments, masses): (f64, f64),
+fn rounding<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    (moments, masses): (T, T),
     j: usize,
-    column: &Vector6<f64>,
-) -> f64
+    column: &Vector6<T>,
+) -> T
 where
+    T: Scalar<Mask = bool>,
     J: Joint<N, K, S, C>,
 {
     let (angular, linear) = split(column);
     let (turns, slides) = Parts::of::<J, N, K, S, C>(j);
-    let mut size = 0.0;
+    let mut size = T::zero();
     if turns {
         size += dot(&angular, &angular) * moments;
     }
     if slides {
         size += dot(&linear, &linear) * masses;
     }
-    ROUNDINGS * f64::EPSILON * size
+    T::from_f64(ROUNDINGS) * T::epsilon() * size
 }
 
 /// `I ← I − Σ_j Y_j Y_jᵀ / d_j`, with what it takes to do the same to wrenches.
 #[inline(always)]
-pub(super) fn inertia<J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    inertia: &mut ArticulatedInertia<f64>,
-    columns: &[Vector6<f64>; S],
-    armature: &[f64],
-    pivots: &mut [Pivot<f64>; S],
-) -> Result<(), PivotFailure>
+pub(crate) fn inertia<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    inertia: &mut ArticulatedInertia<T>,
+    columns: &[Vector6<T>; S],
+    armature: &[T],
+    pivots: &mut [Pivot<T>; S],
+) -> Result<(), PivotFailure<T>>
 where
+    T: Scalar<Mask = bool>,
     J: Joint<N, K, S, C>,
 {
     if armature.is_empty() {
         let mut rest = *inertia;
-        freedoms::<J, N, K, S, C>(&mut rest, columns, &[0.0; S], pivots)?;
-        forget::<J, N, K, S, C>(&mut rest);
+        freedoms::<T, J, N, K, S, C>(&mut rest, columns, &[T::zero(); S], pivots)?;
+        forget::<T, J, N, K, S, C>(&mut rest);
         *inertia = rest;
         return Ok(());
     }
-    let armature = armature.try_into().unwrap_or(&[0.0; S]);
-    freedoms::<J, N, K, S, C>(inertia, columns, armature, pivots)
+    let Ok(armature) = armature.try_into() else {
+        return Err(PivotFailure::unknown());
+    };
+    freedoms::<T, J, N, K, S, C>(inertia, columns, armature, pivots)
 }
 
 #[inline(always)]
-fn freedoms<J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    inertia: &mut ArticulatedInertia<f64>,
-    columns: &[Vector6<f64>; S],
-    armature: &[f64; S],
-    pivots: &mut [Pivot<f64>; S],
-) -> Result<(), PivotFailure>
+fn freedoms<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    inertia: &mut ArticulatedInertia<T>,
+    columns: &[Vector6<T>; S],
+    armature: &[T; S],
+    pivots: &mut [Pivot<T>; S],
+) -> Result<(), PivotFailure<T>>
 where
+    T: Scalar<Mask = bool>,
     J: Joint<N, K, S, C>,
 {
     let whole = (inertia.angular.trace(), inertia.linear.trace());
     for j in 0..S {
         let column = &columns[j];
-        let y = momentum::<J, f64, N, K, S, C>(inertia, j, column);
-        let pivot = power::<J, f64, N, K, S, C>(j, column, &y) + armature[j];
-        let limit = rounding::<J, N, K, S, C>(whole, j, column);
-        if pivot.is_nan() || pivot <= limit {
+        let y = momentum::<T, J, N, K, S, C>(inertia, j, column);
+        let pivot = power::<T, J, N, K, S, C>(j, column, &y) + armature[j];
+        let limit = rounding::<T, J, N, K, S, C>(whole, j, column);
+        // Not of a comparison with NaN either.
+        if !limit.less(pivot) {
             return Err(PivotFailure {
                 speed: j,
                 pivot,
                 limit,
             });
         }
-        let inverse = 1.0 / pivot;
+        let inverse = T::one() / pivot;
         pivots[j] = Pivot {
             momentum: y,
             inverse,
@@ -202,9 +220,10 @@ where
 ///
 /// `I X̄ = 0` after elimination: a joint that turns in all directions transmits no moment, one that slides in all directions no force.
 #[inline(always)]
-fn forget<J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    inertia: &mut ArticulatedInertia<f64>,
+fn forget<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    inertia: &mut ArticulatedInertia<T>,
 ) where
+    T: Scalar<Mask = bool>,
     J: Joint<N, K, S, C>,
 {
     match (S, Parts::any::<J, N, K, S, C>()) {
@@ -223,7 +242,7 @@ fn forget<J, const N: usize, const K: usize, const S: usize, const C: usize>(
 
 /// `F + Σ_j Y_j t_j` with the loads `t_j = (f_j − X_jᵀ F) / d_j`.
 #[inline(always)]
-pub(super) fn wrench<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn wrench<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     wrench: &Vector6<T>,
     columns: &[Vector6<T>; S],
     pivots: &[Pivot<T>; S],
@@ -236,7 +255,7 @@ where
 {
     let mut wrench = *wrench;
     for j in 0..S {
-        let carried = power::<J, T, N, K, S, C>(j, &columns[j], &wrench);
+        let carried = power::<T, J, N, K, S, C>(j, &columns[j], &wrench);
         loads[j] = (forces[j] - carried) * pivots[j].inverse;
         wrench = add_weighted(&wrench, &pivots[j].momentum, loads[j]);
     }
@@ -245,7 +264,7 @@ where
 
 /// `A + Σ_j X_j x_j` with the rates `x_j = t_j − Y_jᵀ A / d_j`, last freedom first.
 #[inline(always)]
-pub(super) fn motion<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn motion<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     motion: &Vector6<T>,
     columns: &[Vector6<T>; S],
     pivots: &[Pivot<T>; S],

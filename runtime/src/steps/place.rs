@@ -1,6 +1,7 @@
 //! Where a joint puts its child, and how it moves it.
 
 use super::Motion;
+use crate::erased::nan;
 use crate::joint::{Entry, Joint};
 use crate::scalar::Scalar;
 use crate::spatial::fused::{add_scaled, apply, cross, product};
@@ -28,6 +29,15 @@ impl<T: Scalar> Placement<T> {
             rotation: Matrix3::identity(),
             origin: Vector3::zeros(),
             offset: Vector3::zeros(),
+        }
+    }
+
+    /// NaN.
+    pub(crate) fn unknown() -> Self {
+        Self {
+            rotation: Matrix3::repeat(nan()),
+            origin: Vector3::repeat(nan()),
+            offset: Vector3::repeat(nan()),
         }
     }
 
@@ -61,7 +71,7 @@ fn combine<T: Scalar>(
 
 /// The child frame of `joint` at `q`.
 #[inline(always)]
-pub(super) fn child<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn child<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
     q: &SVector<T, N>,
     joint_frame: &Pose<T>,
@@ -93,12 +103,12 @@ where
 }
 
 /// Which parts of the columns of X̄ can be other than zero.
-pub(super) struct Parts;
+pub(crate) struct Parts;
 
 impl Parts {
     /// Angular and linear part of column `j`.
     #[inline(always)]
-    pub(super) const fn of<J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    pub(crate) const fn of<J, const N: usize, const K: usize, const S: usize, const C: usize>(
         j: usize,
     ) -> (bool, bool)
     where
@@ -110,7 +120,7 @@ impl Parts {
 
     /// Whether any column has an angular, and whether any has a linear part.
     #[inline(always)]
-    pub(super) fn any<J, const N: usize, const K: usize, const S: usize, const C: usize>()
+    pub(crate) fn any<J, const N: usize, const K: usize, const S: usize, const C: usize>()
     -> (bool, bool)
     where
         J: Joint<N, K, S, C>,
@@ -133,7 +143,7 @@ const fn occurs<const S: usize>(pattern: &[[Entry; S]; 6], first: usize, j: usiz
 
 /// The columns of `X̄ = X^c S̄`, turned into world axes.
 #[inline(always)]
-pub(super) fn columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
     q: &SVector<T, N>,
     rotation: &Matrix3<T>,
@@ -179,7 +189,7 @@ where
 
 /// The child's motion at v̄̇ = 0, and the columns of X̄.
 #[inline(always)]
-pub(super) fn advance<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn advance<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
     (q, speeds): (&SVector<T, N>, &SVector<T, S>),
     joint_frame: &Pose<T>,
@@ -222,7 +232,7 @@ where
 
 /// `start + X̄ weights`, without the parts that the joint type does not have.
 #[inline(always)]
-pub(super) fn add_columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn add_columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     start: &Vector6<T>,
     columns: &[Vector6<T>; S],
     weights: &SVector<T, S>,

@@ -2,6 +2,7 @@
 
 use super::Motion;
 use super::place::Parts;
+use crate::erased::nan;
 use crate::joint::{Joint, Products};
 use crate::scalar::Scalar;
 use crate::spatial::fused::cross;
@@ -27,18 +28,28 @@ pub struct Variation<T> {
 impl<T: Scalar> Variation<T> {
     /// Of nothing.
     pub fn zero() -> Self {
+        Self::repeat(T::zero())
+    }
+
+    /// NaN.
+    pub(crate) fn unknown() -> Self {
+        Self::repeat(nan())
+    }
+
+    fn repeat(entry: T) -> Self {
+        let vector = Vector6::repeat(entry);
         Self {
-            local: Vector6::zeros(),
-            drift: Vector6::zeros(),
-            rate: Vector6::zeros(),
-            speed_rate: Vector6::zeros(),
+            local: vector,
+            drift: vector,
+            rate: vector,
+            speed_rate: vector,
         }
     }
 }
 
 /// `ad_V X` for column `j` of X̄, without the part that this column does not have.
 #[inline(always)]
-fn bracket_of_column<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
+fn bracket_of_column<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     j: usize,
     twist: &Vector6<T>,
     column: &Vector6<T>,
@@ -58,13 +69,14 @@ where
 
 /// The variations of one joint at (q, v̄, v̄̇), one a freedom; `own` and `parent` are the motions of the child frames.
 #[inline(always)]
-pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, const C: usize>(
+pub(crate) fn variations<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
-    (q, speeds, accelerations): (&SVector<f64, N>, &SVector<f64, S>, &SVector<f64, S>),
-    (own, parent): (&Motion<f64>, &Motion<f64>),
-    columns: &[Vector6<f64>; S],
-    out: &mut [Variation<f64>; K],
+    (q, speeds, accelerations): (&SVector<T, N>, &SVector<T, S>, &SVector<T, S>),
+    (own, parent): (&Motion<T>, &Motion<T>),
+    columns: &[Vector6<T>; S],
+    out: &mut [Variation<T>; K],
 ) where
+    T: Scalar,
     J: Joint<N, K, S, C>,
 {
     let placement = &own.placement;
@@ -86,8 +98,8 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
             None => {
                 let z = &columns[b];
                 variation.local = *z;
-                variation.drift = bracket_of_column::<J, f64, N, K, S, C>(b, &carried, z);
-                variation.rate = bracket_of_column::<J, f64, N, K, S, C>(b, &carried_rate, z);
+                variation.drift = bracket_of_column::<T, J, N, K, S, C>(b, &carried, z);
+                variation.rate = bracket_of_column::<T, J, N, K, S, C>(b, &carried_rate, z);
             }
         }
     }
@@ -110,7 +122,7 @@ pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, cons
     }
     let both = own.twist + carried;
     for (a, column) in columns.iter().enumerate() {
-        out[a].speed_rate = bracket_of_column::<J, f64, N, K, S, C>(a, &both, column);
+        out[a].speed_rate = bracket_of_column::<T, J, N, K, S, C>(a, &both, column);
     }
     if !structures.bias_acceleration.is_zero() {
         let slope = joint.bias_acceleration_slope(q, speeds);
