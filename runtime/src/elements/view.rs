@@ -61,7 +61,10 @@ impl<'a> View<'a> {
     }
 
     /// The joint under a body, and its Q.
-    pub(super) fn joint_there(&self, body: usize) -> Option<(&'a dyn AnyJoint, &'a [f64])> {
+    pub(super) fn joint_and_configuration(
+        &self,
+        body: usize,
+    ) -> Option<(&'a dyn AnyJoint, &'a [f64])> {
         let body = self.body(body)?;
         Some((body.joint(), body.configuration(self.configuration)))
     }

@@ -288,22 +288,6 @@ where
         *wrench = steps::wrench::<T, J, N, K, S, C>(wrench, columns, pivots, forces, loads);
     }
 
-    fn eliminate(
-        &self,
-        (inertia, wrench): (&mut ArticulatedInertia<T>, &mut Vector6<T>),
-        columns: &[Vector6<T>],
-        (armature, forces): (&[T], &[T]),
-        pivots: &mut [Pivot<T>],
-        loads: &mut [T],
-    ) -> Result<(), PivotFailure<T>>
-    where
-        T: Native,
-    {
-        self.articulate(inertia, columns, armature, pivots)?;
-        self.reduce(wrench, columns, pivots, forces, loads);
-        Ok(())
-    }
-
     fn resolve(
         &self,
         motion: &mut Vector6<T>,

@@ -17,8 +17,9 @@ use nalgebra::{Matrix3, Vector6};
 /// With (N, K, S, C) of [`AnyJoint::layout`], shapes, units and frames are as in [`Joint`]. The caller hands over slices of exactly these
 /// sizes; of any other every result is NaN, or an error where there can be one. What does not depend on an argument does not look at it.
 ///
-/// The methods after [`AnyJoint::parts`] are the joint's share in the recursions over a mechanism, in the frames of
-/// [`steps`](crate::steps). There `columns` are those of X̄, and pivots, loads and rates have one entry a speed.
+/// The methods from [`AnyJoint::parts`] on are the joint's share in the recursions over a mechanism, in the frames of
+/// [`steps`](crate::steps). There `columns` are those of X̄, and pivots, loads and rates have one entry a speed. What solves a mechanism or
+/// differentiates it is for [`Native`] numbers.
 pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     /// The same joint in numbers of 106 bits.
     fn extended(self: Arc<Self>) -> Arc<dyn AnyJoint<Extended>>;
@@ -160,7 +161,12 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
         loads: &mut [T],
     ) -> Result<(), PivotFailure<T>>
     where
-        T: Native;
+        T: Native,
+    {
+        self.articulate(carried.0, columns, armature_and_forces.0, pivots)?;
+        self.reduce(carried.1, columns, pivots, armature_and_forces.1, loads);
+        Ok(())
+    }
     /// The joint's `rates` (speeds or accelerations), added to the `motion` that its parent carries it along with.
     fn resolve(
         &self,

@@ -137,7 +137,8 @@ pub trait Scalar:
     }
 }
 
-/// A number of the machine itself, in which mechanisms are solved: `f64` or `f32`. [`Extended`] numbers tell what such solutions leave.
+/// A number of the machine itself, in which mechanisms are solved and differentiated: `f64` or `f32`. [`Extended`] numbers tell what their
+/// solutions leave.
 pub trait Native: Scalar<Mask = bool> {}
 
 /// `a₁ b₁ + (a₂ b₂ + …)`, each product but the last fused with the sum of those after it, as emitted formulas write it.
