@@ -7,7 +7,7 @@ use crate::joint::{Joint, Products, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
-    self, ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, Variation,
+    ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, Steps, Variation,
 };
 use alloc::sync::Arc;
 use nalgebra::{Matrix3, SVector, Vector6};
@@ -155,14 +155,18 @@ where
     where
         T: Native,
     {
-        steps::spring_slope(&self.0, (&vector(q), &vector(rest)), stiffness).store(out);
+        Steps(&self.0)
+            .spring_slope((&vector(q), &vector(rest)), stiffness)
+            .store(out);
     }
 
     fn turn_slope(&self, q: &[T], rest: &Matrix3<T>, stiffness: T, out: &mut [T])
     where
         T: Native,
     {
-        steps::turn_slope(&self.0, &vector(q), rest, stiffness).store(out);
+        Steps(&self.0)
+            .turn_slope(&vector(q), rest, stiffness)
+            .store(out);
     }
 
     fn rotor_slopes(
@@ -176,18 +180,18 @@ where
         T: Native,
     {
         let (velocity, inertia) = (vector(velocity), vector(inertia));
-        let slopes = steps::rotor_slopes(&self.0, &vector(q), &velocity, &inertia);
+        let slopes = Steps(&self.0).rotor_slopes(&vector(q), &velocity, &inertia);
         slopes[0].store(by_local);
         slopes[1].store(by_velocity);
     }
 
     fn parts(&self) -> (bool, bool) {
-        steps::Parts::any::<J, N, K, S, C>()
+        Steps::<J, N, K, S, C>::parts()
     }
 
     fn column_parts(&self, speed: usize) -> (bool, bool) {
         match speed < S {
-            true => steps::Parts::of::<J, N, K, S, C>(speed),
+            true => Steps::<J, N, K, S, C>::column_parts(speed),
             false => (false, false),
         }
     }
@@ -196,7 +200,7 @@ where
     where
         T: Native,
     {
-        *own = steps::child(&self.0, &vector(q), joint_frame, parent);
+        *own = Steps(&self.0).child(&vector(q), joint_frame, parent);
     }
 
     fn stand(
@@ -210,9 +214,9 @@ where
         T: Native,
     {
         let q = vector(q);
-        *own = steps::child(&self.0, &q, joint_frame, parent);
+        *own = Steps(&self.0).child(&q, joint_frame, parent);
         match array_mut(columns) {
-            Some(columns) => *columns = steps::columns(&self.0, &q, &own.rotation),
+            Some(columns) => *columns = Steps(&self.0).columns(&q, &own.rotation),
             None => columns.fill(Vector6::repeat(nan())),
         }
     }
@@ -222,7 +226,7 @@ where
         T: Native,
     {
         match array_mut(columns) {
-            Some(columns) => *columns = steps::columns(&self.0, &vector(q), &Matrix3::identity()),
+            Some(columns) => *columns = Steps(&self.0).columns(&vector(q), &Matrix3::identity()),
             None => columns.fill(Vector6::repeat(nan())),
         }
     }
@@ -241,11 +245,10 @@ where
             return columns.fill(Vector6::repeat(nan()));
         };
         let state = (&SVector::from(*q), &SVector::from(*speeds));
-        *own = steps::advance(&self.0, state, joint_frame, parent, own_columns);
+        *own = Steps(&self.0).advance(state, joint_frame, parent, own_columns);
         if !accelerations.is_empty() {
             let accelerations = vector(accelerations);
-            own.rate =
-                steps::add_columns::<T, J, N, K, S, C>(&own.rate, own_columns, &accelerations);
+            own.rate = Steps::<J, N, K, S, C>::add_columns(&own.rate, own_columns, &accelerations);
         }
     }
 
@@ -262,7 +265,7 @@ where
         let (Some(columns), Some(pivots)) = (array(columns), array_mut(pivots)) else {
             return Err(PivotFailure::unknown());
         };
-        steps::inertia::<T, J, N, K, S, C>(inertia, columns, armature, pivots)
+        Steps::<J, N, K, S, C>::inertia(inertia, columns, armature, pivots)
     }
 
     fn reduce(
@@ -285,7 +288,7 @@ where
             *wrench = Vector6::repeat(nan());
             return loads.fill(nan());
         };
-        *wrench = steps::wrench::<T, J, N, K, S, C>(wrench, columns, pivots, forces, loads);
+        *wrench = Steps::<J, N, K, S, C>::wrench(wrench, columns, pivots, forces, loads);
     }
 
     fn resolve(
@@ -308,7 +311,7 @@ where
             *motion = Vector6::repeat(nan());
             return rates.fill(nan());
         };
-        *motion = steps::motion::<T, J, N, K, S, C>(motion, columns, pivots, loads, rates);
+        *motion = Steps::<J, N, K, S, C>::motion(motion, columns, pivots, loads, rates);
     }
 
     fn momenta(&self, inertia: &SpatialInertia<T>, columns: &[Vector6<T>], out: &mut [Vector6<T>])
@@ -319,7 +322,7 @@ where
             return out.fill(Vector6::repeat(nan()));
         };
         for j in 0..S {
-            own[j] = steps::momentum::<T, J, N, K, S, C>(inertia, j, &columns[j]);
+            own[j] = Steps::<J, N, K, S, C>::momentum(inertia, j, &columns[j]);
         }
     }
 
@@ -328,7 +331,7 @@ where
             return out.fill(nan());
         };
         for j in 0..S {
-            own[j] = steps::power::<T, J, N, K, S, C>(j, &columns[j], wrench);
+            own[j] = Steps::<J, N, K, S, C>::power(j, &columns[j], wrench);
         }
     }
 
@@ -349,6 +352,6 @@ where
             false => vector(accelerations),
         };
         let state = (&vector(q), &vector(speeds), &accelerations);
-        steps::variations(&self.0, state, motions, columns, own);
+        Steps(&self.0).variations(state, motions, columns, own);
     }
 }

@@ -17,18 +17,19 @@ mod slopes;
 mod vary;
 
 pub use articulate::{Pivot, PivotFailure};
-pub(crate) use articulate::{inertia, momentum, motion, power, wrench};
 pub use chart::ChartDerivatives;
 pub(crate) use chart::Field;
 pub use place::Placement;
-pub(crate) use place::{Parts, add_columns, advance, child, columns};
-pub(crate) use slopes::{rotor_slopes, spring_slope, turn_slope};
 pub use vary::Variation;
-pub(crate) use vary::variations;
 
 use crate::erased::nan;
 use crate::scalar::Scalar;
 use nalgebra::Vector6;
+
+/// The steps of one joint.
+pub(crate) struct Steps<'a, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    pub(crate) &'a J,
+);
 
 /// The motion of a joint's child frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
