@@ -14,8 +14,6 @@ extern crate alloc;
 
 pub use nalgebra;
 
-#[cfg(feature = "alloc")]
-pub mod chart;
 pub mod compiled;
 #[cfg(feature = "alloc")]
 pub mod control;
