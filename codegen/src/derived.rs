@@ -77,6 +77,15 @@ impl Derived {
         Names::new(&self.spec.parameters, &self.arguments)
     }
 
+    /// Puts a kernel in the place of that of its kind, with its formulas.
+    pub fn replace(&mut self, kernel: Kernel) {
+        let program = Program::in_names(&kernel.steps, &kernel.outputs, self.names());
+        self.programs.insert(kernel.kind, program);
+        self.kernels.retain(|other| other.kind != kernel.kind);
+        self.kernels.push(kernel);
+        self.kernels.sort_by_key(|kernel| kernel.kind);
+    }
+
     /// The kernel of that kind.
     pub fn kernel(&self, kind: KernelKind) -> Option<&Kernel> {
         self.kernels.iter().find(|kernel| kernel.kind == kind)

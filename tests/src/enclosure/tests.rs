@@ -90,10 +90,7 @@ fn with_false(derived: &Derived, kind: KernelKind) -> Option<Derived> {
     let off = &x - &Expr::integer(5);
     let tiny = Expr::fraction(1, 1_000_000_000_000_000).square();
     let bump = &tiny * &(&Expr::integer(-1_000_000) * &off.square()).exp();
-    let kernel = falsified
-        .kernels
-        .iter_mut()
-        .find(|kernel| kernel.kind == kind)?;
+    let mut kernel = falsified.kernel(kind)?.clone();
     let output = kernel.outputs.first_mut()?;
     if output.entries().is_empty() {
         return None;
@@ -103,6 +100,7 @@ fn with_false(derived: &Derived, kind: KernelKind) -> Option<Derived> {
         true => entry + &bump,
         false => entry.clone(),
     });
+    falsified.replace(kernel);
     Some(falsified)
 }
 

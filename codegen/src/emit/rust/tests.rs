@@ -4,7 +4,7 @@
 
 use super::{Index, file, imports, index};
 use crate::derive;
-use crate::derived::{Derived, Kernel, KernelKind, Method, Structure, programs};
+use crate::derived::{Derived, Kernel, KernelKind, Method, Structure};
 use crate::emit::types::type_name;
 use crate::emit::{Accuracy, Report, explain_text, page};
 use crate::expr::{Expr, Rational};
@@ -55,12 +55,9 @@ fn by(method: Method, kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
 
 /// The joint with the kernels in place of its own of the same kinds.
 fn patched(mut derived: Derived, kernels: Vec<Kernel>) -> Derived {
-    derived
-        .kernels
-        .retain(|kernel| kernels.iter().all(|new| new.kind != kernel.kind));
-    derived.kernels.extend(kernels);
-    derived.kernels.sort_by_key(|kernel| kernel.kind);
-    derived.programs = programs(&derived.spec, &derived.arguments, &derived.kernels);
+    kernels
+        .into_iter()
+        .for_each(|kernel| derived.replace(kernel));
     derived
 }
 
